@@ -12,7 +12,8 @@ name; new ones end in `Error`. They carry plain values, never live objects.
     ├── QueueFullError (RuntimeError)
     ├── ServiceError (RuntimeError)
     │   └── ServiceUnavailableError
-    └── RequestTimeoutError (TimeoutError)
+    ├── RequestTimeoutError (TimeoutError)
+    └── TransportError (ConnectionError)
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ __all__ = [
     "RequestTimeoutError",
     "ServiceError",
     "ServiceUnavailableError",
+    "TransportError",
 ]
 
 
@@ -115,6 +117,10 @@ class RequestTimeoutError(AionodeError, TimeoutError):
         self.timeout_sec = timeout_sec
         self.servers = servers
         super().__init__(f"{service}: no reply in {timeout_sec:g} s; {silence(servers)}")
+
+
+class TransportError(AionodeError, ConnectionError):
+    """A transport cannot do what was asked; the text says what to change."""
 
 
 def silence(servers: int) -> str:

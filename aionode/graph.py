@@ -1,0 +1,210 @@
+"""Who offers what: the nodes and endpoints that a context knows of, and questions about them.
+
+`Graph` is a store that the context and its transports write to. It does no I/O: a transport adds
+what it hears of, the context adds its own, and whoever waits is woken at each change.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import enum
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from aionode import names
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+    from aionode.qos import QoSProfile
+
+__all__ = ["EndpointInfo", "EndpointKind", "Graph", "NodeInfo"]
+
+
+class EndpointKind(enum.Enum):
+    """What an endpoint does."""
+
+    PUBLISHER = "publisher"
+    SUBSCRIPTION = "subscription"
+    SERVER = "server"
+    CLIENT = "client"
+
+
+@dataclass(frozen=True, slots=True)
+class NodeInfo:
+    """One node as the graph knows it.
+
+    Attributes:
+        participant: Id of the context that runs the node, in hexadecimal.
+        node_id: Number of the node, unique in its context.
+        name: Its name without namespace.
+        namespace: Its namespace, beginning with a slash.
+        enclave: Its security enclave.
+    """
+
+    participant: str
+    node_id: int
+    name: str
+    namespace: str
+    enclave: str = "/"
+
+    @property
+    def fully_qualified_name(self) -> str:
+        """Namespace and name in one."""
+        return names.fully_qualified_node_name(self.name, self.namespace)
+
+
+@dataclass(frozen=True, slots=True)
+class EndpointInfo:
+    """One publisher, subscription, server or client as the graph knows it.
+
+    Attributes:
+        kind: What it does.
+        node: The node that it belongs to.
+        endpoint_id: Number of the endpoint, unique in its context.
+        name: Full name of its topic or service.
+        type_name: ROS name of its type, such as ``std_msgs/msg/String``.
+        type_hash: RIHS01 hash of the type, as text.
+        qos: Its profile.
+        gid: 16 bytes that no other endpoint has.
+    """
+
+    kind: EndpointKind
+    node: NodeInfo
+    endpoint_id: int
+    name: str
+    type_name: str
+    type_hash: str
+    qos: QoSProfile
+    gid: bytes
+
+
+type_key = tuple[EndpointKind, str]
+
+
+class Graph:
+    """The nodes and endpoints known now.
+
+    Endpoints of one name are found through an index, so that a question costs what it answers and
+    not what the whole system holds.
+    """
+
+    def __init__(self) -> None:
+        self._nodes: dict[NodeInfo, None] = {}
+        self._endpoints: dict[EndpointInfo, None] = {}
+        self._by_name: dict[type_key, dict[EndpointInfo, None]] = defaultdict(dict)
+        self._by_node: dict[NodeInfo, dict[EndpointInfo, None]] = defaultdict(dict)
+        self._waiters: list[asyncio.Future[None]] = []
+        self._listeners: list[Callable[[EndpointInfo], None]] = []
+
+    def __repr__(self) -> str:
+        return f"<Graph: {len(self._nodes)} nodes, {len(self._endpoints)} endpoints>"
+
+    # Changes
+
+    def add_node(self, node: NodeInfo) -> None:
+        """Note that `node` is there; twice is the same as once."""
+        if node not in self._nodes:
+            self._nodes[node] = None
+            self._wake()
+
+    def remove_node(self, node: NodeInfo) -> None:
+        """Note that `node` has gone, whether it was known or not."""
+        if node in self._nodes:
+            del self._nodes[node]
+            self._wake()
+
+    def add_endpoint(self, endpoint: EndpointInfo) -> None:
+        """Note that `endpoint` is there; twice is the same as once."""
+        if endpoint in self._endpoints:
+            return
+        self._endpoints[endpoint] = None
+        self._by_name[endpoint.kind, endpoint.name][endpoint] = None
+        self._by_node[endpoint.node][endpoint] = None
+        for listener in self._listeners:
+            listener(endpoint)
+        self._wake()
+
+    def remove_endpoint(self, endpoint: EndpointInfo) -> None:
+        """Note that `endpoint` has gone, whether it was known or not."""
+        if endpoint not in self._endpoints:
+            return
+        del self._endpoints[endpoint]
+        for index, key in (
+            (self._by_name, (endpoint.kind, endpoint.name)),
+            (self._by_node, endpoint.node),
+        ):
+            group = index[key]  # type: ignore[index]  # the two indices differ in their keys
+            del group[endpoint]
+            if not group:
+                del index[key]  # type: ignore[attr-defined]  # as above
+        self._wake()
+
+    def remove_participant(self, participant: str) -> None:
+        """Forget everything of the context `participant`."""
+        for endpoint in [e for e in self._endpoints if e.node.participant == participant]:
+            self.remove_endpoint(endpoint)
+        for node in [n for n in self._nodes if n.participant == participant]:
+            self.remove_node(node)
+
+    def on_endpoint(self, listener: Callable[[EndpointInfo], None]) -> None:
+        """Call `listener` with every endpoint that is added from now on."""
+        self._listeners.append(listener)
+
+    async def changed(self) -> None:
+        """Wait for the next change: anything that comes or goes. Cancelling is safe."""
+        waiter = asyncio.get_running_loop().create_future()
+        self._waiters.append(waiter)
+        try:
+            await waiter
+        finally:
+            if waiter in self._waiters:
+                self._waiters.remove(waiter)
+
+    async def until(self, condition: Callable[[], bool]) -> None:
+        """Wait until `condition()` is true; it is asked again at each change."""
+        while not condition():
+            await self.changed()
+
+    def _wake(self) -> None:
+        waiters, self._waiters = self._waiters, []
+        for waiter in waiters:
+            if not waiter.done():
+                waiter.set_result(None)
+
+    # Questions
+
+    def nodes(self) -> list[NodeInfo]:
+        """Return every node, in the order in which they were seen."""
+        return list(self._nodes)
+
+    def endpoints(
+        self, *kinds: EndpointKind, name: str | None = None, node: NodeInfo | None = None
+    ) -> list[EndpointInfo]:
+        """Return the endpoints of these kinds (all without any), of this name, of this node."""
+        kinds = kinds or tuple(EndpointKind)
+        found: Iterable[EndpointInfo]
+        if name is not None:
+            found = (e for kind in kinds for e in self._by_name.get((kind, name), ()))
+        else:
+            found = self._by_node.get(node, ()) if node is not None else self._endpoints
+            found = (e for e in found if e.kind in kinds)
+        return [e for e in found if node is None or e.node == node]
+
+    def count(self, kind: EndpointKind, name: str) -> int:
+        """Return how many endpoints of `kind` there are under the full name `name`."""
+        return len(self._by_name.get((kind, name), ()))
+
+    def names_and_types(
+        self, *kinds: EndpointKind, node: NodeInfo | None = None
+    ) -> list[tuple[str, list[str]]]:
+        """Return every name that endpoints of these kinds use, each with its types, sorted."""
+        types: dict[str, set[str]] = defaultdict(set)
+        for endpoint in self.endpoints(*kinds, node=node):
+            types[endpoint.name].add(endpoint.type_name)
+        return [(name, sorted(types[name])) for name in sorted(types)]
+
+    def find_nodes(self, fully_qualified_name: str) -> Iterator[NodeInfo]:
+        """Yield every node of this full name; names need not be unique."""
+        return (n for n in self._nodes if n.fully_qualified_name == fully_qualified_name)

@@ -1,0 +1,232 @@
+"""The contract between endpoints and the ways that messages travel.
+
+Above this line there are only typed messages, below it bytes, keys and foreign threads. A context
+uses one or more transports at once. Each endpoint of a node has a counterpart in each of them, and
+each matched reader is reached through exactly one: a transport never delivers to endpoints that
+another transport of the same context serves (`local` serves the context itself, the others serve
+everyone else).
+
+Everything here is called on the thread of the event loop, except that endpoints may be made before
+a loop runs; they are reached by other processes once `Transport.open` has returned.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Any, Protocol
+
+import msgspec
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.errors import ServiceError
+    from aionode.graph import EndpointInfo, Graph, NodeInfo
+
+__all__ = [
+    "Announcement",
+    "Call",
+    "Origin",
+    "Reader",
+    "ReplyTo",
+    "Request",
+    "Requester",
+    "Transport",
+    "Writer",
+]
+
+
+class Origin(msgspec.Struct, frozen=True, gc=False):
+    """Where a message comes from.
+
+    Attributes:
+        gid: The 16 bytes that identify the sending endpoint; for a request, its client.
+        sequence: The sender's number of the message, from 1 and rising by 1.
+        source_ns: When it was sent, in nanoseconds since 1970 by the sender's clock; 0 if unknown.
+        remote: Whether it came from another context.
+    """
+
+    gid: bytes
+    sequence: int
+    source_ns: int
+    remote: bool = False
+
+
+class Announcement(ABC):
+    """Something that was announced to a transport, until it is closed."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Withdraw it; twice is the same as once."""
+
+
+# Topics
+
+
+class Reader(Protocol):
+    """The receiving end of a subscription, as a transport sees it."""
+
+    endpoint: EndpointInfo
+    raw: bool
+    """Whether `deliver` wants the message as CDR bytes."""
+
+    def deliver(self, msg: Any, origin: Origin) -> None:
+        """Take one message, which nobody may change from now on. Never raises, never waits."""
+
+    def has_room(self) -> bool:
+        """Whether a message can be taken without losing one that should be kept (KEEP_ALL)."""
+
+    async def wait_for_room(self) -> None:
+        """Wait until `has_room`, or until the reader is destroyed."""
+
+
+class Writer(Announcement):
+    """The sending end of one publisher in one transport.
+
+    Attributes:
+        active: Whether a message written now would be used: a reader is matched, or it is kept for
+            late ones. Encoding and copying are left out where this is false.
+        bounded: Whether `has_room` may be false.
+    """
+
+    active: bool = False
+    bounded: bool = False
+
+    @abstractmethod
+    def write(self, msg: Any, origin: Origin) -> None:
+        """Send `msg` to every reader matched through this transport; never blocks.
+
+        The caller may change `msg` afterwards.
+
+        Raises:
+            MessageError: a value does not fit its field; nothing was sent.
+        """
+
+    def has_room(self) -> bool:
+        """Whether every reliable KEEP_ALL reader can take one more message."""
+        return True
+
+    async def drain(self) -> None:
+        """Wait until `has_room`, and what was written has been handed on."""
+
+
+# Services
+
+
+class ReplyTo(Protocol):
+    """What becomes of one request, as the client's end sees it. Late calls do nothing."""
+
+    def reply(self, response: Any, origin: Origin) -> None:
+        """Take a response."""
+
+    def fail(self, error: ServiceError) -> None:
+        """Take a server's error."""
+
+    def end(self) -> None:
+        """Note that no answer will come any more through this transport."""
+
+
+class Call(Protocol):
+    """One request under way in one transport."""
+
+    def cancel(self) -> None:
+        """Forget it: a server that has not begun need not serve it, and a reply is dropped."""
+
+
+class Requester(Announcement):
+    """The sending end of one client in one transport."""
+
+    @property
+    @abstractmethod
+    def servers(self) -> int:
+        """How many servers are matched through this transport now."""
+
+    @abstractmethod
+    def send(self, request: Any, origin: Origin, reply_to: ReplyTo) -> Call:
+        """Send `request` to every matched server; never blocks.
+
+        Exactly one of `reply`, `fail` and `end` is called on `reply_to` at least once, never before
+        this method has returned, unless the call is cancelled first.
+
+        Raises:
+            MessageError: a value does not fit its field; nothing was sent.
+        """
+
+
+class Request(ABC):
+    """One request at the server's end. It is answered once; what comes later is dropped.
+
+    Attributes:
+        message: The request itself.
+        origin: The client and its number of the request.
+        cancelled: Whether the client is known to have given up.
+    """
+
+    message: Any
+    origin: Origin
+    cancelled: bool = False
+
+    @abstractmethod
+    def reply(self, response: Any) -> None:
+        """Send the response.
+
+        Raises:
+            MessageError: a value does not fit its field; nothing was sent.
+        """
+
+    @abstractmethod
+    def fail(self, error_type: str, error_text: str) -> None:
+        """Send an error in place of a response, to clients that can be told."""
+
+    @abstractmethod
+    def drop(self) -> None:
+        """Give the request up without an answer: the server goes away."""
+
+
+# The whole
+
+
+class Transport(ABC):
+    """One way for messages to travel."""
+
+    @abstractmethod
+    async def open(self, graph: Graph) -> None:
+        """Connect, and report the nodes and endpoints of others to `graph` from now on.
+
+        Returns when what exists already is known and reachable, as far as can be told. What was
+        created before is announced now.
+
+        Raises:
+            TransportError: there is no way to connect; the text says what to change.
+        """
+
+    @abstractmethod
+    async def close(self) -> None:
+        """Withdraw everything and disconnect, within a second; it can be opened again."""
+
+    @abstractmethod
+    def create_node(self, node: NodeInfo) -> Announcement:
+        """Announce a node."""
+
+    @abstractmethod
+    def create_writer(self, endpoint: EndpointInfo, msg_type: type[Any]) -> Writer:
+        """Announce a publisher of `msg_type`."""
+
+    @abstractmethod
+    def create_reader(
+        self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
+    ) -> Announcement:
+        """Announce a subscription of `msg_type`, whose messages go to `reader`."""
+
+    @abstractmethod
+    def create_server(
+        self, endpoint: EndpointInfo, srv_type: type[Any], serve: Callable[[Request], None]
+    ) -> Announcement:
+        """Announce a server of `srv_type`, whose requests go to `serve`.
+
+        Closing it ends the calls of requests that it has not answered.
+        """
+
+    @abstractmethod
+    def create_requester(self, endpoint: EndpointInfo, srv_type: type[Any]) -> Requester:
+        """Announce a client of `srv_type`."""
