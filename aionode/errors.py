@@ -8,7 +8,25 @@ name; new ones end in `Error`. They carry plain values, never live objects.
 
     AionodeError
     ├── EntityDestroyedError (RuntimeError)
+    ├── InvalidQoSProfileException (ValueError)
+    ├── InvalidROSArgsError (ValueError)
+    │   └── UnknownROSArgsError
+    ├── InvalidRemapRuleError (ValueError)
     ├── MessageError (ValueError)
+    ├── NameValidationException (ValueError)
+    │   ├── InvalidNamespaceException
+    │   ├── InvalidNodeNameException
+    │   ├── InvalidServiceNameException
+    │   └── InvalidTopicNameException
+    ├── ParameterException
+    │   ├── InvalidParameterException (ValueError)
+    │   ├── InvalidParameterTypeException (TypeError)
+    │   ├── InvalidParameterValueException (ValueError)
+    │   ├── ParameterAlreadyDeclaredException (ValueError)
+    │   ├── ParameterImmutableException (RuntimeError)
+    │   ├── ParameterNotDeclaredException (KeyError)
+    │   └── ParameterUninitializedException (RuntimeError)
+    ├── ParameterFileError (ValueError)
     ├── QueueFullError (RuntimeError)
     ├── ServiceError (RuntimeError)
     │   └── ServiceUnavailableError
@@ -21,12 +39,30 @@ from __future__ import annotations
 __all__ = [
     "AionodeError",
     "EntityDestroyedError",
+    "InvalidNamespaceException",
+    "InvalidNodeNameException",
+    "InvalidParameterException",
+    "InvalidParameterTypeException",
+    "InvalidParameterValueException",
+    "InvalidQoSProfileException",
+    "InvalidROSArgsError",
+    "InvalidRemapRuleError",
+    "InvalidServiceNameException",
+    "InvalidTopicNameException",
     "MessageError",
+    "NameValidationException",
+    "ParameterAlreadyDeclaredException",
+    "ParameterException",
+    "ParameterFileError",
+    "ParameterImmutableException",
+    "ParameterNotDeclaredException",
+    "ParameterUninitializedException",
     "QueueFullError",
     "RequestTimeoutError",
     "ServiceError",
     "ServiceUnavailableError",
     "TransportError",
+    "UnknownROSArgsError",
 ]
 
 
@@ -128,3 +164,210 @@ def silence(servers: int) -> str:
     if servers == 0:
         return "no server is matched: is it running, with this name and type?"
     return f"{servers} matched server(s) stayed silent"
+
+
+class NameValidationException(AionodeError, ValueError):
+    """A name of a topic, service, namespace or node breaks the rules for names.
+
+    Attributes:
+        name: The name as given.
+        error_msg: Which rule it breaks.
+        invalid_index: Where it breaks it: an index into `name`.
+    """
+
+    def __init__(self, name_type: str, name: str, error_msg: str, invalid_index: int) -> None:
+        self.name_type = name_type
+        self.name = name
+        self.error_msg = error_msg
+        self.invalid_index = invalid_index
+        caret = " " * invalid_index + "^"
+        super().__init__(f"Invalid {name_type}: {error_msg}:\n  '{name}'\n   {caret}")
+
+
+class InvalidTopicNameException(NameValidationException):
+    """A topic name breaks the rules for names."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("topic name", name, error_msg, invalid_index)
+
+
+class InvalidServiceNameException(NameValidationException):
+    """A service name breaks the rules for names."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("service name", name, error_msg, invalid_index)
+
+
+class InvalidNamespaceException(NameValidationException):
+    """A namespace breaks the rules for names."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("namespace", name, error_msg, invalid_index)
+
+
+class InvalidNodeNameException(NameValidationException):
+    """A node name breaks the rules for names."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("node name", name, error_msg, invalid_index)
+
+
+class InvalidRemapRuleError(AionodeError, ValueError):
+    """A remapping rule cannot be read.
+
+    Attributes:
+        rule: The rule as given.
+        problem: What is wrong with it.
+    """
+
+    def __init__(self, rule: str, problem: str) -> None:
+        self.rule = rule
+        self.problem = problem
+        super().__init__(f"remap rule '{rule}': {problem}")
+
+
+class InvalidQoSProfileException(AionodeError, ValueError):
+    """A QoS profile was made from values that do not fit.
+
+    Attributes:
+        problem: What was given and what fits.
+    """
+
+    def __init__(self, problem: str) -> None:
+        self.problem = problem
+        super().__init__(f"Invalid QoSProfile: {problem}")
+
+
+class InvalidROSArgsError(AionodeError, ValueError):
+    """A known ``--ros-args`` flag has a value that cannot be read.
+
+    Attributes:
+        argument: The word or words at fault, as given.
+        problem: What is wrong with it and what fits.
+    """
+
+    def __init__(self, argument: str, problem: str) -> None:
+        self.argument = argument
+        self.problem = problem
+        super().__init__(f"--ros-args: '{argument}': {problem}")
+
+
+class UnknownROSArgsError(InvalidROSArgsError):
+    """Between ``--ros-args`` and ``--`` stands a word that is no flag of ROS.
+
+    Attributes:
+        unknown_ros_args: All such words.
+    """
+
+    def __init__(self, unknown_ros_args: list[str], problem: str) -> None:
+        self.unknown_ros_args = list(unknown_ros_args)
+        super().__init__(" ".join(unknown_ros_args), problem)
+
+
+class ParameterFileError(AionodeError, ValueError):
+    """A parameter file or a parameter value in YAML cannot be read.
+
+    Attributes:
+        source: Path of the file, or what else was read.
+        line: Line number, counted from 1; 0 where there is none.
+        problem: What is wrong there.
+    """
+
+    def __init__(self, source: str, line: int, problem: str) -> None:
+        self.source = source
+        self.line = line
+        self.problem = problem
+        where = f"{source}, line {line}" if line else source
+        super().__init__(f"{where}: {problem}")
+
+
+class ParameterException(AionodeError):
+    """Base of the errors about parameters.
+
+    Attributes:
+        parameters: Name of the parameter, or a list of names.
+    """
+
+    def __init__(self, error_msg: str, parameters: str | list[str]) -> None:
+        self.error_msg = error_msg
+        self.parameters = parameters
+        super().__init__(f"{error_msg}: {parameters}")
+
+    def __str__(self) -> str:
+        # KeyError, a base of one subclass, would print the text in quotes.
+        return str(self.args[0])
+
+
+class ParameterNotDeclaredException(ParameterException, KeyError):
+    """An undeclared parameter was used where the node does not allow it."""
+
+    def __init__(self, parameters: str | list[str]) -> None:
+        super().__init__("Invalid access to undeclared parameter(s)", parameters)
+
+
+class ParameterAlreadyDeclaredException(ParameterException, ValueError):
+    """A parameter was declared twice."""
+
+    def __init__(self, parameters: str | list[str]) -> None:
+        super().__init__("Parameter(s) already declared", parameters)
+
+
+class InvalidParameterException(ParameterException, ValueError):
+    """A parameter was to be declared under a name that is no name."""
+
+    def __init__(self, parameter_name: str) -> None:
+        super().__init__("Invalid parameter name", parameter_name)
+
+
+class InvalidParameterTypeException(ParameterException, TypeError):
+    """A value is not of the type that the parameter was declared with.
+
+    Attributes:
+        name: Name of the parameter.
+        value: The rejected value.
+        type_name: Name of the value's type.
+        expected_type: Name of the type that fits.
+    """
+
+    def __init__(self, name: str, value: object, type_name: str, expected_type: str) -> None:
+        self.name = name
+        self.value = value
+        self.type_name = type_name
+        self.expected_type = expected_type
+        super().__init__(
+            f"Trying to set parameter '{name}' to '{value}' of type '{type_name}', "
+            f"expecting type '{expected_type}'",
+            name,
+        )
+
+
+class InvalidParameterValueException(ParameterException, ValueError):
+    """A value was rejected by the parameter's descriptor or by a callback.
+
+    Attributes:
+        name: Name of the parameter.
+        value: The rejected value.
+        reason: Why it was rejected.
+    """
+
+    def __init__(self, name: str, value: object, reason: str) -> None:
+        self.name = name
+        self.value = value
+        self.reason = reason
+        super().__init__(
+            f"Invalid parameter value ({value}) for parameter. Reason: {reason}", name
+        )
+
+
+class ParameterImmutableException(ParameterException, RuntimeError):
+    """A read-only parameter was to be undeclared."""
+
+    def __init__(self, parameter_name: str) -> None:
+        super().__init__("Attempted to modify read-only parameter", parameter_name)
+
+
+class ParameterUninitializedException(ParameterException, RuntimeError):
+    """A parameter that was declared without a value was read before it had one."""
+
+    def __init__(self, parameter_name: str) -> None:
+        super().__init__(f"The parameter '{parameter_name}' is not initialized", parameter_name)
