@@ -15,6 +15,11 @@ S_TO_NS = 1_000_000_000
 CONST_INFINITE_NS = 2**63 - 1  # what ROS counts as "for ever": the largest int64
 
 
+def total_ns(seconds: float, nanoseconds: float) -> int:
+    """Return the sum in nanoseconds; fractions of a nanosecond are cut off, as in rclpy."""
+    return int(seconds * S_TO_NS) + int(nanoseconds)
+
+
 class ClockType(IntEnum):
     """Which clock a time was read from; the numbers are rcl's."""
 
@@ -251,11 +256,6 @@ class Time:
 
         expect_message(msg, Msg, "Time")
         return cls(seconds=msg.sec, nanoseconds=msg.nanosec, clock_type=clock_type)
-
-
-def total_ns(seconds: float, nanoseconds: float) -> int:
-    """Return the sum in nanoseconds; fractions of a nanosecond are cut off, as in rclpy."""
-    return int(seconds * S_TO_NS) + int(nanoseconds)
 
 
 def time_at(ns: int, clock_type: ClockType) -> Time:
