@@ -1,0 +1,515 @@
+"""The rules for names: which are valid, what they expand to, and how remapping changes them.
+
+A name goes through four steps, which `resolve` does in this order::
+
+    validate  what the user wrote          ~/{node}_scan   (the rules of rcl)
+    expand    to an absolute name          /ns/lidar/lidar_scan
+    remap     the first rule that matches  /scan
+    validate  the result                   /scan           (the stricter rules of rmw)
+
+The texts of the errors are those of rcl and rmw, so what a user knows or finds on the web fits.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from enum import Enum
+from functools import lru_cache
+from typing import TYPE_CHECKING, Literal
+
+from aionode.errors import (
+    InvalidNamespaceException,
+    InvalidNodeNameException,
+    InvalidRemapRuleError,
+    InvalidServiceNameException,
+    InvalidTopicNameException,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+__all__ = [
+    "RemapKind",
+    "RemapRule",
+    "expand",
+    "fully_qualified_name",
+    "is_hidden",
+    "normalize_namespace",
+    "remap",
+    "remap_namespace",
+    "remap_node_name",
+    "resolve",
+    "split_node_name",
+    "validate_full_topic_name",
+    "validate_namespace",
+    "validate_node_name",
+    "validate_topic_name",
+]
+
+NODE_NAME_MAX_LENGTH = 255
+TOPIC_MAX_LENGTH = 247  # DDS allows 255, and rmw keeps 8 for a prefix and a suffix
+NAMESPACE_MAX_LENGTH = 245  # leaves room for "/x"
+
+Problem = tuple[str, int]
+"""Which rule is broken, and at which index."""
+
+
+# Validation
+
+
+def validate_topic_name(name: str, *, is_service: bool = False) -> Literal[True]:
+    """Return True if `name` may be given to a topic or service.
+
+    It may be relative or absolute, and hold ``~`` and ``{}``.
+
+    Raises:
+        InvalidTopicNameException: It may not, and is for a topic.
+        InvalidServiceNameException: It may not, and is for a service.
+    """
+    if problem := topic_name_problem(name):
+        raise name_error(name, problem, is_service=is_service)
+    return True
+
+
+def validate_full_topic_name(name: str, *, is_service: bool = False) -> Literal[True]:
+    """Return True if `name` is a valid absolute name after expansion.
+
+    Raises:
+        InvalidTopicNameException: It is not, and is for a topic.
+        InvalidServiceNameException: It is not, and is for a service.
+    """
+    if problem := full_name_problem(name):
+        raise name_error(name, problem, is_service=is_service)
+    return True
+
+
+def validate_namespace(namespace: str) -> Literal[True]:
+    """Return True if `namespace` is valid: absolute, ``/`` for the root.
+
+    Raises:
+        InvalidNamespaceException: It is not.
+    """
+    if namespace == "/":
+        return True
+    problem = full_name_problem(namespace, "namespace", NAMESPACE_MAX_LENGTH)
+    if problem:
+        raise InvalidNamespaceException(namespace, *problem)
+    return True
+
+
+def validate_node_name(node_name: str) -> Literal[True]:
+    """Return True if `node_name` is one word of letters, digits and ``_``.
+
+    Raises:
+        InvalidNodeNameException: It is not.
+    """
+    if problem := node_name_problem(node_name):
+        raise InvalidNodeNameException(node_name, *problem)
+    return True
+
+
+def topic_name_problem(name: str) -> Problem | None:
+    """Return what rcl has against a name as a user writes it, or None."""
+    if not name:
+        return "topic name must not be empty string", 0
+    if is_digit(name[0]):
+        return "topic name token must not start with a number", 0
+    if name.endswith("/"):
+        return "topic name must not end with a forward slash", len(name) - 1
+    return character_problem(name) or token_problem(name)
+
+
+def character_problem(name: str) -> Problem | None:
+    """Return the first character that may not stand where it does."""
+    opened = -1  # index of the brace that is open
+    for i, char in enumerate(name):
+        inside = opened >= 0
+        if is_word(char):
+            if inside and i == opened + 1 and is_digit(char):
+                return "substitution name must not start with a number", i
+        elif char == "}" and inside:
+            opened = -1
+        elif char == "}":
+            return "topic name must not have unmatched (unbalanced) curly braces '{}'", i
+        elif char == "~":
+            if i > 0:
+                return "topic name must not have tilde '~' unless it is the first character", i
+        elif inside:
+            return (
+                "substitution name must not contain characters other than alphanumerics or '_'",
+                i,
+            )
+        elif char == "{":
+            opened = i
+        elif char != "/":
+            return (
+                "topic name must not contain characters other than alphanumerics, "
+                "'_', '~', '{', or '}'",
+                i,
+            )
+    if opened >= 0:
+        return "topic name must not have unmatched (unbalanced) curly braces '{}'", opened
+    return None
+
+
+def token_problem(name: str) -> Problem | None:
+    """Return the first token that starts with what no token may start with."""
+    if name[0] == "~" and len(name) > 1 and name[1] != "/":
+        # rcl does not look at a last character: "~a" passes there and "~ab" does not. The rule is
+        # the same for both.
+        return (
+            "topic name must not have a tilde '~' that is not followed by a forward slash '/'",
+            1,
+        )
+    if found := re.search("/(?=[0-9])", name):
+        return "topic name token must not start with a number", found.end()
+    return None
+
+
+def full_name_problem(
+    name: str, what: str = "topic name", max_length: int = TOPIC_MAX_LENGTH
+) -> Problem | None:
+    """Return what rmw has against an absolute name, or None; `what` is the subject of the texts."""
+    if not name:
+        return f"{what} must not be empty", 0
+    if name[0] != "/":
+        return f"{what} must be absolute, it must lead with a '/'", 0
+    if name[-1] == "/":
+        unless = ", unless only a '/'" if what == "namespace" else ""
+        return f"{what} must not end with a '/'{unless}", len(name) - 1
+    if found := re.search("[^A-Za-z0-9_/]", name):
+        return (
+            f"{what} must not contain characters other than alphanumerics, '_', or '/'",
+            found.start(),
+        )
+    if found := re.search("/(?=[/0-9])", name):
+        index = found.end()
+        if name[index] == "/":
+            return f"{what} must not contain repeated '/'", index
+        return f"{what} must not have a token that starts with a number", index
+    if len(name) > max_length:
+        subject = "topic length" if what == "topic name" else what
+        return f"{subject} should not exceed '{max_length}'", max_length - 1
+    return None
+
+
+def node_name_problem(name: str) -> Problem | None:
+    """Return what rmw has against a node name, or None."""
+    if not name:
+        return "node name must not be empty", 0
+    if found := re.search("[^A-Za-z0-9_]", name):
+        return (
+            "node name must not contain characters other than alphanumerics or '_'",
+            found.start(),
+        )
+    if is_digit(name[0]):
+        return "node name must not start with a number", 0
+    if len(name) > NODE_NAME_MAX_LENGTH:
+        limit = NODE_NAME_MAX_LENGTH
+        return f"node name length should not exceed '{limit}'", limit - 1
+    return None
+
+
+def name_error(
+    name: str, problem: Problem, *, is_service: bool
+) -> InvalidTopicNameException | InvalidServiceNameException:
+    """Return the error that says what is wrong with a topic or service name."""
+    error = InvalidServiceNameException if is_service else InvalidTopicNameException
+    return error(name, *problem)
+
+
+def is_digit(char: str) -> bool:
+    """Return whether `char` is an ASCII digit; str.isdigit() takes those of all scripts."""
+    return "0" <= char <= "9"
+
+
+def is_word(char: str) -> bool:
+    """Return whether `char` may stand anywhere in a token."""
+    return char == "_" or (char.isascii() and char.isalnum())
+
+
+# Expansion
+
+
+def expand(name: str, node_name: str, namespace: str, *, is_service: bool = False) -> str:
+    """Return the absolute form of `name` as used by a node.
+
+    ``~`` becomes the node's full name; ``{node}``, ``{ns}`` and ``{namespace}`` are filled in; a
+    name that is still relative goes under the node's namespace. The result may still be invalid:
+    `validate_full_topic_name` tells.
+
+    Raises:
+        InvalidTopicNameException: The name is invalid, or has an unknown substitution.
+        InvalidServiceNameException: The same for a service.
+        InvalidNodeNameException: The node's name is invalid.
+        InvalidNamespaceException: The namespace is invalid.
+    """
+    validate_topic_name(name, is_service=is_service)
+    validate_node_name(node_name)
+    validate_namespace(namespace)
+    substitutions = {"{node}": node_name, "{ns}": namespace, "{namespace}": namespace}
+
+    def fill_in(found: re.Match[str]) -> str:
+        value = substitutions.get(found[0])
+        if value is None:
+            problem = f"unknown substitution: {found[0]}"
+            raise name_error(name, (problem, found.start()), is_service=is_service)
+        return value
+
+    expanded = re.sub(r"\{[^}]*\}", fill_in, name)
+    return absolute(expanded, node_name, namespace)
+
+
+def absolute(name: str, node_name: str, namespace: str) -> str:
+    """Return `name` under the node (``~``), under its namespace (relative) or as it is (``/``)."""
+    if name.startswith("~"):
+        return fully_qualified_name(namespace, node_name) + name[1:]
+    if name.startswith("/"):
+        return name
+    return fully_qualified_name(namespace, name)
+
+
+def fully_qualified_name(namespace: str, node_name: str) -> str:
+    """Return ``/ns/node``, or ``/node`` in the root namespace."""
+    return f"/{node_name}" if namespace in {"/", ""} else f"{namespace}/{node_name}"
+
+
+def split_node_name(full_name: str) -> tuple[str, str]:
+    """Return namespace and name of a node: the inverse of `fully_qualified_name`."""
+    namespace, _, node_name = full_name.rpartition("/")
+    return namespace or "/", node_name
+
+
+def normalize_namespace(namespace: str | None) -> str:
+    """Return `namespace` as nodes keep it: none is the root, and a leading ``/`` may be left out.
+
+    Raises:
+        InvalidNamespaceException: It is invalid even so.
+    """
+    if not namespace:
+        return "/"
+    result = namespace if namespace.startswith("/") else f"/{namespace}"
+    validate_namespace(result)
+    return result
+
+
+def is_hidden(name: str) -> bool:
+    """Return whether tools leave `name` out unless asked: one of its tokens starts with ``_``."""
+    return name.startswith("_") or "/_" in name
+
+
+# Remapping
+
+
+class RemapKind(Enum):
+    """What a remap rule changes."""
+
+    NODE_NAME = "node name"
+    NAMESPACE = "namespace"
+    TOPIC = "topic"
+    SERVICE = "service"
+    TOPIC_OR_SERVICE = "topic or service"
+
+
+TOKEN = "[A-Za-z_][A-Za-z0-9_]*"
+RULE = re.compile(
+    rf"(?:(?P<node>{TOKEN}):(?!//|=))?(?P<url>rostopic://|rosservice://)?(?P<match>.*?):=(?P<new>.*)",
+    re.DOTALL,
+)
+MATCH = re.compile(rf"(?:~/|/)?(?:{TOKEN}|\*\*?)(?:/(?:{TOKEN}|\*\*?))*")
+REPLACEMENT = re.compile(rf"(?:~/|/)?(?:{TOKEN}|\\[1-9])(?:/(?:{TOKEN}|\\[1-9]))*")
+KINDS = {
+    "__node": RemapKind.NODE_NAME,
+    "__name": RemapKind.NODE_NAME,
+    "__ns": RemapKind.NAMESPACE,
+    "rostopic://": RemapKind.TOPIC,
+    "rosservice://": RemapKind.SERVICE,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class RemapRule:
+    r"""One rule that gives a node, topic or service another name.
+
+    Its text is ``match:=replacement``:
+
+    ======================== ============================================================
+    ``foo:=bar``             topics and services; both sides are expanded as names are
+    ``rostopic://foo:=bar``  topics only; ``rosservice://`` services only
+    ``node:foo:=bar``        in nodes of this name only
+    ``__node:=new``          the node's name (also ``__name``)
+    ``__ns:=/new``           the node's namespace
+    ``/foo/*:=/bar/\1``      ``*`` is one token, ``\1`` to ``\9`` what the wildcards stood for
+    ``/foo/**:=/bar/\1``     ``**`` is one or more tokens; in front of a name (``**/foo``) any
+                             number of them, none included
+    ======================== ============================================================
+
+    Attributes:
+        kind: What the rule changes.
+        match: The names that it applies to; empty for a node's name or namespace.
+        replacement: What they become.
+        node: Name of the only node that it applies to, or None for all.
+    """
+
+    kind: RemapKind
+    match: str
+    replacement: str
+    node: str | None = None
+
+    @classmethod
+    def parse(cls, text: str) -> RemapRule:
+        """Return the rule that `text` stands for.
+
+        Raises:
+            InvalidRemapRuleError: It stands for none; the error says what is wrong with it.
+        """
+        parts = RULE.fullmatch(text)
+        if parts is None:
+            raise InvalidRemapRuleError(text, "no ':='; a rule is 'from:=to'")
+        node, url, match, new = parts.group("node", "url", "match", "new")
+        if not url and match in {"__node", "__name", "__ns"}:
+            kind = KINDS[match]
+            check_special(text, kind, new)
+            return cls(kind, "", new, node)
+        check_sides(text, match, new)
+        return cls(KINDS.get(url, RemapKind.TOPIC_OR_SERVICE), match, new, node)
+
+    def __str__(self) -> str:
+        """Return the text that `parse` reads."""
+        word = {
+            RemapKind.NODE_NAME: "__node",
+            RemapKind.NAMESPACE: "__ns",
+            RemapKind.TOPIC: f"rostopic://{self.match}",
+            RemapKind.SERVICE: f"rosservice://{self.match}",
+        }.get(self.kind, self.match)
+        scope = f"{self.node}:" if self.node else ""
+        return f"{scope}{word}:={self.replacement}"
+
+    def applies_to(self, kind: RemapKind, node_name: str) -> bool:
+        """Return whether the rule is one for things of `kind` in a node of this name."""
+        if self.node is not None and self.node != node_name:
+            return False
+        if self.kind is RemapKind.TOPIC_OR_SERVICE:
+            return kind in {RemapKind.TOPIC, RemapKind.SERVICE}
+        return self.kind is kind
+
+    def new_name(self, name: str, node_name: str, namespace: str) -> str | None:
+        """Return what the absolute `name` becomes, or None if the rule does not match it."""
+        found = match_pattern(self.match, node_name, namespace).fullmatch(name)
+        if found is None:
+            return None
+        new = self.replacement
+        for number, captured in enumerate(found.groups(), start=1):
+            new = new.replace(f"\\{number}", captured)
+        # `**` in front captures "/a/b" or nothing, so slashes may meet or end the name.
+        new = re.sub("/+", "/", new).rstrip("/")
+        return absolute(new, node_name, namespace)
+
+
+@lru_cache(maxsize=1024)
+def match_pattern(match: str, node_name: str, namespace: str) -> re.Pattern[str]:
+    """Return the expression for the names that a rule's left side matches in one node."""
+    if match.startswith("**"):
+        start, rest = "((?:/[^/]+)*)", match[2:]
+    elif match.startswith("*"):
+        start, rest = "", f"/{match}"  # a name that starts with a wildcard is absolute
+    else:
+        start, rest = "", absolute(match, node_name, namespace)
+    wild = {"*": "([^/]+)", "**": "([^/]+(?:/[^/]+)*)"}
+    tokens = (wild.get(token) or re.escape(token) for token in rest.split("/"))
+    return re.compile(start + "/".join(tokens))
+
+
+def check_special(text: str, kind: RemapKind, new: str) -> None:
+    """Raise InvalidRemapRuleError if `new` cannot be a node's name or namespace."""
+    if kind is RemapKind.NODE_NAME:
+        problem = node_name_problem(new)
+    elif new == "/":
+        problem = None
+    else:
+        problem = full_name_problem(new, "namespace", NAMESPACE_MAX_LENGTH)
+    if problem:
+        raise InvalidRemapRuleError(text, f"'{new}' cannot be a {kind.value}: {problem[0]}")
+
+
+def check_sides(text: str, match: str, new: str) -> None:
+    """Raise InvalidRemapRuleError if one side of a rule for names cannot be read."""
+    names = "names are tokens of letters, digits and '_' with '/' between them, after '/' or '~/'"
+    if not MATCH.fullmatch(match):
+        problem = f"'{match}' cannot be matched; {names}, and a whole token may be '*' or '**'"
+        raise InvalidRemapRuleError(text, problem)
+    if not REPLACEMENT.fullmatch(new):
+        problem = f"'{new}' is no name; {names}, and a whole token may be '\\1' to '\\9'"
+        raise InvalidRemapRuleError(text, problem)
+    wildcards = sum(token in {"*", "**"} for token in match.split("/"))
+    highest = max((int(digit) for digit in re.findall(r"\\([1-9])", new)), default=0)
+    if highest > wildcards:
+        problem = f"'\\{highest}' stands for wildcard {highest}, but '{match}' has {wildcards}"
+        raise InvalidRemapRuleError(text, problem)
+
+
+def remap(
+    rules: Iterable[RemapRule],
+    name: str,
+    node_name: str,
+    namespace: str,
+    *,
+    is_service: bool = False,
+) -> str:
+    """Return what the first matching rule makes of the absolute `name`, or `name` itself.
+
+    Only one rule applies: with ``/a:=/b /b:=/c``, ``/a`` becomes ``/b``. Give the node's own rules
+    before those of the process.
+    """
+    kind = RemapKind.SERVICE if is_service else RemapKind.TOPIC
+    for rule in rules:
+        if rule.applies_to(kind, node_name):
+            new = rule.new_name(name, node_name, namespace)
+            if new is not None:
+                return new
+    return name
+
+
+def remap_node_name(rules: Iterable[RemapRule], node_name: str) -> str:
+    """Return the name that the first ``__node`` rule gives to the node, or its own.
+
+    A rule's node scope is compared with the name as written in the code. All later rules are
+    compared with the new name.
+    """
+    return first_replacement(rules, RemapKind.NODE_NAME, node_name) or node_name
+
+
+def remap_namespace(rules: Iterable[RemapRule], node_name: str, namespace: str) -> str:
+    """Return the namespace that the first ``__ns`` rule gives to the node, or its own."""
+    return first_replacement(rules, RemapKind.NAMESPACE, node_name) or namespace
+
+
+def first_replacement(rules: Iterable[RemapRule], kind: RemapKind, node_name: str) -> str | None:
+    """Return the replacement of the first rule of `kind` for this node."""
+    for rule in rules:
+        if rule.applies_to(kind, node_name):
+            return rule.replacement
+    return None
+
+
+def resolve(
+    name: str,
+    node_name: str,
+    namespace: str,
+    rules: Iterable[RemapRule] = (),
+    *,
+    is_service: bool = False,
+) -> str:
+    """Return the absolute name under which a node's topic or service is known.
+
+    Raises:
+        InvalidTopicNameException: `name`, or what it expands to, is invalid.
+        InvalidServiceNameException: The same for a service.
+    """
+    expanded = expand(name, node_name, namespace, is_service=is_service)
+    validate_full_topic_name(expanded, is_service=is_service)
+    remapped = remap(rules, expanded, node_name, namespace, is_service=is_service)
+    if remapped is not expanded:
+        validate_full_topic_name(remapped, is_service=is_service)
+    return remapped
