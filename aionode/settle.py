@@ -1,0 +1,128 @@
+"""Knowing when nothing is left to run, so that a test can look at the result without sleeping.
+
+The event loop knows what is ready; work in threads is known because all of it goes through
+`off_loop`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+from collections import deque
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
+from weakref import WeakKeyDictionary
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sized
+
+__all__ = ["Activity", "activity", "off_loop", "settle"]
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+BLIND_TURNS = 5  # turns of a loop that hides its queue in which every task has to be blocked
+
+
+async def settle() -> None:
+    """Return when no callback can run: all wait for time, for input, or for each other.
+
+    Waits for callbacks that are ready, for those that they make ready, and for callbacks that
+    aionode runs in threads. Input from outside, such as a socket's, is not waited for.
+    Something that is always ready, such as a task that never awaits anything but
+    ``asyncio.sleep(0)``, keeps it from ever returning.
+    """
+    await activity().settle()
+
+
+async def off_loop(callback: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+    """Run `callback` in a thread and return its result; `settle` waits for it.
+
+    Cancelling gives up the result, but cannot stop the thread.
+    """
+    with activity():
+        return await asyncio.to_thread(callback, *args, **kwargs)
+
+
+class Activity:
+    """What goes on in one event loop. As a context manager: work that the loop cannot see."""
+
+    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+        self._ready = ready_queue(loop)
+        self._hidden = 0
+        self._quiet: list[asyncio.Future[None]] = []
+        self._turning = 0
+
+    def __enter__(self) -> None:
+        self._hidden += 1
+
+    def __exit__(self, *_: object) -> None:
+        self._hidden -= 1
+        if self._hidden == 0:
+            quiet, self._quiet = self._quiet, []
+            for future in quiet:
+                if not future.done():
+                    future.set_result(None)
+
+    async def settle(self) -> None:
+        """Return when no callback of this loop can run; see the function `settle`."""
+        while True:
+            if self._ready is None:
+                await blind_turns()
+            else:
+                await self._turns(self._ready)
+            if not self._hidden:
+                return
+            future = asyncio.get_running_loop().create_future()
+            self._quiet.append(future)
+            await future
+
+    async def _turns(self, ready: Sized) -> None:
+        """Let the loop turn until its queue holds nothing but others that do just the same."""
+        self._turning += 1
+        try:
+            await asyncio.sleep(0)
+            while len(ready) >= self._turning:
+                await asyncio.sleep(0)
+        finally:
+            self._turning -= 1
+
+
+ACTIVITIES: WeakKeyDictionary[asyncio.AbstractEventLoop, Activity] = WeakKeyDictionary()
+
+
+def activity() -> Activity:
+    """Return the activity of the running loop."""
+    loop = asyncio.get_running_loop()
+    known = ACTIVITIES.get(loop)
+    if known is None:
+        known = ACTIVITIES[loop] = Activity(loop)
+    return known
+
+
+def ready_queue(loop: asyncio.AbstractEventLoop) -> Sized | None:
+    """Return the queue of callbacks that `loop` is about to run, or None if it hides it.
+
+    asyncio's own loops keep it in `_ready`. uvloop keeps it where Python code cannot name it, but
+    it is the only deque that the loop object holds.
+    """
+    queue = getattr(loop, "_ready", None)
+    if isinstance(queue, deque):
+        return queue
+    deques = [held for held in gc.get_referents(loop) if isinstance(held, deque)]
+    return deques[0] if len(deques) == 1 else None
+
+
+async def blind_turns() -> None:
+    """Let the loop turn until every other task was blocked for some turns in a row."""
+    quiet_turns = 0
+    while quiet_turns < BLIND_TURNS:
+        await asyncio.sleep(0)
+        this = asyncio.current_task()
+        blocked = all(task is this or is_blocked(task) for task in asyncio.all_tasks())
+        quiet_turns = quiet_turns + 1 if blocked else 0
+
+
+def is_blocked(task: asyncio.Task[Any]) -> bool:
+    """Whether `task` waits for a future that is not done."""
+    waits_for = getattr(task, "_fut_waiter", None)
+    return waits_for is not None and not waits_for.done()
