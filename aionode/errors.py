@@ -7,6 +7,9 @@ name; new ones end in `Error`. They carry plain values, never live objects.
 ::
 
     AionodeError
+    ├── CallbackCancelledError (RuntimeError)
+    ├── CallbackSignatureError (TypeError, RuntimeError)
+    ├── ConfigurationError (ValueError)
     ├── EntityDestroyedError (RuntimeError)
     ├── InvalidQoSProfileException (ValueError)
     ├── InvalidROSArgsError (ValueError)
@@ -38,6 +41,9 @@ from __future__ import annotations
 
 __all__ = [
     "AionodeError",
+    "CallbackCancelledError",
+    "CallbackSignatureError",
+    "ConfigurationError",
     "EntityDestroyedError",
     "InvalidNamespaceException",
     "InvalidNodeNameException",
@@ -61,6 +67,7 @@ __all__ = [
     "RequestTimeoutError",
     "ServiceError",
     "ServiceUnavailableError",
+    "TimeSourceChangedError",
     "TransportError",
     "UnknownROSArgsError",
 ]
@@ -153,6 +160,71 @@ class RequestTimeoutError(AionodeError, TimeoutError):
         self.timeout_sec = timeout_sec
         self.servers = servers
         super().__init__(f"{service}: no reply in {timeout_sec:g} s; {silence(servers)}")
+
+
+class CallbackSignatureError(AionodeError, TypeError, RuntimeError):
+    """A callback takes other arguments than it would be given.
+
+    A TypeError, and a RuntimeError as in rclpy.
+
+    Attributes:
+        subject: The entity that was to be made.
+        signature: Name and arguments of the callback.
+        wanted: What fits.
+    """
+
+    def __init__(self, subject: str, signature: str, wanted: str) -> None:
+        self.subject = subject
+        self.signature = signature
+        self.wanted = wanted
+        super().__init__(f"{subject}: cannot call {signature}; it must take {wanted}")
+
+
+class CallbackCancelledError(AionodeError, RuntimeError):
+    """Something that a callback waited for was cancelled, and the callback did not handle it.
+
+    Attributes:
+        subject: The callback.
+    """
+
+    def __init__(self, subject: str) -> None:
+        self.subject = subject
+        super().__init__(
+            f"{subject}: what it awaited was cancelled (its client or clock destroyed?); "
+            "handle asyncio.CancelledError there if that is expected"
+        )
+
+
+class TimeSourceChangedError(AionodeError, RuntimeError):
+    """ROS time was switched on or off during a sleep, so its end has lost its meaning.
+
+    Attributes:
+        active: Whether ROS time comes from `/clock` now.
+    """
+
+    def __init__(self, *, active: bool) -> None:
+        self.active = active
+        source = "/clock" if active else "the system clock"
+        super().__init__(
+            f"sleep: ROS time was switched to {source} meanwhile; decide what is left to wait for "
+            "and sleep again"
+        )
+
+
+class ConfigurationError(AionodeError, ValueError):
+    """An environment variable or an argument of `Context` says something that does not fit.
+
+    Attributes:
+        source: The variable or argument, such as ``ROS_DOMAIN_ID``.
+        given: What it said.
+        fits: What fits.
+    """
+
+    def __init__(self, source: str, given: str, fits: str) -> None:
+        self.source = source
+        self.given = given
+        self.fits = fits
+        super().__init__(f"{source}: {given!r} given; {fits}")
 
 
 class TransportError(AionodeError, ConnectionError):
