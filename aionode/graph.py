@@ -12,7 +12,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from aionode import names
+from aionode import names, qos
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -52,7 +52,7 @@ class NodeInfo:
     @property
     def fully_qualified_name(self) -> str:
         """Namespace and name in one."""
-        return names.fully_qualified_node_name(self.name, self.namespace)
+        return names.fully_qualified_name(self.namespace, self.name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,8 +79,33 @@ class EndpointInfo:
     qos: QoSProfile
     gid: bytes
 
+    def mismatch(self, other: EndpointInfo) -> str | None:
+        """Return why this endpoint and its opposite `other` do not talk; None if they do.
 
-type_key = tuple[EndpointKind, str]
+        Within one context the QoS rules of DDS hold; between contexts rmw_zenoh delivers whatever
+        the QoS says, so only the types count there (see `qos_mismatch` for a diagnosis).
+        """
+        if self.type_name != other.type_name:
+            return f"type: {self.type_name} here, {other.type_name} there"
+        if self.type_hash != other.type_hash:
+            return (
+                f"definition of {self.type_name}: {self.type_hash} here, {other.type_hash} there"
+            )
+        if self.node.participant == other.node.participant:
+            return self.qos_mismatch(other)
+        return None
+
+    def qos_mismatch(self, other: EndpointInfo) -> str | None:
+        """Return why a publisher cannot give what a subscription asks for; None if it can."""
+        if self.kind is EndpointKind.PUBLISHER:
+            return qos.mismatch(self.qos, other.qos)
+        if self.kind is EndpointKind.SUBSCRIPTION:
+            return qos.mismatch(other.qos, self.qos)
+        return None  # services have no offer and request
+
+    def matches(self, other: EndpointInfo) -> bool:
+        """Whether this endpoint and its opposite `other` talk."""
+        return self.mismatch(other) is None
 
 
 class Graph:
@@ -93,9 +118,9 @@ class Graph:
     def __init__(self) -> None:
         self._nodes: dict[NodeInfo, None] = {}
         self._endpoints: dict[EndpointInfo, None] = {}
-        self._by_name: dict[type_key, dict[EndpointInfo, None]] = defaultdict(dict)
+        self._by_name: dict[tuple[EndpointKind, str], dict[EndpointInfo, None]] = defaultdict(dict)
         self._by_node: dict[NodeInfo, dict[EndpointInfo, None]] = defaultdict(dict)
-        self._waiters: list[asyncio.Future[None]] = []
+        self._waiters: dict[asyncio.Future[None], None] = {}
         self._listeners: list[Callable[[EndpointInfo], None]] = []
 
     def __repr__(self) -> str:
@@ -152,26 +177,24 @@ class Graph:
         """Call `listener` with every endpoint that is added from now on."""
         self._listeners.append(listener)
 
-    async def changed(self) -> None:
-        """Wait for the next change: anything that comes or goes. Cancelling is safe."""
-        waiter = asyncio.get_running_loop().create_future()
-        self._waiters.append(waiter)
-        try:
-            await waiter
-        finally:
-            if waiter in self._waiters:
-                self._waiters.remove(waiter)
+    def changed(self) -> asyncio.Future[None]:
+        """Return a future that is done at the next change: anything that comes or goes.
 
-    async def until(self, condition: Callable[[], bool]) -> None:
-        """Wait until `condition()` is true; it is asked again at each change."""
-        while not condition():
-            await self.changed()
+        Await it, or keep it to cancel the wait from elsewhere; cancelling is safe.
+        """
+        waiter: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._waiters[waiter] = None
+        waiter.add_done_callback(self._forget)
+        return waiter
+
+    def _forget(self, waiter: asyncio.Future[None]) -> None:
+        self._waiters.pop(waiter, None)
 
     def _wake(self) -> None:
-        waiters, self._waiters = self._waiters, []
-        for waiter in waiters:
+        for waiter in list(self._waiters):
             if not waiter.done():
                 waiter.set_result(None)
+        self._waiters.clear()
 
     # Questions
 

@@ -145,8 +145,8 @@ class Requester(Announcement):
     def send(self, request: Any, origin: Origin, reply_to: ReplyTo) -> Call:
         """Send `request` to every matched server; never blocks.
 
-        Exactly one of `reply`, `fail` and `end` is called on `reply_to` at least once, never before
-        this method has returned, unless the call is cancelled first.
+        At least one of `reply`, `fail` and `end` is called on `reply_to`, perhaps before this
+        method returns, unless the call is cancelled first.
 
         Raises:
             MessageError: a value does not fit its field; nothing was sent.

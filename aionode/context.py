@@ -1,0 +1,241 @@
+"""One participant of the system: its transports, its graph, its nodes."""
+
+from __future__ import annotations
+
+import asyncio
+import dataclasses
+import os
+import secrets
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from aionode.clock import MachineTime
+from aionode.errors import EntityDestroyedError
+from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
+from aionode.message import type_name
+from aionode.transport.base import Transport
+from aionode.transport.local import LocalTransport
+from aionode.transport.zenoh_config import network_from
+from aionode.wire.liveliness import endpoint_token, gid_of
+from aionode.wire.typehash import type_hash
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+    from types import TracebackType
+
+    from aionode.clock import TimeBase
+    from aionode.node import Node
+    from aionode.qos import QoSProfile
+
+__all__ = ["Context"]
+
+
+class Context:
+    """What the nodes of one participant share: transports, graph, domain and time.
+
+    Nodes made without a context share `Context.default()`. A context opens with its first running
+    node and closes after the last; ``async with Context() as context`` holds it open, and ends it
+    with all its nodes.
+
+    Args:
+        domain_id: The ROS domain, 0 to 232; ``ROS_DOMAIN_ID`` or 0 without it.
+        transport: ``"zenoh"`` reaches other processes and ROS 2, ``"local"`` only the nodes of this
+            context. A `Transport` object, or several, are used as they are.
+        clock: Where the time comes from: the machine, or an `aionode.testing.ManualClock`.
+        discovery_range: How far others are looked for: ``"LOCALHOST"``, ``"SUBNET"`` or ``"OFF"``;
+            ``ROS_AUTOMATIC_DISCOVERY_RANGE`` without it.
+        static_peers: Hosts to connect to; ``ROS_STATIC_PEERS`` without it.
+        config: Path of a Zenoh configuration file in place of ``ZENOH_SESSION_CONFIG_URI``, or
+            single settings by their key path.
+
+    Attributes:
+        network: Domain, discovery and peers, from the arguments and the environment.
+        graph: The nodes and endpoints known now.
+        time_base: Where the time comes from.
+        participant: Id of this context in the graph, in hexadecimal.
+
+    Raises:
+        ConfigurationError: an argument, or the environment variable in its place, does not fit (a
+            ValueError).
+        ValueError: `transport` is an unknown word.
+    """
+
+    _default: ClassVar[Context | None] = None
+
+    def __init__(
+        self,
+        *,
+        domain_id: int | None = None,
+        transport: str | Transport | Sequence[Transport] = "zenoh",
+        clock: TimeBase | None = None,
+        discovery_range: str | None = None,
+        static_peers: Sequence[str] | None = None,
+        config: str | Path | Mapping[str, Any] | None = None,
+    ) -> None:
+        # Zenoh writes ids without leading zeros, and every peer has to see the same text.
+        self.participant = secrets.token_hex(16).lstrip("0") or "1"
+        self.graph = Graph()
+        self.time_base: TimeBase = clock if clock is not None else MachineTime()
+        self.network = network_from(
+            os.environ,
+            domain_id=domain_id,
+            discovery_range=discovery_range,
+            static_peers=static_peers,
+            config=config,
+        )
+        self._transports = self._make_transports(transport)
+        self._nodes: dict[Node, None] = {}
+        self._ids = 0
+        self._users = 0
+        self._shut_down = False
+        self._opening: asyncio.Lock | None = None
+        self._closed = asyncio.Event()
+
+    def __repr__(self) -> str:
+        state = "shut down" if self._shut_down else "open" if self._users else "closed"
+        return f"<Context domain={self.network.domain_id} {state} nodes={len(self._nodes)}>"
+
+    def _make_transports(
+        self, transport: str | Transport | Sequence[Transport]
+    ) -> tuple[Transport, ...]:
+        if isinstance(transport, Transport):
+            return (transport,)
+        if not isinstance(transport, str):
+            return tuple(transport)
+        if transport == "local":
+            return (LocalTransport(),)
+        if transport == "zenoh":
+            # Imported here, because it is large and a context without network does not need it.
+            from aionode.transport.zenoh import ZenohTransport  # noqa: PLC0415
+
+            return (LocalTransport(), ZenohTransport(self.participant, self.network))
+        raise ValueError(f'Context: transport={transport!r} is unknown; use "zenoh" or "local"')
+
+    # Lifetime
+
+    @property
+    def domain_id(self) -> int:
+        """The ROS domain."""
+        return self.network.domain_id
+
+    @classmethod
+    def default(cls) -> Context:
+        """Return the context of nodes that are made without one; made at the first use."""
+        if cls._default is None or not cls._default.ok():
+            cls._default = cls()
+        return cls._default
+
+    def ok(self) -> bool:
+        """Whether the context can be used: `shutdown` was not called."""
+        return not self._shut_down
+
+    async def __aenter__(self) -> Context:
+        """Open the context: connect its transports, and return when others are known."""
+        self._refuse_if_shut_down()
+        await self.acquire()
+        return self
+
+    async def __aexit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Destroy the nodes, wait for them, and close."""
+        self.shutdown()
+        await self.release()
+        if self._users:
+            await self._closed.wait()
+
+    def shutdown(self) -> None:
+        """Destroy all nodes, and refuse new ones. Twice is allowed.
+
+        A node that runs ends soon after; the transports are closed when the last has.
+        """
+        self._shut_down = True
+        for node in list(self._nodes):
+            node.destroy_node()
+
+    async def acquire(self) -> None:
+        """Hold the context open: the first holder opens it. For nodes."""
+        if self._opening is None:
+            self._opening = asyncio.Lock()
+        async with self._opening:
+            if self._users == 0:
+                self._closed.clear()
+                await self._open()
+            self._users += 1
+
+    async def _open(self) -> None:
+        opened: list[Transport] = []
+        try:
+            for transport in self._transports:
+                opened.append(transport)
+                await transport.open(self.graph)
+        except BaseException:
+            for transport in reversed(opened):
+                await transport.close()
+            raise
+
+    async def release(self) -> None:
+        """Hold the context open no longer: the last holder closes it. For nodes."""
+        self._users -= 1
+        if self._users == 0:
+            # The lock belongs to the loop that ran, and the next holder may have another.
+            self._opening = None
+            for transport in reversed(self._transports):
+                await transport.close()
+            for node in self.graph.nodes():
+                if node.participant != self.participant:
+                    self.graph.remove_participant(node.participant)
+            self._closed.set()
+
+    def _refuse_if_shut_down(self) -> None:
+        if self._shut_down:
+            raise EntityDestroyedError("context")
+
+    # What nodes need
+
+    def add_node(self, node: Node) -> None:
+        """Take `node` in.
+
+        Raises:
+            EntityDestroyedError: the context was shut down.
+        """
+        self._refuse_if_shut_down()
+        self._nodes[node] = None
+
+    def remove_node(self, node: Node) -> None:
+        """Forget `node`."""
+        self._nodes.pop(node, None)
+
+    @property
+    def transports(self) -> tuple[Transport, ...]:
+        """The ways that messages travel, this context itself first."""
+        return self._transports
+
+    def new_id(self) -> int:
+        """Return a number that no other node or endpoint of this context has."""
+        self._ids += 1
+        return self._ids - 1
+
+    def describe_node(self, name: str, namespace: str, enclave: str) -> NodeInfo:
+        """Return a new node's entry in the graph."""
+        return NodeInfo(self.participant, self.new_id(), name, namespace, enclave)
+
+    def describe_endpoint(
+        self, kind: EndpointKind, node: NodeInfo, name: str, ros_type: type[Any], qos: QoSProfile
+    ) -> EndpointInfo:
+        """Return a new endpoint's entry in the graph."""
+        endpoint = EndpointInfo(
+            kind=kind,
+            node=node,
+            endpoint_id=self.new_id(),
+            name=name,
+            type_name=type_name(ros_type),
+            type_hash=type_hash(ros_type),
+            qos=qos,
+            gid=b"",
+        )
+        gid = gid_of(endpoint_token(self.network.domain_id, endpoint))
+        return dataclasses.replace(endpoint, gid=gid)

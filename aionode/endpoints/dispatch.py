@@ -1,0 +1,383 @@
+"""Running callbacks: measured, fair to the rest of the loop, and with a policy for errors.
+
+Every callback of every entity runs through `Dispatch`, and every queue is emptied by `pump`; there
+is no other place that decides what happens around a callback.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import inspect
+from collections.abc import Awaitable, Callable, Coroutine, Generator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
+
+from aionode.clock import perf_ns
+from aionode.errors import CallbackCancelledError, CallbackSignatureError
+from aionode.settle import off_loop
+
+if TYPE_CHECKING:
+    from aionode.endpoints.inbox import Inbox
+    from aionode.endpoints.stats import CallbackStats
+    from aionode.logging import RcutilsLogger
+
+__all__ = [
+    "CallbackContext",
+    "Dispatch",
+    "OnError",
+    "accepts",
+    "checked_concurrency",
+    "give_way",
+    "pump",
+]
+
+T = TypeVar("T")
+
+SLICE_NS = 1_000_000
+"""How long a queue is emptied before timers, I/O and other callbacks get their turn."""
+
+REPORT_INTERVAL_NS = 1_000_000_000
+"""How often at most one entity's slow callbacks are reported."""
+
+
+@dataclass(frozen=True, slots=True)
+class CallbackContext:
+    """Where a callback failed, for an `on_error` function.
+
+    Attributes:
+        node: Full name of the node.
+        subject: What failed, such as ``subscription of /chatter (callback on_text)``.
+        entity: The entity itself.
+    """
+
+    node: str
+    subject: str
+    entity: object
+
+
+OnError = Literal["raise", "log"] | Callable[[Exception, CallbackContext], None]
+
+
+class Dispatch:
+    """Runs the callback of one entity.
+
+    Args:
+        callback: A function or coroutine function.
+        context: The entity, for errors and reports.
+        stats: Where counts and durations go.
+        on_error: What becomes of an exception: see `fail`.
+        offload: Whether a sync callback runs in a thread.
+        budget_ns: How long a callback may block the loop before that is reported.
+        logger: The node's logger.
+
+    Raises:
+        TypeError: `callback` or `on_error` is of a wrong kind.
+        ValueError: `on_error` is an unknown word, or a coroutine function is to be offloaded.
+    """
+
+    def __init__(
+        self,
+        callback: Callable[..., Any],
+        context: CallbackContext,
+        stats: CallbackStats,
+        *,
+        on_error: OnError = "raise",
+        offload: bool = False,
+        budget_ns: int,
+        logger: RcutilsLogger,
+    ) -> None:
+        if isinstance(on_error, str):
+            if on_error not in ("raise", "log"):
+                raise ValueError(
+                    f"{context.subject}: on_error={on_error!r} is unknown; "
+                    'use "raise", "log" or a function (exception, context)'
+                )
+        elif not callable(on_error):
+            raise TypeError(
+                f"{context.subject}: on_error is {on_error!r}; "
+                'use "raise", "log" or a function (exception, context)'
+            )
+        if offload and inspect.iscoroutinefunction(callback):
+            raise ValueError(
+                f"{context.subject}: offload=True runs a sync callback in a thread, and this one "
+                "is a coroutine function; use `await asyncio.to_thread(...)` inside it"
+            )
+        self.callback = callback
+        self.stats = stats
+        self._context = context
+        self._on_error = on_error
+        self._offload = offload
+        self.budget_ns = budget_ns
+        self._logger = logger
+        self._last_report_ns = -REPORT_INTERVAL_NS
+
+    def run(self, *args: Any) -> Coroutine[Any, Any, None] | None:
+        """Run the callback, errors and all; return what is left to await, None if nothing is.
+
+        Raises:
+            Exception: what the callback raised, where `on_error` says so.
+        """
+        try:
+            outcome = self.enter(*args)
+        except Exception as error:  # noqa: BLE001  # the policy decides, see `fail`
+            self.fail(error)
+            return None
+        return None if outcome is None else self._finish(outcome)
+
+    async def _finish(self, outcome: Any) -> None:
+        try:
+            await self.outcome(outcome)
+        except Exception as error:  # noqa: BLE001  # the policy decides, see `fail`
+            self.fail(error)
+
+    def enter(self, *args: Any) -> Any:
+        """Run the callback up to its first wait; the result goes into `outcome`.
+
+        Raises:
+            Exception: what a sync callback raised.
+        """
+        if self._offload:
+            return _Offloaded(self, args)
+        began_ns = perf_ns()
+        try:
+            outcome = self.callback(*args)
+        except BaseException:
+            self._record_sync(perf_ns() - began_ns)
+            raise
+        if outcome is not None and isinstance(outcome, Awaitable):
+            return _Measured(self, outcome)
+        self._record_sync(perf_ns() - began_ns)
+        return outcome
+
+    async def outcome(self, entered: Any) -> Any:
+        """Return the result of a callback that was entered, waiting for it where needed.
+
+        Raises:
+            CallbackCancelledError: something that the callback waited for was cancelled.
+            Exception: what the callback raised.
+        """
+        if not isinstance(entered, _Measured | _Offloaded):
+            return entered
+        try:
+            return await entered
+        except asyncio.CancelledError as error:
+            task = asyncio.current_task()
+            if task is not None and task.cancelling():
+                raise
+            # Nobody cancelled this task: it would end without a word, and its entity with it.
+            raise CallbackCancelledError(self._context.subject) from error
+
+    async def call(self, *args: Any) -> Any:
+        """Run the callback and return its result; see `enter` and `outcome` for the errors."""
+        return await self.outcome(self.enter(*args))
+
+    def fail(self, error: Exception) -> None:
+        """Apply the policy for errors: count, then raise it, log it, or hand it on.
+
+        Raises:
+            Exception: `error` itself with ``on_error="raise"``.
+        """
+        self.stats.errors += 1
+        if self._on_error == "raise":
+            raise error
+        if self._on_error == "log":
+            self._logger.error(
+                f"{self._context.subject}: {type(error).__name__}: {error}", exc_info=error
+            )
+        else:
+            self._on_error(error, self._context)
+
+    def _record_sync(self, took_ns: int) -> None:
+        self.stats.run_time.record(took_ns)
+        self.stats.blocking.record(took_ns)
+        if took_ns > self.budget_ns:
+            self.report_blocking(took_ns)
+
+    def report_blocking(self, took_ns: int) -> None:
+        """Warn that the loop was blocked too long, once per second at most."""
+        now_ns = perf_ns()
+        if now_ns - self._last_report_ns < REPORT_INTERVAL_NS:
+            return
+        self._last_report_ns = now_ns
+        self._logger.warning(
+            f"{self._context.subject} blocked the event loop for {took_ns / 1e6:.1f} ms "
+            f"(budget {self.budget_ns / 1e6:g} ms): nothing else could run. Move the work off the "
+            "loop: offload=True runs a sync callback in a thread, a coroutine can await "
+            "asyncio.to_thread(...)"
+        )
+
+
+class _Measured:
+    """A callback that can wait: notes the longest stretch between two waits."""
+
+    __slots__ = ("_awaitable", "_dispatch")
+
+    def __init__(self, dispatch: Dispatch, awaitable: Awaitable[Any]) -> None:
+        self._dispatch = dispatch
+        self._awaitable = awaitable
+
+    def __await__(self) -> Generator[Any, Any, Any]:
+        dispatch = self._dispatch
+        steps = self._awaitable.__await__()
+        began_ns = perf_ns()
+        longest_ns = 0
+        thrown: BaseException | None = None
+        try:
+            while True:
+                step_ns = perf_ns()
+                try:
+                    # asyncio only ever sends None into a coroutine, or throws into it.
+                    if thrown is None:
+                        waits_for = next(steps)
+                    else:
+                        # A generator and a coroutine's wrapper both have it.
+                        waits_for = steps.throw(thrown)  # type: ignore[attr-defined]
+                finally:
+                    longest_ns = max(longest_ns, perf_ns() - step_ns)
+                thrown = None
+                try:
+                    yield waits_for
+                except BaseException as error:  # noqa: BLE001  # handed on to the callback
+                    thrown = error
+        except StopIteration as stop:
+            return stop.value
+        finally:
+            dispatch.stats.run_time.record(perf_ns() - began_ns)
+            dispatch.stats.blocking.record(longest_ns)
+            if longest_ns > dispatch.budget_ns:
+                dispatch.report_blocking(longest_ns)
+
+
+class _Offloaded:
+    """A sync callback on its way into a thread."""
+
+    __slots__ = ("_args", "_dispatch")
+
+    def __init__(self, dispatch: Dispatch, args: tuple[Any, ...]) -> None:
+        self._dispatch = dispatch
+        self._args = args
+
+    def __await__(self) -> Generator[Any, Any, Any]:
+        return self._run().__await__()
+
+    async def _run(self) -> Any:
+        stats = self._dispatch.stats
+        began_ns = perf_ns()
+        try:
+            return await off_loop(self._dispatch.callback, *self._args)
+        finally:
+            stats.run_time.record(perf_ns() - began_ns)
+            stats.blocking.record(0)
+
+
+# Queues
+
+
+async def give_way() -> None:
+    """Let everything else that is ready run once."""
+    await asyncio.sleep(0)
+
+
+async def pump(
+    inbox: Inbox[T],
+    handle: Callable[[int, T], Coroutine[Any, Any, None] | None],
+    concurrent: bool | int,  # noqa: FBT001  # a number, where True and False are numbers too
+) -> None:
+    """Hand everything that arrives in `inbox` to `handle`, until cancelled.
+
+    `handle` runs what can run at once and returns what is left to await, if anything. With
+    `concurrent` that runs beside the next items: in a TaskGroup, any number at once or at most so
+    many, while the others wait in the inbox.
+    """
+    if concurrent is False:
+        await _pump_in_order(inbox, handle)
+    else:
+        limit = None if concurrent is True else concurrent
+        async with asyncio.TaskGroup() as tasks:
+            await _pump_beside(inbox, handle, tasks, limit)
+
+
+async def _pump_in_order(
+    inbox: Inbox[T], handle: Callable[[int, T], Coroutine[Any, Any, None] | None]
+) -> None:
+    while True:
+        await inbox.wait()
+        turn_ends_ns = perf_ns() + SLICE_NS
+        while inbox:
+            rest = handle(*inbox.pop())
+            if rest is not None:
+                await rest
+            if perf_ns() >= turn_ends_ns:
+                await give_way()
+                turn_ends_ns = perf_ns() + SLICE_NS
+
+
+async def _pump_beside(
+    inbox: Inbox[T],
+    handle: Callable[[int, T], Coroutine[Any, Any, None] | None],
+    tasks: asyncio.TaskGroup,
+    limit: int | None,
+) -> None:
+    running: set[asyncio.Task[None]] = set()
+    turn_ends_ns = 0
+    while True:
+        while limit is not None and len(running) >= limit:
+            await asyncio.wait(running, return_when=asyncio.FIRST_COMPLETED)
+        await inbox.wait()
+        if not inbox:
+            continue
+        rest = handle(*inbox.pop())
+        if rest is not None:
+            task = tasks.create_task(rest)
+            running.add(task)
+            task.add_done_callback(running.discard)
+        if perf_ns() >= turn_ends_ns:
+            await give_way()
+            turn_ends_ns = perf_ns() + SLICE_NS
+
+
+# Arguments
+
+
+def accepts(callback: Callable[..., Any], *counts: int, subject: str, wanted: str) -> int:
+    """Return the first of `counts` that `callback` can be called with, as positional arguments.
+
+    Raises:
+        TypeError: `callback` cannot be called at all.
+        CallbackSignatureError: it takes another number of arguments; `wanted` says what fits.
+    """
+    if not callable(callback):
+        raise TypeError(f"{subject}: {callback!r} cannot be called; give a function {wanted}")
+    try:
+        signature = inspect.signature(callback)
+    except ValueError:  # a builtin that does not tell
+        return counts[0]
+    for count in counts:
+        try:
+            signature.bind(*(None,) * count)
+        except TypeError:
+            continue
+        return count
+    name = getattr(callback, "__qualname__", repr(callback))
+    raise CallbackSignatureError(subject, f"{name}{signature}", wanted)
+
+
+def checked_concurrency(concurrent: bool | int, subject: str) -> bool | int:  # noqa: FBT001  # as in `pump`
+    """Return `concurrent` if it is False, True or a positive number.
+
+    Raises:
+        TypeError: it is something else.
+        ValueError: it is a number below 1.
+    """
+    if isinstance(concurrent, bool):
+        return concurrent
+    if not isinstance(concurrent, int):
+        raise TypeError(
+            f"{subject}: concurrent={concurrent!r}; use False (one at a time), True (any number) "
+            "or a number (at most so many at once)"
+        )
+    if concurrent < 1:
+        raise ValueError(
+            f"{subject}: concurrent={concurrent}; at least 1 callback must be able to run"
+        )
+    return concurrent

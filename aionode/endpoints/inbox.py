@@ -1,0 +1,99 @@
+"""The bounded queue in front of every callback and every reader."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from typing import TYPE_CHECKING, Generic, TypeVar
+
+from aionode.clock import perf_ns
+
+if TYPE_CHECKING:
+    from aionode.endpoints.stats import CallbackStats
+
+__all__ = ["Inbox"]
+
+T = TypeVar("T")
+
+
+class Inbox(Generic[T]):
+    """Holds what has arrived and was not yet taken: ordered, bounded, counted.
+
+    With KEEP_LAST a full inbox drops its oldest item, with KEEP_ALL it refuses the newest; both are
+    counted in `stats.dropped`. Putting never waits and needs no running loop.
+    """
+
+    __slots__ = ("_queue", "_readers", "_writers", "depth", "keep_all", "stats")
+
+    def __init__(self, depth: int, stats: CallbackStats, *, keep_all: bool = False) -> None:
+        self.depth = depth
+        self.keep_all = keep_all
+        self.stats = stats
+        self._queue: deque[tuple[int, T]] = deque()
+        self._readers: list[asyncio.Future[None]] = []
+        self._writers: list[asyncio.Future[None]] = []
+
+    def __len__(self) -> int:
+        return len(self._queue)
+
+    def put(self, item: T) -> None:
+        """Add `item`, and wake whoever waits for it."""
+        queue = self._queue
+        if len(queue) >= self.depth:
+            self.stats.dropped += 1
+            if self.keep_all:
+                return
+            queue.popleft()
+        queue.append((perf_ns(), item))
+        if self._readers:
+            _wake(self._readers)
+
+    def pop(self) -> tuple[int, T]:
+        """Take the oldest item, with the `perf_ns` of its arrival; IndexError when empty."""
+        entry = self._queue.popleft()
+        if self._writers:
+            _wake(self._writers)
+        return entry
+
+    def has_room(self) -> bool:
+        """Whether an item can be added without losing one that should be kept."""
+        return not self.keep_all or len(self._queue) < self.depth
+
+    async def wait(self) -> None:
+        """Wait until there is an item, or until woken by `wake`. Cancelling loses nothing."""
+        if not self._queue:
+            await _sleep_in(self._readers)
+
+    async def wait_for_room(self) -> None:
+        """Wait until there is room, or until woken by `wake`."""
+        if not self.has_room():
+            await _sleep_in(self._writers)
+
+    def discard(self) -> list[T]:
+        """Remove and count what was not taken, and return it."""
+        unread = [item for _, item in self._queue]
+        self.stats.dropped += len(unread)
+        self._queue.clear()
+        return unread
+
+    def wake(self) -> None:
+        """Wake everyone who waits, on either side: the entity is being destroyed."""
+        _wake(self._readers)
+        _wake(self._writers)
+
+
+def _wake(waiters: list[asyncio.Future[None]]) -> None:
+    for waiter in waiters:
+        if not waiter.done():
+            waiter.set_result(None)
+    waiters.clear()
+
+
+async def _sleep_in(waiters: list[asyncio.Future[None]]) -> None:
+    waiter = asyncio.get_running_loop().create_future()
+    waiters.append(waiter)
+    try:
+        await waiter
+    finally:
+        if waiter in waiters:
+            waiters.remove(waiter)

@@ -1,0 +1,342 @@
+"""Services and clients."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Coroutine
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from aionode.clock import perf_ns
+from aionode.endpoints.dispatch import accepts, checked_concurrency, pump
+from aionode.endpoints.entity import Entity
+from aionode.endpoints.inbox import Inbox
+from aionode.endpoints.stats import CallbackStats, ClientStats
+from aionode.errors import (
+    AionodeError,
+    RequestTimeoutError,
+    ServiceUnavailableError,
+    silence,
+)
+from aionode.graph import EndpointKind
+from aionode.message import Message, checker, type_name
+from aionode.transport.base import Origin
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from aionode.clock import TimeBase
+    from aionode.endpoints.channel import Channel
+    from aionode.endpoints.dispatch import OnError
+    from aionode.errors import ServiceError
+    from aionode.qos import QoSProfile
+    from aionode.transport.base import Announcement, Call, Request, Requester
+
+__all__ = ["Client", "Service", "ServiceCallback"]
+
+RequestT = TypeVar("RequestT", bound=Message)
+ResponseT = TypeVar("ResponseT", bound=Message)
+
+WAITING_REQUESTS = 10_000
+"""How many requests wait for a handler at most; one more is refused with an error at once.
+
+Unlike a message, a request has somebody who waits for it, so the depth of the profile does not
+silently throw any away.
+"""
+
+ServiceCallback = (
+    Callable[[RequestT, ResponseT], ResponseT | Coroutine[Any, Any, ResponseT]]
+    | Callable[[RequestT], ResponseT | Coroutine[Any, Any, ResponseT]]
+)
+
+
+class Service(Entity, Generic[RequestT, ResponseT]):
+    """Answers requests. Made by `Node.create_service`.
+
+    Attributes:
+        srv_type: The service type.
+        qos_profile: Its profile.
+        stats: What became of the requests.
+    """
+
+    def __init__(
+        self,
+        channel: Channel,
+        srv_type: type[Any],
+        callback: ServiceCallback[RequestT, ResponseT],
+        *,
+        concurrent: bool | int,
+        on_error: OnError,
+        offload: bool,
+    ) -> None:
+        super().__init__(f"service {channel.endpoint.name}")
+        self.srv_type = srv_type
+        self.qos_profile: QoSProfile = channel.endpoint.qos
+        self.callback = callback
+        self.stats = CallbackStats()
+        self._channel = channel
+        self._announcements: list[Announcement] = []
+        self._inbox: Inbox[Request] = Inbox(WAITING_REQUESTS, self.stats, keep_all=True)
+        self._concurrent = checked_concurrency(concurrent, self.subject)
+        wants = accepts(
+            callback, 2, 1, subject=self.subject, wanted="(request, response) or (request)"
+        )
+        self._wants_response = wants == 2  # noqa: PLR2004  # request and response
+        self._dispatch = channel.dispatch(
+            callback, self, self.stats, on_error=on_error, offload=offload
+        )
+
+    def __repr__(self) -> str:
+        return (
+            f"<Service {self.srv_name} {self._channel.endpoint.type_name} "
+            f"received={self.stats.received} errors={self.stats.errors}>"
+        )
+
+    @property
+    def srv_name(self) -> str:
+        """The full name of the service."""
+        return self._channel.endpoint.name
+
+    service_name = srv_name
+
+    def connect(self, announcements: Sequence[Announcement]) -> None:
+        """Take what the transports returned for this server, to be closed with it."""
+        self._announcements.extend(announcements)
+
+    def serve(self, request: Request) -> None:
+        """Take one request from a transport."""
+        if self.destroyed:
+            request.drop()
+        elif self._inbox.has_room():
+            self._inbox.put(request)
+        else:
+            self.stats.dropped += 1
+            request.fail("QueueFullError", f"{WAITING_REQUESTS} requests are waiting already")
+
+    def run(self) -> Coroutine[Any, Any, None]:
+        """Return the loop that answers requests."""
+        return pump(self._inbox, self._handle, self._concurrent)
+
+    def _handle(self, entered_ns: int, request: Request) -> Coroutine[Any, Any, None] | None:
+        if request.cancelled:
+            self.stats.dropped += 1
+            request.drop()
+            return None
+        self.stats.received += 1
+        self.stats.queue_wait.record(perf_ns() - entered_ns)
+        return self._answer(request)
+
+    async def _answer(self, request: Request) -> None:
+        try:
+            response = await self._call(request.message)
+            self._check(response)
+            request.reply(response)
+        except asyncio.CancelledError:
+            request.drop()
+            raise
+        except Exception as error:  # noqa: BLE001  # told to the client, then as `on_error` says
+            request.fail(type(error).__name__, str(error))
+            self._dispatch.fail(error)
+
+    async def _call(self, request: Any) -> Any:
+        if self._wants_response:
+            return await self._dispatch.call(request, self.srv_type.Response())
+        return await self._dispatch.call(request)
+
+    def _check(self, response: Any) -> None:
+        if not isinstance(response, self.srv_type.Response):
+            given = "None" if response is None else f"a {type(response).__name__}"
+            raise TypeError(
+                f"{self.subject}: the handler returned {given} instead of a "
+                f"{type_name(self.srv_type.Response)}; it must end with `return response`"
+            )
+
+    def close(self) -> None:
+        """Withdraw the service; requests that wait are given up."""
+        self._channel.close()
+        for announcement in self._announcements:
+            announcement.close()
+        for request in self._inbox.discard():
+            request.drop()
+        self._inbox.wake()
+
+
+class Client(Entity, Generic[RequestT, ResponseT]):
+    """Calls a service. Made by `Node.create_client`.
+
+    Attributes:
+        srv_type: The service type.
+        qos_profile: Its profile.
+        stats: What became of the calls.
+    """
+
+    def __init__(
+        self,
+        channel: Channel,
+        srv_type: type[Any],
+        requesters: Sequence[Requester],
+        time_base: TimeBase,
+    ) -> None:
+        super().__init__(f"client of {channel.endpoint.name}")
+        self.srv_type = srv_type
+        self.qos_profile: QoSProfile = channel.endpoint.qos
+        self.stats = ClientStats()
+        self._channel = channel
+        self._requesters = tuple(requesters)
+        self._check = checker(srv_type.Request)
+        self._now_ns = time_base.system_ns
+        self._answers: set[asyncio.Future[Any]] = set()
+        self._warned = False
+
+    def __repr__(self) -> str:
+        return (
+            f"<Client {self.srv_name} {self._channel.endpoint.type_name} "
+            f"calls={self.stats.calls} errors={self.stats.errors}>"
+        )
+
+    @property
+    def srv_name(self) -> str:
+        """The full name of the service."""
+        return self._channel.endpoint.name
+
+    service_name = srv_name
+
+    def service_is_ready(self) -> bool:
+        """Whether a server is matched now."""
+        return self._channel.count_matched(EndpointKind.SERVER) > 0
+
+    async def wait_for_service(self, timeout_sec: float | None = None) -> bool:
+        """Wait until a server is matched.
+
+        Args:
+            timeout_sec: How long at most, in seconds; None waits for ever.
+
+        Returns:
+            True when a server is there, False when `timeout_sec` has passed.
+
+        Raises:
+            EntityDestroyedError: the client was destroyed before.
+            CancelledError: the client was destroyed while it waited.
+        """
+        self.refuse_if_destroyed()
+        try:
+            async with asyncio.timeout(timeout_sec):
+                await self._channel.until(self.service_is_ready)
+        except TimeoutError:
+            return self.service_is_ready()
+        return True
+
+    async def call(self, request: RequestT, timeout_sec: float | None = None) -> ResponseT:
+        """Send `request` and wait for the response.
+
+        Without a server nothing answers, so limit the wait: with `timeout_sec`, or with
+        `asyncio.timeout`, or wait for the service first. A call that is cancelled or times out is
+        forgotten on both sides: a server that has not begun does not serve it, and a late reply
+        goes nowhere. With several servers the first answer counts.
+
+        Args:
+            request: An instance of ``srv_type.Request``; it may be changed after the call began.
+            timeout_sec: How long at most, in seconds; None waits for ever.
+
+        Raises:
+            TypeError: `request` is of another type.
+            MessageError: a value does not fit its field.
+            ServiceError: the handler failed; with type and text of its exception.
+            ServiceUnavailableError: the server went away before it answered (a ServiceError).
+            RequestTimeoutError: `timeout_sec` has passed (a TimeoutError).
+            EntityDestroyedError: the client was destroyed before the call.
+            CancelledError: the client was destroyed during the call.
+        """
+        self.refuse_if_destroyed("called")
+        if type(request) is not self.srv_type.Request:
+            self._check(request)
+        self.stats.calls += 1
+        began_ns = perf_ns()
+        try:
+            async with asyncio.timeout(timeout_sec) as limit:
+                response = await self._exchange(request)
+        except TimeoutError as error:
+            self.stats.errors += 1
+            if limit.expired() and timeout_sec is not None:
+                raise RequestTimeoutError(self.srv_name, timeout_sec, self._servers()) from error
+            raise
+        except asyncio.CancelledError as error:
+            self.stats.errors += 1
+            error.add_note(f"{self.srv_name}: no reply; {silence(self._servers())}")
+            raise
+        except AionodeError:
+            self.stats.errors += 1
+            raise
+        self.stats.run_time.record(perf_ns() - began_ns)
+        return response
+
+    async def _exchange(self, request: Any) -> Any:
+        """Send through every transport and return the first answer."""
+        servers = self._servers()
+        if servers == 0:
+            self._check(request)
+            self._warn_of_silence()
+        answer: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
+        origin = Origin(self._channel.endpoint.gid, self.stats.calls, self._now_ns())
+        exchange = _Exchange(self.srv_name, answer, servers)
+        calls: list[Call] = []
+        self._answers.add(answer)
+        try:
+            for requester in self._requesters:
+                if requester.servers:
+                    exchange.open += 1
+                    calls.append(requester.send(request, origin, exchange))
+            return await answer
+        finally:
+            self._answers.discard(answer)
+            if not answer.cancel() and not answer.cancelled():
+                answer.exception()  # looked at, so that asyncio does not report it
+            for call in calls:
+                call.cancel()
+
+    def _servers(self) -> int:
+        return sum(requester.servers for requester in self._requesters)
+
+    def _warn_of_silence(self) -> None:
+        if not self._warned:
+            self._warned = True
+            self._channel.logger.warning(
+                f"{self.srv_name}: called while {silence(0)} The call waits without an answer; "
+                "`await client.wait_for_service()` first"
+            )
+
+    def close(self) -> None:
+        """Withdraw the client, and cancel its waits and calls."""
+        self._channel.close()
+        for requester in self._requesters:
+            requester.close()
+        for answer in list(self._answers):
+            answer.cancel(f"{self.subject}: destroyed")
+
+
+class _Exchange:
+    """The client's end of one call: the first answer of any transport counts.
+
+    With no server at the beginning there is nobody who could go away, so the call goes on waiting.
+    """
+
+    def __init__(self, service: str, answer: asyncio.Future[Any], servers: int) -> None:
+        self.open = 0
+        self._service = service
+        self._answer = answer
+        self._servers = servers
+
+    def reply(self, response: Any, origin: Origin) -> None:  # noqa: ARG002  # part of ReplyTo
+        """Take a response."""
+        if not self._answer.done():
+            self._answer.set_result(response)
+
+    def fail(self, error: ServiceError) -> None:
+        """Take a server's error."""
+        if not self._answer.done():
+            self._answer.set_exception(error)
+
+    def end(self) -> None:
+        """Note that no answer will come any more through one transport."""
+        self.open -= 1
+        if self.open == 0 and not self._answer.done():
+            self._answer.set_exception(ServiceUnavailableError(self._service))

@@ -1,0 +1,148 @@
+"""What each entity counts and measures.
+
+All times are real time in nanoseconds, also where a test steps the clock: they tell what the
+machine spent, not what the program believes the time to be.
+"""
+
+from __future__ import annotations
+
+__all__ = ["CallbackStats", "ClientStats", "Distribution", "PublisherStats"]
+
+# A bucket is one sixteenth of a power of two, so a percentile is off by 3 % at most. The offset
+# keeps the smallest values in buckets of their own.
+_SUB_BUCKETS_LOG2 = 4
+_OFFSET = 1 << _SUB_BUCKETS_LOG2
+
+
+class Distribution:
+    """How often which duration was seen, in constant memory.
+
+    Attributes:
+        max_ns: The longest duration seen, 0 before the first.
+    """
+
+    __slots__ = ("_buckets", "max_ns")
+
+    def __init__(self) -> None:
+        self._buckets: dict[int, int] = {}
+        self.max_ns = 0
+
+    def __repr__(self) -> str:
+        return (
+            f"Distribution(count={self.count}, p50_ns={self.p50_ns}, "
+            f"p99_ns={self.p99_ns}, max_ns={self.max_ns})"
+        )
+
+    def record(self, duration_ns: int) -> None:
+        """Add one duration, which must not be negative."""
+        if duration_ns > self.max_ns:
+            self.max_ns = duration_ns
+        shifted = duration_ns + _OFFSET
+        octave = shifted.bit_length() - _SUB_BUCKETS_LOG2 - 1
+        bucket = (octave << _SUB_BUCKETS_LOG2) + (shifted >> octave)
+        buckets = self._buckets
+        buckets[bucket] = buckets.get(bucket, 0) + 1
+
+    @property
+    def count(self) -> int:
+        """How many durations were recorded."""
+        return sum(self._buckets.values())
+
+    @property
+    def p50_ns(self) -> int:
+        """The median, within 3 %; 0 before the first."""
+        return self.percentile_ns(50)
+
+    @property
+    def p99_ns(self) -> int:
+        """What 99 of 100 durations do not exceed, within 3 %; 0 before the first."""
+        return self.percentile_ns(99)
+
+    def percentile_ns(self, percent: float) -> int:
+        """Return what `percent` of 100 durations do not exceed, within 3 %."""
+        wanted = self.count * percent / 100
+        seen = 0
+        for bucket in sorted(self._buckets):
+            seen += self._buckets[bucket]
+            if seen >= wanted:
+                return min(_middle_ns(bucket), self.max_ns)
+        return 0
+
+
+def _middle_ns(bucket: int) -> int:
+    """Return the middle of the durations that fall into `bucket`."""
+    octave = (bucket >> _SUB_BUCKETS_LOG2) - 1
+    low = (bucket - (octave << _SUB_BUCKETS_LOG2)) << octave
+    return low + ((1 << octave) >> 1) - _OFFSET
+
+
+class CallbackStats:
+    """What became of the messages, requests or ticks of one entity.
+
+    ``received + dropped + still queued`` is what arrived.
+
+    Attributes:
+        received: Handed to a callback or a reader.
+        dropped: Discarded by a full queue, or unread when the entity was destroyed.
+        errors: Callbacks that raised.
+        lost: Gaps in the sequence numbers of publishers in other processes.
+        queue_wait: From arrival to the start of the callback.
+        run_time: From the start of the callback to its end, waits included.
+        blocking: The longest stretch of each callback without an await: what others waited for.
+    """
+
+    __slots__ = ("blocking", "dropped", "errors", "lost", "queue_wait", "received", "run_time")
+
+    def __init__(self) -> None:
+        self.received = 0
+        self.dropped = 0
+        self.errors = 0
+        self.lost = 0
+        self.queue_wait = Distribution()
+        self.run_time = Distribution()
+        self.blocking = Distribution()
+
+    def __repr__(self) -> str:
+        return (
+            f"CallbackStats(received={self.received}, dropped={self.dropped}, "
+            f"errors={self.errors}, lost={self.lost}, queue_wait={self.queue_wait}, "
+            f"run_time={self.run_time}, blocking={self.blocking})"
+        )
+
+
+class PublisherStats:
+    """What one publisher sent.
+
+    Attributes:
+        published: Messages that `publish` took.
+    """
+
+    __slots__ = ("published",)
+
+    def __init__(self) -> None:
+        self.published = 0
+
+    def __repr__(self) -> str:
+        return f"PublisherStats(published={self.published})"
+
+
+class ClientStats:
+    """What became of the calls of one client.
+
+    Attributes:
+        calls: Calls that were sent.
+        errors: Calls that ended with a `ServiceError` or without a reply.
+        run_time: From the call to its response.
+    """
+
+    __slots__ = ("calls", "errors", "run_time")
+
+    def __init__(self) -> None:
+        self.calls = 0
+        self.errors = 0
+        self.run_time = Distribution()
+
+    def __repr__(self) -> str:
+        return (
+            f"ClientStats(calls={self.calls}, errors={self.errors}, run_time={self.run_time})"
+        )

@@ -1,0 +1,355 @@
+"""Within one context: messages travel as objects, and no bytes are made.
+
+Readers share one snapshot of each message, taken when it is published. The matching rules are those
+of DDS; endpoints that do not match do not hear each other.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import TYPE_CHECKING, Any
+
+from aionode.errors import ServiceError
+from aionode.message import snapshotter
+from aionode.qos import DurabilityPolicy, HistoryPolicy, ReliabilityPolicy
+from aionode.transport.base import Announcement, Origin, Request, Requester, Transport, Writer
+from aionode.wire import cdr
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.graph import EndpointInfo, Graph, NodeInfo
+    from aionode.transport.base import Call, Reader, ReplyTo
+
+__all__ = ["LocalTransport"]
+
+KEPT_FOR_LATE_READERS = 10_000
+"""How many messages a transient local publisher keeps that keeps all."""
+
+
+class LocalTransport(Transport):
+    """The transport of a context to itself."""
+
+    def __init__(self) -> None:
+        self._topics: dict[str, _Topic] = {}
+        self._servers: dict[str, list[LocalServer]] = {}
+
+    async def open(self, graph: Graph) -> None:
+        """There is nothing to connect."""
+
+    async def close(self) -> None:
+        """There is nothing to disconnect."""
+
+    def create_node(self, node: NodeInfo) -> Announcement:  # noqa: ARG002  # nobody else to tell
+        """Nodes of this context are known to its graph already."""
+        return _Nothing()
+
+    def create_writer(self, endpoint: EndpointInfo, msg_type: type[Any]) -> Writer:
+        """Connect a publisher with the subscriptions of its topic."""
+        topic = self._topic(endpoint.name)
+        writer = LocalWriter(endpoint, msg_type, topic)
+        topic.writers.append(writer)
+        for reader in topic.readers:
+            writer.meet(reader)
+        return writer
+
+    def create_reader(
+        self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
+    ) -> Announcement:
+        """Connect a subscription with the publishers of its topic; late ones get the history."""
+        topic = self._topic(endpoint.name)
+        local_reader = LocalReader(endpoint, msg_type, reader, topic)
+        topic.readers.append(local_reader)
+        for writer in topic.writers:
+            writer.meet(local_reader)
+        return local_reader
+
+    def create_server(
+        self, endpoint: EndpointInfo, srv_type: type[Any], serve: Callable[[Request], None]
+    ) -> Announcement:
+        """Connect a server with the clients of its service."""
+        server = LocalServer(endpoint, srv_type, serve, self._servers)
+        self._servers.setdefault(endpoint.name, []).append(server)
+        return server
+
+    def create_requester(self, endpoint: EndpointInfo, srv_type: type[Any]) -> Requester:
+        """Connect a client with the servers of its service."""
+        return LocalRequester(endpoint, srv_type, self._servers)
+
+    def _topic(self, name: str) -> _Topic:
+        topic = self._topics.get(name)
+        if topic is None:
+            topic = self._topics[name] = _Topic(lambda: self._topics.pop(name, None))
+        return topic
+
+
+def _in_class(msg: Any, msg_type: type[Any]) -> Any:
+    """Return `msg` as an instance of `msg_type`.
+
+    There may be two classes for one definition, such as a generated one and one written by hand.
+    """
+    return msg if type(msg) is msg_type else cdr.decode(msg_type, cdr.encode(msg))
+
+
+class _Nothing(Announcement):
+    def close(self) -> None:
+        pass
+
+
+# Topics
+
+
+class _Topic:
+    """The two sides of one topic; forgotten when the last has left."""
+
+    __slots__ = ("_forget", "readers", "writers")
+
+    def __init__(self, forget: Callable[[], object]) -> None:
+        self.writers: list[LocalWriter] = []
+        self.readers: list[LocalReader] = []
+        self._forget = forget
+
+    def leave(self, member: LocalWriter | LocalReader) -> None:
+        """Remove one of either side; twice is the same as once."""
+        side: list[Any] = self.writers if isinstance(member, LocalWriter) else self.readers
+        if member in side:
+            side.remove(member)
+            if not self.writers and not self.readers:
+                self._forget()
+
+
+class LocalReader(Announcement):
+    """A subscription as its publishers in the same context see it."""
+
+    def __init__(
+        self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader, topic: _Topic
+    ) -> None:
+        self.endpoint = endpoint
+        self.msg_type = msg_type
+        self.reader = reader
+        self._topic = topic
+        qos = endpoint.qos
+        self.bounded = (
+            qos.history is HistoryPolicy.KEEP_ALL
+            and qos.reliability is ReliabilityPolicy.RELIABLE
+        )
+
+    def delivery_from(self, msg_type: type[Any]) -> Callable[[Any, Origin], None]:
+        """Return what takes messages of `msg_type` to the reader, in the form that it wants."""
+        deliver = self.reader.deliver
+        if self.reader.raw:
+            encode = cdr.encoder(msg_type)
+            return lambda msg, origin: deliver(encode(msg), origin)
+        if self.msg_type is not msg_type:
+            return lambda msg, origin: deliver(_in_class(msg, self.msg_type), origin)
+        return deliver
+
+    def close(self) -> None:
+        """Leave every publisher."""
+        self._topic.leave(self)
+        for writer in self._topic.writers:
+            writer.part(self)
+
+
+class LocalWriter(Writer):
+    """A publisher as its subscriptions in the same context see it."""
+
+    def __init__(self, endpoint: EndpointInfo, msg_type: type[Any], topic: _Topic) -> None:
+        self.endpoint = endpoint
+        self._msg_type = msg_type
+        self._topic = topic
+        self._snapshot = snapshotter(msg_type)
+        self._matched: dict[LocalReader, Callable[[Any, Origin], None]] = {}
+        self._deliveries: tuple[Callable[[Any, Origin], None], ...] = ()
+        self._history: deque[tuple[Any, Origin]] | None = None
+        qos = endpoint.qos
+        if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL:
+            keeps_all = qos.history is HistoryPolicy.KEEP_ALL
+            self._history = deque(maxlen=KEPT_FOR_LATE_READERS if keeps_all else qos.depth or None)
+        self._update()
+
+    def meet(self, reader: LocalReader) -> None:
+        """Match with `reader` if both fit, and give it what it missed."""
+        if not self.endpoint.matches(reader.endpoint):
+            return
+        deliver = reader.delivery_from(self._msg_type)
+        wanted = reader.endpoint.qos
+        if self._history and wanted.durability is DurabilityPolicy.TRANSIENT_LOCAL:
+            missed = list(self._history)
+            if wanted.history is not HistoryPolicy.KEEP_ALL and wanted.depth:
+                missed = missed[-wanted.depth :]
+            for msg, origin in missed:
+                deliver(msg, origin)
+        self._matched[reader] = deliver
+        self._update()
+
+    def part(self, reader: LocalReader) -> None:
+        """Forget `reader`, whether it was matched or not."""
+        if self._matched.pop(reader, None) is not None:
+            self._update()
+
+    def _update(self) -> None:
+        self._deliveries = tuple(self._matched.values())
+        self.active = bool(self._deliveries) or self._history is not None
+        self.bounded = any(reader.bounded for reader in self._matched)
+
+    def write(self, msg: Any, origin: Origin) -> None:
+        """Give one snapshot of `msg` to all."""
+        snapshot = self._snapshot(msg)
+        if self._history is not None:
+            self._history.append((snapshot, origin))
+        for deliver in self._deliveries:
+            deliver(snapshot, origin)
+
+    def has_room(self) -> bool:
+        """Whether every reliable KEEP_ALL reader can take one more message."""
+        return all(reader.reader.has_room() for reader in self._matched if reader.bounded)
+
+    async def drain(self) -> None:
+        """Wait until `has_room`."""
+        while not self.has_room():
+            for reader in list(self._matched):
+                if reader.bounded:
+                    await reader.reader.wait_for_room()
+
+    def close(self) -> None:
+        """Leave every subscription."""
+        self._topic.leave(self)
+        self._matched.clear()
+        self._history = None
+        self._update()
+
+
+# Services
+
+
+class LocalServer(Announcement):
+    """A server as its clients in the same context see it."""
+
+    def __init__(
+        self,
+        endpoint: EndpointInfo,
+        srv_type: type[Any],
+        serve: Callable[[Request], None],
+        servers: dict[str, list[LocalServer]],
+    ) -> None:
+        self.endpoint = endpoint
+        self.srv_type = srv_type
+        self.serve = serve
+        self._servers = servers
+        self.unanswered: set[LocalRequest] = set()
+
+    def close(self) -> None:
+        """Leave every client, and give up what was not answered."""
+        beside = self._servers.get(self.endpoint.name, [])
+        if self in beside:
+            beside.remove(self)
+            if not beside:
+                del self._servers[self.endpoint.name]
+        for request in list(self.unanswered):
+            request.drop()
+
+
+class LocalRequest(Request):
+    """One request to one server."""
+
+    def __init__(self, message: Any, origin: Origin, server: LocalServer, call: LocalCall) -> None:
+        self.message = message
+        self.origin = origin
+        self._server = server
+        self._call = call
+        self._snapshot = snapshotter(server.srv_type.Response)
+        server.unanswered.add(self)
+
+    def _finish(self) -> bool:
+        """Note that the request is done with; return whether it was not yet."""
+        if self not in self._server.unanswered:
+            return False
+        self._server.unanswered.discard(self)
+        return True
+
+    def reply(self, response: Any) -> None:
+        """Give a snapshot of the response to the client."""
+        snapshot = self._snapshot(response)
+        if self._finish():
+            snapshot = _in_class(snapshot, self._call.srv_type.Response)
+            self._call.reply(snapshot, Origin(self._server.endpoint.gid, self.origin.sequence, 0))
+
+    def fail(self, error_type: str, error_text: str) -> None:
+        """Give an error to the client."""
+        if self._finish():
+            self._call.fail(ServiceError(self._server.endpoint.name, error_text, error_type))
+
+    def drop(self) -> None:
+        """Tell the client that this server will not answer."""
+        if self._finish():
+            self._call.end()
+
+
+class LocalCall:
+    """One call under way, to one or more servers."""
+
+    def __init__(self, reply_to: ReplyTo, srv_type: type[Any]) -> None:
+        self._reply_to: ReplyTo | None = reply_to
+        self.srv_type = srv_type
+        self.requests: list[LocalRequest] = []
+        self.open = 0
+
+    def reply(self, response: Any, origin: Origin) -> None:
+        """Pass on a server's response."""
+        if self._reply_to is not None:
+            self._reply_to.reply(response, origin)
+
+    def fail(self, error: ServiceError) -> None:
+        """Pass on a server's error."""
+        if self._reply_to is not None:
+            self._reply_to.fail(error)
+
+    def end(self) -> None:
+        """Note that one server will not answer; pass it on when it was the last."""
+        self.open -= 1
+        if self.open == 0 and self._reply_to is not None:
+            self._reply_to.end()
+
+    def cancel(self) -> None:
+        """Forget the call."""
+        self._reply_to = None
+        for request in self.requests:
+            request.cancelled = True
+
+
+class LocalRequester(Requester):
+    """A client as its servers in the same context see it."""
+
+    def __init__(
+        self, endpoint: EndpointInfo, srv_type: type[Any], servers: dict[str, list[LocalServer]]
+    ) -> None:
+        self._endpoint = endpoint
+        self._srv_type = srv_type
+        self._servers = servers
+        self._snapshot = snapshotter(srv_type.Request)
+
+    def _matched(self) -> list[LocalServer]:
+        servers = self._servers.get(self._endpoint.name, ())
+        return [server for server in servers if self._endpoint.matches(server.endpoint)]
+
+    @property
+    def servers(self) -> int:
+        """How many servers of this context are matched."""
+        return len(self._matched())
+
+    def send(self, request: Any, origin: Origin, reply_to: ReplyTo) -> Call:
+        """Give a snapshot of `request` to every server."""
+        snapshot = self._snapshot(request)
+        call = LocalCall(reply_to, self._srv_type)
+        servers = self._matched()
+        call.open = len(servers)
+        for server in servers:
+            message = _in_class(snapshot, server.srv_type.Request)
+            local_request = LocalRequest(message, origin, server, call)
+            call.requests.append(local_request)
+            server.serve(local_request)
+        return call
+
+    def close(self) -> None:
+        """Clients leave nothing behind."""
