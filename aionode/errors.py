@@ -34,6 +34,7 @@ name; new ones end in `Error`. They carry plain values, never live objects.
     ├── ServiceError (RuntimeError)
     │   └── ServiceUnavailableError
     ├── RequestTimeoutError (TimeoutError)
+    ├── TimeSourceChangedError (RuntimeError)
     └── TransportError (ConnectionError)
 """
 

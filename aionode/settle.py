@@ -9,13 +9,14 @@ from __future__ import annotations
 import asyncio
 import gc
 from collections import deque
+from types import coroutine
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 from weakref import WeakKeyDictionary
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sized
+    from collections.abc import Callable, Generator, Sized
 
-__all__ = ["Activity", "activity", "off_loop", "settle"]
+__all__ = ["Activity", "activity", "off_loop", "one_turn", "settle"]
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -32,6 +33,12 @@ async def settle() -> None:
     ``asyncio.sleep(0)``, keeps it from ever returning.
     """
     await activity().settle()
+
+
+@coroutine
+def one_turn() -> Generator[None, None, None]:
+    """Let everything else that is ready run once."""
+    yield
 
 
 async def off_loop(callback: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
@@ -80,9 +87,9 @@ class Activity:
         """Let the loop turn until its queue holds nothing but others that do just the same."""
         self._turning += 1
         try:
-            await asyncio.sleep(0)
+            await one_turn()
             while len(ready) >= self._turning:
-                await asyncio.sleep(0)
+                await one_turn()
         finally:
             self._turning -= 1
 
@@ -116,7 +123,7 @@ async def blind_turns() -> None:
     """Let the loop turn until every other task was blocked for some turns in a row."""
     quiet_turns = 0
     while quiet_turns < BLIND_TURNS:
-        await asyncio.sleep(0)
+        await one_turn()
         this = asyncio.current_task()
         blocked = all(task is this or is_blocked(task) for task in asyncio.all_tasks())
         quiet_turns = quiet_turns + 1 if blocked else 0

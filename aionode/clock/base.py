@@ -45,7 +45,7 @@ class TimeBase(ABC):
 
     @abstractmethod
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Have `callback` called on the running loop, not before the steady clock is at `steady_ns`.
+        """Have the running loop call `callback` at `steady_ns` of the steady clock, never earlier.
 
         A time in the past means: in one of the next turns of the loop, never at once.
         """

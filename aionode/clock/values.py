@@ -15,6 +15,12 @@ S_TO_NS = 1_000_000_000
 CONST_INFINITE_NS = 2**63 - 1  # what ROS counts as "for ever": the largest int64
 
 
+def expect_clock_type(value: object, subject: str) -> None:
+    """Raise `TypeError` unless `value` is a `ClockType`."""
+    if not isinstance(value, ClockType):
+        raise TypeError(f"{subject}: clock_type is {value!r}; it must be a ClockType")
+
+
 def total_ns(seconds: float, nanoseconds: float) -> int:
     """Return the sum in nanoseconds; fractions of a nanosecond are cut off, as in rclpy."""
     return int(seconds * S_TO_NS) + int(nanoseconds)
@@ -41,8 +47,9 @@ class Duration:
     def __init__(self, *, seconds: float = 0, nanoseconds: float = 0) -> None:
         ns = total_ns(seconds, nanoseconds)
         if not -(2**63) <= ns < 2**63:
-            msg = f"Duration: {ns} ns do not fit 64 bits; the longest is {CONST_INFINITE_NS} ns"
-            raise OverflowError(msg)
+            raise OverflowError(
+                f"Duration: {ns} ns do not fit 64 bits; the longest is {CONST_INFINITE_NS} ns"
+            )
         self._ns = ns
 
     @property
@@ -82,8 +89,9 @@ class Duration:
             return Duration(nanoseconds=int(self._ns * factor))
         if factor == math.inf:
             return Infinite
-        msg = f"Duration: cannot be multiplied with {factor}; a finite number or +inf fits"
-        raise ValueError(msg)
+        raise ValueError(
+            f"Duration: cannot be multiplied with {factor}; a finite number or +inf fits"
+        )
 
     __rmul__ = __mul__
 
@@ -153,16 +161,16 @@ class Time:
         nanoseconds: float = 0,
         clock_type: ClockType = ClockType.SYSTEM_TIME,
     ) -> None:
-        if not isinstance(clock_type, ClockType):
-            msg = f"Time: clock_type is {clock_type!r}; it must be a ClockType"
-            raise TypeError(msg)
+        expect_clock_type(clock_type, "Time")
         if seconds < 0 or nanoseconds < 0:
-            msg = f"Time: seconds={seconds}, nanoseconds={nanoseconds}; neither may be negative"
-            raise ValueError(msg)
+            raise ValueError(
+                f"Time: seconds={seconds}, nanoseconds={nanoseconds}; neither may be negative"
+            )
         ns = total_ns(seconds, nanoseconds)
         if ns >= 2**63:
-            msg = f"Time: {ns} ns do not fit 64 bits; the latest is {CONST_INFINITE_NS} ns"
-            raise OverflowError(msg)
+            raise OverflowError(
+                f"Time: {ns} ns do not fit 64 bits; the latest is {CONST_INFINITE_NS} ns"
+            )
         self._ns = ns
         self._clock_type = clock_type
 
@@ -233,8 +241,9 @@ class Time:
         """Return the nanoseconds of `other` if it is of the same type of clock."""
         if self._clock_type is not other._clock_type:
             mine, theirs = self._clock_type.name, other._clock_type.name
-            msg = f"Time: cannot {action} times with different clock types, {mine} and {theirs}"
-            raise TypeError(msg)
+            raise TypeError(
+                f"Time: cannot {action} times with different clock types, {mine} and {theirs}"
+            )
         return other._ns
 
     def to_msg(self) -> builtin_msg.Time:
@@ -270,5 +279,6 @@ def expect_message(msg: object, expected: type, name: str) -> None:
     """Raise `TypeError` unless `msg` is of the message class `expected`."""
     if not isinstance(msg, expected):
         given = type(msg).__name__
-        text = f"{name}.from_msg: got a {given}; a builtin_interfaces/msg/{name} is needed"
-        raise TypeError(text)
+        raise TypeError(
+            f"{name}.from_msg: got a {given}; a builtin_interfaces/msg/{name} is needed"
+        )
