@@ -1,0 +1,300 @@
+"""Who a context talks to: from environment variables and arguments to a Zenoh configuration.
+
+Pure functions; nothing is connected here, and zenoh is not imported.
+
+Without configuration the processes of one machine find each other over loopback: each tries to
+listen on one of three meeting ports, and dials the others and the port of a ROS 2 router. Whoever
+knows somebody introduces them to the rest, after which all are linked directly.
+"""
+
+from __future__ import annotations
+
+import enum
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from aionode.errors import ConfigurationError
+
+__all__ = [
+    "MEETING_PORTS",
+    "ROUTER_PORT",
+    "DiscoveryRange",
+    "Network",
+    "network_from",
+    "probed_ports",
+    "router_settings",
+    "session_settings",
+]
+
+MEETING_PORTS: Final = (17449, 17450, 17451)
+"""Where processes of one machine meet: below the ephemeral ports, and not a ROS router's."""
+
+ROUTER_PORT: Final = 7447
+"""Where `rmw_zenohd` and `aionode router` listen."""
+
+MEETING_PORTS_VARIABLE: Final = "AIONODE_MEETING_PORTS"
+ROUTER_PORT_VARIABLE: Final = "AIONODE_ROUTER_PORT"
+
+LOOPBACK: Final = "127.0.0.1"
+EVERYWHERE: Final = "0.0.0.0"  # noqa: S104  # only on request: ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET
+
+MAX_DOMAIN_ID: Final = 2**32 - 1
+
+
+class DiscoveryRange(enum.Enum):
+    """How far a context looks for others by itself."""
+
+    OFF = "OFF"
+    """It finds nobody and is found by nobody."""
+    LOCALHOST = "LOCALHOST"
+    """It finds the processes of its machine; nothing listens beyond loopback."""
+    SUBNET = "SUBNET"
+    """It finds machines of its network too, by multicast, and listens on every interface."""
+    SYSTEM_DEFAULT = "SYSTEM_DEFAULT"
+    """As a ROS 2 node on rmw_zenoh does: only through a router on this machine."""
+
+
+@dataclass(frozen=True, slots=True)
+class Network:
+    """What a context was told about its network.
+
+    Attributes:
+        domain_id: Contexts of different domains do not hear each other.
+        discovery_range: How far it looks for others.
+        static_peers: Zenoh endpoints that it dials besides, such as ``tcp/10.0.0.7:7447``.
+        config_file: A Zenoh configuration that takes the place of aionode's own.
+        overrides: Settings that win over all others: key path and JSON5 text.
+        override_source: Where the overrides come from, for error texts.
+        meeting_ports: Ports on which processes of one machine meet.
+        router_port: Port of a router on this machine.
+    """
+
+    domain_id: int = 0
+    discovery_range: DiscoveryRange = DiscoveryRange.LOCALHOST
+    static_peers: tuple[str, ...] = ()
+    config_file: str | None = None
+    overrides: tuple[tuple[str, str], ...] = ()
+    override_source: str = "config"
+    meeting_ports: tuple[int, ...] = MEETING_PORTS
+    router_port: int = ROUTER_PORT
+
+
+def network_from(
+    environ: Mapping[str, str],
+    *,
+    domain_id: int | None = None,
+    discovery_range: DiscoveryRange | str | None = None,
+    static_peers: Iterable[str] | None = None,
+    config: str | Path | Mapping[str, Any] | None = None,
+) -> Network:
+    """Return what the arguments say and, where they are None, the environment.
+
+    Args:
+        environ: Usually `os.environ`: ``ROS_DOMAIN_ID``, ``ROS_AUTOMATIC_DISCOVERY_RANGE``,
+            ``ROS_STATIC_PEERS``, ``ZENOH_SESSION_CONFIG_URI``, ``ZENOH_CONFIG_OVERRIDE``.
+        domain_id: Instead of ``ROS_DOMAIN_ID``.
+        discovery_range: Instead of ``ROS_AUTOMATIC_DISCOVERY_RANGE``.
+        static_peers: Instead of ``ROS_STATIC_PEERS``: hosts, ``host:port`` or Zenoh endpoints.
+        config: A path to a Zenoh configuration file, instead of ``ZENOH_SESSION_CONFIG_URI``, or
+            single settings by their key path, which win over ``ZENOH_CONFIG_OVERRIDE``.
+
+    Raises:
+        ConfigurationError: one of them does not fit; the text names it.
+    """
+    ports = meeting_ports(environ)
+    router_port = port(
+        environ.get("AIONODE_ROUTER_PORT") or str(ROUTER_PORT), "AIONODE_ROUTER_PORT"
+    )
+    overrides = parse_overrides(environ.get("ZENOH_CONFIG_OVERRIDE", ""))
+    override_source = "ZENOH_CONFIG_OVERRIDE"
+    config_file = environ.get("ZENOH_SESSION_CONFIG_URI") or None
+    if isinstance(config, Mapping):
+        overrides += tuple((key, json.dumps(value)) for key, value in config.items())
+        override_source = "config"
+    elif config is not None:
+        config_file = str(config)
+    if static_peers is None:
+        peers_source = "ROS_STATIC_PEERS"
+        static_peers = environ.get(peers_source, "").split(";")
+    else:
+        peers_source = "static_peers"
+        if isinstance(static_peers, str):  # a string is iterable too, and never meant so
+            static_peers = static_peers.split(";")
+    return Network(
+        domain_id=choose_domain_id(environ, domain_id),
+        discovery_range=choose_range(environ, discovery_range),
+        static_peers=tuple(
+            endpoint
+            for peer in static_peers
+            if peer.strip()
+            for endpoint in peer_endpoints(peer.strip(), peers_source, (router_port, *ports))
+        ),
+        config_file=config_file,
+        overrides=overrides,
+        override_source=override_source,
+        meeting_ports=ports,
+        router_port=router_port,
+    )
+
+
+def choose_domain_id(environ: Mapping[str, str], domain_id: int | None) -> int:
+    """Return the domain id that the argument or the environment says."""
+    fits = f"a whole number from 0 to {MAX_DOMAIN_ID} fits"
+    if domain_id is not None:
+        if isinstance(domain_id, bool) or not isinstance(domain_id, int):
+            raise TypeError(f"domain_id: {domain_id!r} given; {fits}")
+        if not 0 <= domain_id <= MAX_DOMAIN_ID:
+            raise ConfigurationError("domain_id", str(domain_id), fits)
+        return domain_id
+    text = environ.get("ROS_DOMAIN_ID", "").strip() or "0"
+    if not (text.isascii() and text.isdigit()) or len(text) > 10 or int(text) > MAX_DOMAIN_ID:
+        raise ConfigurationError("ROS_DOMAIN_ID", text, fits)
+    return int(text)
+
+
+def choose_range(
+    environ: Mapping[str, str], discovery_range: DiscoveryRange | str | None
+) -> DiscoveryRange:
+    """Return the discovery range that the argument or the environment says."""
+    if isinstance(discovery_range, DiscoveryRange):
+        return discovery_range
+    source = "ROS_AUTOMATIC_DISCOVERY_RANGE" if discovery_range is None else "discovery_range"
+    text = environ.get(source, "") if discovery_range is None else discovery_range
+    text = text.strip() or DiscoveryRange.LOCALHOST.value
+    try:
+        return DiscoveryRange[text.upper()]
+    except KeyError:
+        fits = "one of " + ", ".join(r.value for r in DiscoveryRange) + " fits"
+        raise ConfigurationError(source, text, fits) from None
+
+
+def parse_overrides(text: str) -> tuple[tuple[str, str], ...]:
+    """Return the settings of ``ZENOH_CONFIG_OVERRIDE``: ``key/path=json5;…``."""
+    overrides = []
+    for item in text.split(";"):
+        if not item.strip():
+            continue
+        key, equals, value = item.partition("=")
+        if not (equals and key.strip() and value.strip()):
+            fits = "settings such as scouting/multicast/enabled=true, separated by ;, fit"
+            raise ConfigurationError("ZENOH_CONFIG_OVERRIDE", item.strip(), fits)
+        overrides.append((key.strip(), value.strip()))
+    return tuple(overrides)
+
+
+def peer_endpoints(peer: str, source: str, ports: tuple[int, ...]) -> list[str]:
+    """Return where to dial a static peer; without a port, wherever one could listen."""
+    if "/" in peer:
+        protocol, _, address = peer.partition("/")
+        if protocol and address:
+            return [peer]
+    else:
+        host, colon, given_port = split_port(peer)
+        if host and not any(c.isspace() for c in host):
+            dialled = (port(given_port, source),) if colon else ports
+            return [f"tcp/{host}:{p}" for p in dialled]
+    fits = "a host, host:port or a Zenoh endpoint such as tcp/10.0.0.7:7447 fits"
+    raise ConfigurationError(source, peer, fits)
+
+
+def split_port(peer: str) -> tuple[str, str, str]:
+    """Return host, colon and port; the last two are empty without a port."""
+    if peer.startswith("["):  # an IPv6 address in brackets
+        host, bracket, rest = peer.partition("]")
+        return host + bracket, rest[:1], rest[1:]
+    if peer.count(":") > 1:  # a bare IPv6 address has no room for a port
+        return f"[{peer}]", "", ""
+    return peer.partition(":")
+
+
+def port(text: str, source: str) -> int:
+    """Return a TCP port."""
+    if not (text.isascii() and text.isdigit()) or len(text) > 5 or not 0 < int(text) < 2**16:
+        raise ConfigurationError(source, text, "a TCP port from 1 to 65535 fits")
+    return int(text)
+
+
+def meeting_ports(environ: Mapping[str, str]) -> tuple[int, ...]:
+    """Return the ports to meet on. Tests set others, so as not to hear what else runs."""
+    text = environ.get(MEETING_PORTS_VARIABLE, "")
+    if not text:
+        return MEETING_PORTS
+    return tuple(port(p.strip(), MEETING_PORTS_VARIABLE) for p in text.split(","))
+
+
+def probed_ports(network: Network) -> tuple[int, ...]:
+    """Return the ports of this machine whose listeners a session will dial."""
+    if network.config_file is not None or network.discovery_range is DiscoveryRange.OFF:
+        return ()
+    if network.discovery_range is DiscoveryRange.SYSTEM_DEFAULT:
+        return (network.router_port,)
+    return (*network.meeting_ports, network.router_port)
+
+
+def session_settings(network: Network, answering: Iterable[int]) -> dict[str, Any]:
+    """Return the settings of a session, by key path, without those of `network.overrides`.
+
+    Args:
+        network: What the context was told.
+        answering: Those of `probed_ports` where somebody listens.
+    """
+    if network.config_file is not None:
+        return {}
+    taken = set(answering)
+    mine = next((p for p in network.meeting_ports if p not in taken), None)
+    near = network.discovery_range in (DiscoveryRange.LOCALHOST, DiscoveryRange.SUBNET)
+    off = network.discovery_range is DiscoveryRange.OFF
+    subnet = network.discovery_range is DiscoveryRange.SUBNET
+    address = EVERYWHERE if subnet else LOOPBACK
+    listen = [mine, 0] if near and mine is not None else [0]
+    dial = [p for p in probed_ports(network) if p != mine]
+    return {
+        "mode": "peer",
+        "listen/endpoints": [] if off else [f"tcp/{address}:{p}" for p in listen],
+        # A lost race for the port is no error. Retrying would make close() wait for the port.
+        "listen/timeout_ms": 0,
+        "listen/exit_on_failure": False,
+        "connect/endpoints": [
+            *(f"tcp/{LOOPBACK}:{p}" for p in dial),
+            *(() if off else network.static_peers),
+        ],
+        "connect/timeout_ms": -1,
+        "connect/exit_on_failure": False,
+        "connect/retry": {
+            "period_init_ms": 100,
+            "period_max_ms": 2000,
+            "period_increase_factor": 2,
+        },
+        "open/return_conditions/connect_scouted": False,
+        # Bounds close() while a frozen peer does not answer.
+        "transport/unicast/open_timeout": 1500,
+        "scouting/multicast/enabled": subnet,
+        "scouting/gossip/enabled": not off,
+        # The history of transient_local topics is put in order by time stamps.
+        "timestamping/enabled": True,
+        # Histories are fetched with this timeout; every other query says its own.
+        "queries_default_timeout": 600_000,
+    }
+
+
+def router_settings(listen: Iterable[str] = (f"tcp/[::]:{ROUTER_PORT}",)) -> dict[str, Any]:
+    """Return the settings of a router, as those of `rmw_zenohd`: it introduces everybody."""
+    everybody = ["router", "peer"]
+    return {
+        "mode": "router",
+        "listen/endpoints": list(listen),
+        "connect/endpoints": [],
+        "open/return_conditions/connect_scouted": False,
+        "scouting/multicast/enabled": False,
+        "scouting/gossip/enabled": True,
+        "scouting/gossip/target": {"router": everybody, "peer": ["router"]},
+        "scouting/gossip/autoconnect": {"router": [], "peer": everybody},
+        "timestamping/enabled": True,
+        "queries_default_timeout": 600_000,
+        "transport/link/tx/lease": 60_000,
+        "transport/link/tx/keep_alive": 2,
+        "transport/shared_memory/enabled": False,
+    }

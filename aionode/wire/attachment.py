@@ -1,0 +1,61 @@
+"""The 33 bytes that go with every publication, request and reply.
+
+They are Zenoh's serialization of (int64 sequence number, int64 source time, sequence of 16 bytes):
+the length of the last is one LEB128 byte. A ROS node drops a sample without them, and may fail
+as a whole on malformed ones, so they are always written; reading is lenient.
+"""
+
+from __future__ import annotations
+
+import struct
+from typing import Final, NamedTuple
+
+__all__ = ["GID_SIZE", "Attachment", "pack", "unpack"]
+
+GID_SIZE: Final = 16
+
+LAYOUT = struct.Struct("<qqB16s")
+
+# Jazzy's first releases (0.2.0 to 0.2.3) put the name of each field, with its length, before it.
+NAMED_LAYOUT = struct.Struct("<16sq17sq11sB16s")
+SEQUENCE_LABEL = b"\x0fsequence_number"
+TIME_LABEL = b"\x10source_timestamp"
+GID_LABEL = b"\x0asource_gid"
+
+
+class Attachment(NamedTuple):
+    """Who sent a sample, when, and as its how many-th."""
+
+    sequence: int
+    """Counts from 1 for each publisher and client."""
+    source_ns: int
+    """System time of the sender, in nanoseconds since 1970."""
+    gid: bytes
+    """The 16 bytes that name the publisher, or the client of a request or reply."""
+
+
+def pack(sequence: int, source_ns: int, gid: bytes) -> bytes:
+    """Return the attachment of one sample.
+
+    Raises:
+        ValueError: `gid` is not 16 bytes long.
+    """
+    if len(gid) != GID_SIZE:
+        raise ValueError(f"gid: {len(gid)} bytes, needs {GID_SIZE}")
+    return LAYOUT.pack(sequence, source_ns, GID_SIZE, gid)
+
+
+def unpack(data: bytes) -> Attachment | None:
+    """Return what an attachment says, or None when it is in no known form.
+
+    Bytes after the known ones are left alone, for releases to come.
+    """
+    if len(data) == NAMED_LAYOUT.size and data.startswith(SEQUENCE_LABEL):
+        _, sequence, label, source_ns, gid_label, length, gid = NAMED_LAYOUT.unpack(data)
+        if label != TIME_LABEL or gid_label != GID_LABEL:
+            return None
+    elif len(data) >= LAYOUT.size:
+        sequence, source_ns, length, gid = LAYOUT.unpack_from(data)
+    else:
+        return None
+    return Attachment(sequence, source_ns, gid) if length == GID_SIZE else None
