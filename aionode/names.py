@@ -51,6 +51,12 @@ NODE_NAME_MAX_LENGTH = 255
 TOPIC_MAX_LENGTH = 247  # DDS allows 255, and rmw keeps 8 for a prefix and a suffix
 NAMESPACE_MAX_LENGTH = 245  # leaves room for "/x"
 
+CHARACTERS = (
+    "topic name must not contain characters other than alphanumerics, '_', '~', '{', or '}'"
+)
+
+BRACES = "topic name must not have unmatched (unbalanced) curly braces '{}'"
+
 Problem = tuple[str, int]
 """Which rule is broken, and at which index."""
 
@@ -124,33 +130,35 @@ def character_problem(name: str) -> Problem | None:
     """Return the first character that may not stand where it does."""
     opened = -1  # index of the brace that is open
     for i, char in enumerate(name):
-        inside = opened >= 0
-        if is_word(char):
-            if inside and i == opened + 1 and is_digit(char):
-                return "substitution name must not start with a number", i
-        elif char == "}" and inside:
-            opened = -1
-        elif char == "}":
-            return "topic name must not have unmatched (unbalanced) curly braces '{}'", i
-        elif char == "~":
+        if char == "~":
             if i > 0:
                 return "topic name must not have tilde '~' unless it is the first character", i
-        elif inside:
-            return (
-                "substitution name must not contain characters other than alphanumerics or '_'",
-                i,
-            )
-        elif char == "{":
-            opened = i
-        elif char != "/":
-            return (
-                "topic name must not contain characters other than alphanumerics, "
-                "'_', '~', '{', or '}'",
-                i,
-            )
-    if opened >= 0:
-        return "topic name must not have unmatched (unbalanced) curly braces '{}'", opened
+            continue
+        inside = opened >= 0
+        problem = problem_inside(char, first=i == opened + 1) if inside else problem_outside(char)
+        if problem:
+            return problem, i
+        if char in "{}":
+            opened = i if char == "{" else -1
+    return (BRACES, opened) if opened >= 0 else None
+
+
+def problem_inside(char: str, *, first: bool) -> str | None:
+    """Return what is wrong with a character between braces."""
+    if char == "}":
+        return None
+    if first and is_digit(char):
+        return "substitution name must not start with a number"
+    if not is_word(char):
+        return "substitution name must not contain characters other than alphanumerics or '_'"
     return None
+
+
+def problem_outside(char: str) -> str | None:
+    """Return what is wrong with a character that is not between braces."""
+    if char == "}":
+        return BRACES
+    return None if is_word(char) or char in "/{" else CHARACTERS
 
 
 def token_problem(name: str) -> Problem | None:
@@ -312,13 +320,13 @@ class RemapKind(Enum):
     TOPIC_OR_SERVICE = "topic or service"
 
 
-TOKEN = "[A-Za-z_][A-Za-z0-9_]*"
+WORD = "[A-Za-z_][A-Za-z0-9_]*"
 RULE = re.compile(
-    rf"(?:(?P<node>{TOKEN}):(?!//|=))?(?P<url>rostopic://|rosservice://)?(?P<match>.*?):=(?P<new>.*)",
+    rf"(?:(?P<node>{WORD}):(?!//|=))?(?P<url>rostopic://|rosservice://)?(?P<match>.*?):=(?P<new>.*)",
     re.DOTALL,
 )
-MATCH = re.compile(rf"(?:~/|/)?(?:{TOKEN}|\*\*?)(?:/(?:{TOKEN}|\*\*?))*")
-REPLACEMENT = re.compile(rf"(?:~/|/)?(?:{TOKEN}|\\[1-9])(?:/(?:{TOKEN}|\\[1-9]))*")
+MATCH = re.compile(rf"(?:~/|/)?(?:{WORD}|\*\*?)(?:/(?:{WORD}|\*\*?))*")
+REPLACEMENT = re.compile(rf"(?:~/|/)?(?:{WORD}|\\[1-9])(?:/(?:{WORD}|\\[1-9]))*")
 KINDS = {
     "__node": RemapKind.NODE_NAME,
     "__name": RemapKind.NODE_NAME,

@@ -13,7 +13,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterable
 from enum import Enum, IntEnum
-from typing import Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, Self, TypeVar
 
 from aionode.clock import CONST_INFINITE_NS, Duration
 from aionode.errors import InvalidQoSProfileException
@@ -80,7 +80,7 @@ class QoSPolicyEnum(IntEnum):
         return [key.lower() for key in cls.__members__]
 
     @classmethod
-    def get_from_short_key(cls: type[PolicyT], name: str) -> PolicyT:
+    def get_from_short_key(cls, name: str) -> Self:
         """Return the value called `name`, in upper or lower case.
 
         Raises:
@@ -267,7 +267,7 @@ class QoSProfile:
     liveliness_lease_duration: Duration
     avoid_ros_namespace_conventions: bool
 
-    def __init__(  # noqa: PLR0913 - rclpy's arguments
+    def __init__(
         self,
         history: HistoryPolicy | int | None = None,
         depth: int | None = None,
@@ -277,7 +277,7 @@ class QoSProfile:
         deadline: Duration | None = None,
         liveliness: LivelinessPolicy | int | None = None,
         liveliness_lease_duration: Duration | None = None,
-        avoid_ros_namespace_conventions: bool | None = None,  # noqa: FBT001 - as in rclpy
+        avoid_ros_namespace_conventions: bool | None = None,
     ) -> None:
         if history is None and depth is None:
             problem = "History and/or depth settings are required, as in QoSProfile(depth=10)"
@@ -301,25 +301,27 @@ class QoSProfile:
         for (name, default), value in zip(DEFAULTS.items(), given, strict=True):
             setattr(self, name, default if value is None else value)
 
-    def __setattr__(self, name: str, value: object) -> None:
-        check = CHECKS.get(name)
-        if check is None:
-            message = f"QoSProfile has no {name!r}; it has {', '.join(CHECKS)}"
-            raise AttributeError(message)
-        checked = check(value)
-        if (
-            name == "depth"
-            and checked == 0
-            and getattr(self, "history", None) is HistoryPolicy.KEEP_LAST
-        ):
-            warnings.warn(
-                "A zero depth with KEEP_LAST doesn't make sense; no data could be stored. "
-                f"This will be interpreted as SYSTEM_DEFAULT ({DEFAULT_DEPTH} messages)",
-                stacklevel=2,
-            )
-        object.__setattr__(self, name, checked)
+    if not TYPE_CHECKING:  # or a misspelled field would pass the type checker
 
-    def replace(self, **changes: Any) -> QoSProfile:  # noqa: ANN401 - each field has its type
+        def __setattr__(self, name: str, value: object) -> None:
+            check = CHECKS.get(name)
+            if check is None:
+                message = f"QoSProfile has no {name!r}; it has {', '.join(CHECKS)}"
+                raise AttributeError(message)
+            checked = check(value)
+            if (
+                name == "depth"
+                and checked == 0
+                and getattr(self, "history", None) is HistoryPolicy.KEEP_LAST
+            ):
+                warnings.warn(
+                    "A zero depth with KEEP_LAST doesn't make sense; no data could be stored. "
+                    f"This will be interpreted as SYSTEM_DEFAULT ({DEFAULT_DEPTH} messages)",
+                    stacklevel=2,
+                )
+            object.__setattr__(self, name, checked)
+
+    def replace(self, **changes: Any) -> QoSProfile:
         """Return a copy with other values for the named fields."""
         copy = object.__new__(QoSProfile)
         for name in CHECKS:
@@ -406,7 +408,7 @@ def duration_text(value: Duration) -> str:
     return "infinite" if is_unlimited(value) else f"{value.nanoseconds / 1e9:g} s"
 
 
-def as_profile(qos: QoSProfile | int) -> QoSProfile:
+def as_profile(qos: object) -> QoSProfile:
     """Return a profile of its own for an entity: a copy, or KEEP_LAST with the given depth.
 
     Raises:
@@ -415,7 +417,7 @@ def as_profile(qos: QoSProfile | int) -> QoSProfile:
     """
     if isinstance(qos, QoSProfile):
         return qos.replace()
-    if isinstance(qos, int) and type(qos) is not bool:
+    if isinstance(qos, int) and not isinstance(qos, bool):
         if qos < 0:
             message = f"history depth must be greater than or equal to zero, not {qos}"
             raise ValueError(message)
@@ -657,7 +659,11 @@ def best_available_for_subscription(
     def pick(name: str, strong: PolicyT, weak: PolicyT) -> PolicyT:
         return strong if all(getattr(other, name) is strong for other in others) else weak
 
-    return settle(profile, pick, lambda limits: max(limits, default=Duration()), others)
+    def widest(limits: list[Duration]) -> Duration:
+        # rmw leaves out publishers without a limit, and so would not hear them.
+        return Duration() if any(map(is_unlimited, limits)) else max(limits, default=Duration())
+
+    return settle(profile, pick, widest, others)
 
 
 def best_available_for_publisher(
@@ -675,7 +681,10 @@ def best_available_for_publisher(
             return strong
         return weak
 
-    return settle(profile, pick, lambda limits: min(limits, default=Duration()), others)
+    def tightest(limits: list[Duration]) -> Duration:
+        return min((each for each in limits if not is_unlimited(each)), default=Duration())
+
+    return settle(profile, pick, tightest, others)
 
 
 def settle(
@@ -695,6 +704,5 @@ def settle(
             changes[name] = pick(name, strong, weak)
     for name in ("deadline", "liveliness_lease_duration"):
         if getattr(profile, name) == DeadlineBestAvailable:
-            found = [getattr(other, name) for other in others]
-            changes[name] = limit([value for value in found if not is_unlimited(value)])
+            changes[name] = limit([getattr(other, name) for other in others])
     return profile.replace(**changes)
