@@ -1,0 +1,75 @@
+# aionode's commands. The first one makes .venv and installs what it needs; nothing else is touched.
+#
+#   make demo    two nodes talk: python -m aionode.examples.pubsub
+#   make test    the tests
+#   make check   style, types, layers, the documentation's code, the documentation itself
+#   make bench   the benchmarks; tables, JSON and pictures in benchmarks/results/
+#   make docs    the documentation as pages, in site/
+#   make fuzz    the property tests with many more examples
+#   make soak    the example under load, for SOAK_SECONDS seconds
+#   make quotes  brings the code quoted in README.md and docs/ up to date
+#   make clean   removes what was made, .venv included
+
+# The first of these that is Python 3.11 or newer. Use another one with make PYTHON=/path/to/python.
+PYTHON ?= $(shell for name in python3 python3.14 python3.13 python3.12 python3.11 python; do \
+	$$name -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$name && break; \
+	done)
+BIN := .venv/bin
+SOAK_SECONDS ?= 60
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test check bench docs fuzz soak quotes clean
+
+help:
+	@sed -n '3,11s/^# *//p' Makefile
+
+demo: .venv/installed
+	$(BIN)/python -m aionode.examples.pubsub
+
+test: .venv/installed-dev
+	$(BIN)/python -m pytest -q
+
+check: .venv/installed-dev
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(BIN)/lint-imports --no-logo
+	$(BIN)/python docs/quotes.py --check
+	$(BIN)/python -m pytest -q tests/test_docs.py
+	$(BIN)/mkdocs build --strict --quiet
+
+bench: .venv/installed-dev
+	for program in benchmarks/*.py; do $(BIN)/python $$program || exit 1; done
+
+docs: .venv/installed-dev
+	$(BIN)/mkdocs build --strict
+	@echo "Open site/index.html"
+
+fuzz: .venv/installed-dev
+	$(BIN)/python -m pytest -q -m hypothesis --hypothesis-profile=fuzz --timeout=3600
+
+soak: .venv/installed-dev
+	$(BIN)/python -m aionode.examples.overload --seconds $(SOAK_SECONDS)
+
+quotes: .venv/installed-dev
+	$(BIN)/python docs/quotes.py
+
+clean:
+	rm -rf .venv site benchmarks/results .coverage htmlcov
+	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache .grimp_cache
+
+# Two steps, so that the first look at aionode does not wait for the tools of its developers.
+.venv/installed: pyproject.toml | .venv/bin/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fast]'
+	@touch $@
+
+.venv/installed-dev: pyproject.toml | .venv/bin/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fast,bag,dev]'
+	@touch .venv/installed $@
+
+.venv/bin/python:
+	@if [ -z "$(PYTHON)" ]; then \
+		echo "aionode needs Python 3.11 or newer, and none was found on PATH." >&2; \
+		echo "Install one, or name it: make $(MAKECMDGOALS) PYTHON=/path/to/python3" >&2; exit 1; fi
+	@$(PYTHON) -m venv .venv || { rm -rf .venv; \
+		echo "$(PYTHON) -m venv failed; on Debian and Ubuntu: apt install python3-venv" >&2; exit 1; }
