@@ -1,0 +1,109 @@
+"""When a timer is due: a grid of times, without a clock and without waiting.
+
+The rules are rcl's (rcl/src/rcl/timer.c). The first call is due one period after the start, every
+other one period after the one before was *planned*, so lateness does not add up. A timer that is
+late by whole periods is called once, and goes on at the next point of its grid.
+"""
+
+from __future__ import annotations
+
+__all__ = ["Schedule"]
+
+
+class Schedule:
+    """The grid of one timer; all times are nanoseconds of one clock, which the caller reads.
+
+    Attributes:
+        period_ns: From one call to the next. Changing it leaves the call already planned alone.
+        next_ns: When the next call is planned.
+        last_ns: When the last call was made; before the first, when the schedule began.
+        calls: How many calls were made.
+        skipped: How many were left out because they would have come too late.
+        canceled: Whether nothing is due until `reset`.
+
+    Raises:
+        ValueError: The period is negative.
+    """
+
+    __slots__ = ("calls", "canceled", "last_ns", "next_ns", "period_ns", "skipped")
+
+    def __init__(self, period_ns: int, now_ns: int, *, autostart: bool = True) -> None:
+        self.period_ns = checked_period(period_ns)
+        self.next_ns = now_ns + period_ns
+        self.last_ns = now_ns
+        self.calls = 0
+        self.skipped = 0
+        self.canceled = not autostart
+
+    def is_ready(self, now_ns: int) -> bool:
+        """Whether a call is due."""
+        return now_ns >= self.next_ns and not self.canceled
+
+    def call(self, now_ns: int) -> int:
+        """Note that the call is made now; return when it was planned.
+
+        Raises:
+            RuntimeError: The timer is canceled.
+        """
+        if self.canceled:
+            raise RuntimeError("timer: it is canceled and cannot be called; reset() it before")
+        expected_ns = self.next_ns
+        period_ns = self.period_ns
+        next_ns = expected_ns + period_ns
+        if next_ns <= now_ns:
+            if period_ns == 0:
+                next_ns = now_ns
+            else:
+                missed = (now_ns - next_ns) // period_ns + 1
+                next_ns += missed * period_ns
+                self.skipped += missed
+        self.next_ns = next_ns
+        self.last_ns = now_ns
+        self.calls += 1
+        return expected_ns
+
+    def cancel(self) -> None:
+        """Plan nothing until `reset`."""
+        self.canceled = True
+
+    def reset(self, now_ns: int) -> None:
+        """Begin anew: the next call is one period from now."""
+        self.next_ns = now_ns + self.period_ns
+        self.canceled = False
+
+    def change_period(self, period_ns: int) -> None:
+        """Use another period after the call that is planned already.
+
+        Raises:
+            ValueError: The period is negative.
+        """
+        self.period_ns = checked_period(period_ns)
+
+    def until_next_ns(self, now_ns: int) -> int | None:
+        """Return how long it is to the next call, negative when it is late; None if canceled."""
+        return None if self.canceled else self.next_ns - now_ns
+
+    def since_last_ns(self, now_ns: int) -> int:
+        """Return how long ago the last call was, or the start if there was none."""
+        return now_ns - self.last_ns
+
+    def look_back(self, now_ns: int) -> None:
+        """Begin anew if the clock was set back to before the last call, else leave all as it is."""
+        if now_ns < self.last_ns:
+            self.next_ns = now_ns + self.period_ns
+            self.last_ns = now_ns
+
+    def carry_over(self, old_now_ns: int, new_now_ns: int) -> None:
+        """Keep what is left of the period when the clock gets its time from somewhere else."""
+        left_ns = max(self.next_ns - old_now_ns, 0)
+        self.last_ns += new_now_ns - old_now_ns
+        self.next_ns = new_now_ns + left_ns
+
+
+def checked_period(period_ns: int) -> int:
+    """Return `period_ns` if it is not negative."""
+    if period_ns < 0:
+        raise ValueError(
+            f"timer: its period is {period_ns} ns; 0 (always ready) or more is possible"
+        )
+    return period_ns

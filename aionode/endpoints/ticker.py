@@ -1,0 +1,91 @@
+"""A schedule on a clock: something to await."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING
+
+from aionode.clock import ClockChange, ClockType, Duration, JumpThreshold
+from aionode.endpoints.schedule import Schedule
+
+if TYPE_CHECKING:
+    from aionode.clock import Clock, TimeJump
+
+__all__ = ["Ticker"]
+
+# Leaps forward need no callback: they end the wait for what they made due.
+JUMPS = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
+
+
+class Ticker:
+    """Follows a schedule by a clock, through leaps of ROS time and switches of its source.
+
+    Attributes:
+        clock: The clock.
+        schedule: What is due when, in the time of the clock.
+    """
+
+    __slots__ = ("_before_jump_ns", "_jumps", "_waiters", "clock", "schedule")
+
+    def __init__(self, clock: Clock, period_ns: int, *, autostart: bool = True) -> None:
+        self.clock = clock
+        self.schedule = Schedule(period_ns, clock.now_ns(), autostart=autostart)
+        self._before_jump_ns = 0
+        self._waiters: set[asyncio.Future[None]] = set()
+        self._jumps = (
+            clock.create_jump_callback(
+                JUMPS, pre_callback=self._before_jump, post_callback=self._after_jump
+            )
+            if clock.clock_type is ClockType.ROS_TIME
+            else None
+        )
+
+    def is_ready(self) -> bool:
+        """Whether a call is due."""
+        return self.schedule.is_ready(self.clock.now_ns())
+
+    async def wait(self) -> None:
+        """Return when a call is probably due, or `wake` was called: look at the schedule then.
+
+        While the schedule is canceled only `wake` ends the wait. Cancelling is safe. Nothing is
+        lost between two waits, because the schedule remembers what is due.
+        """
+        waiter = asyncio.get_running_loop().create_future()
+        schedule = self.schedule
+
+        def ring() -> None:
+            if not waiter.done():
+                waiter.set_result(None)
+
+        alarm = None if schedule.canceled else self.clock.call_at(schedule.next_ns, ring)
+        self._waiters.add(waiter)
+        try:
+            await waiter
+        finally:
+            self._waiters.discard(waiter)
+            if alarm is not None:
+                alarm.cancel()
+        schedule.look_back(self.clock.now_ns())  # the machine's clock may have been set back
+
+    def wake(self) -> None:
+        """End all waits, because the schedule has changed."""
+        for waiter in self._waiters:
+            if not waiter.done():
+                waiter.set_result(None)
+
+    def close(self) -> None:
+        """End all waits, and follow the clock no longer."""
+        if self._jumps is not None:
+            self._jumps.unregister()
+        self.wake()
+
+    def _before_jump(self) -> None:
+        self._before_jump_ns = self.clock.now_ns()
+
+    def _after_jump(self, jump: TimeJump) -> None:
+        now_ns = self.clock.now_ns()
+        if jump.clock_change is ClockChange.ROS_TIME_NO_CHANGE:
+            self.schedule.look_back(now_ns)
+        else:
+            self.schedule.carry_over(self._before_jump_ns, now_ns)
+        self.wake()
