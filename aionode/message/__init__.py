@@ -1,0 +1,85 @@
+"""Messages, services and actions as Python classes: what a user writes them with, and reads.
+
+Annotations say what a field holds, `Message`, `ServiceType` and `ActionType` are the bases, and
+the functions describe, validate, copy and convert. A message class has no public attribute but
+its fields and constants, as those may have any name.
+"""
+
+from __future__ import annotations
+
+from aionode.message.base import (
+    DEFAULT,
+    ActionClass,
+    ActionType,
+    Message,
+    ServiceClass,
+    ServiceType,
+    constants,
+    fields,
+    type_name,
+)
+from aionode.message.fieldtypes import (
+    Array,
+    Bools,
+    Bounded,
+    Bytes,
+    Constant,
+    Field,
+    FieldType,
+    Floats,
+    Ints,
+    Sequence,
+    byte,
+    char,
+    float32,
+    float64,
+    int8,
+    int16,
+    int32,
+    int64,
+    uint8,
+    uint16,
+    uint32,
+    uint64,
+    wstring,
+)
+from aionode.message.snapshot import check, checker, snapshot, snapshotter
+
+__all__ = [
+    "DEFAULT",
+    "ActionClass",
+    "ActionType",
+    "Array",
+    "Bools",
+    "Bounded",
+    "Bytes",
+    "Constant",
+    "Field",
+    "FieldType",
+    "Floats",
+    "Ints",
+    "Message",
+    "Sequence",
+    "ServiceClass",
+    "ServiceType",
+    "byte",
+    "char",
+    "check",
+    "checker",
+    "constants",
+    "fields",
+    "float32",
+    "float64",
+    "int8",
+    "int16",
+    "int32",
+    "int64",
+    "snapshot",
+    "snapshotter",
+    "type_name",
+    "uint8",
+    "uint16",
+    "uint32",
+    "uint64",
+    "wstring",
+]

@@ -1,0 +1,409 @@
+"""Messages, services and actions as Python classes, and functions that describe them.
+
+A message class has one attribute for each field and nothing else that a field could be called:
+what there is to know about it is asked from functions (`type_name`, `fields`, `constants`).
+"""
+
+from __future__ import annotations
+
+import copy
+import functools
+import re
+import sys
+from importlib import import_module
+from keyword import iskeyword
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    ClassVar,
+    Protocol,
+    TypeVar,
+    dataclass_transform,
+    get_args,
+    get_origin,
+)
+
+import msgspec
+
+from aionode.message.fieldtypes import Constant, Field, field_type, int8
+from aionode.message.fieldtypes import Sequence as SequenceOf
+from aionode.message.values import default_value, plain_default, same, shown
+
+if TYPE_CHECKING:
+    from types import FrameType
+
+__all__ = [
+    "DEFAULT",
+    "ActionClass",
+    "ActionType",
+    "Message",
+    "ServiceClass",
+    "ServiceType",
+    "constants",
+    "fields",
+    "type_name",
+]
+
+DEFAULT: Any = object()
+"""Stands for the zero of any field type: ``header: Header = DEFAULT``.
+
+A field without a default gets it too; writing it tells type checkers that the field may be left
+out.
+"""
+
+TYPE_NAME = re.compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Z][A-Za-z0-9_]*")
+FIELD_NAME = re.compile(r"[a-z](_?[a-z0-9]+)*")
+
+
+@dataclass_transform(kw_only_default=True, field_specifiers=(msgspec.field,))
+class MessageMeta(msgspec.StructMeta):
+    """Turns annotations into the description of a message, and gives every field a default."""
+
+    def __new__(
+        mcls,
+        name: str,
+        bases: tuple[type, ...],
+        namespace: dict[str, Any],
+        *,
+        typename: str = "",
+        **options: Any,
+    ) -> MessageMeta:
+        """Make the class; `typename` is its ROS name, such as ``std_msgs/msg/String``."""
+        if typename:
+            namespace["__ros_type__"] = checked_type_name(typename)
+        own: list[Field] = []
+        known: list[Constant] = []
+        for key, annotation in annotations_of(namespace, sys._getframe(1)).items():  # noqa: SLF001 (names of the class statement's scope)
+            if get_origin(annotation) is ClassVar:
+                if not key.startswith("__"):
+                    (inner,) = get_args(annotation)
+                    known.append(Constant(key, field_type(inner), namespace[key]))
+                continue
+            checked_field_name(typename or name, key)
+            type_ = field_type(annotation)
+            given = namespace.get(key, DEFAULT)
+            path = f"{typename or name}.{key}"
+            default = None if given is DEFAULT else plain_default(type_, given, path)
+            own.append(Field(key, type_, default))
+            namespace[key] = default_value(type_, default)
+        inherited = [field for base in bases for field in getattr(base, "__ros_fields__", ())]
+        namespace["__ros_fields__"] = (*inherited, *own)
+        namespace["__ros_constants__"] = tuple(known)
+        namespace["__ros_functions__"] = {}
+        return super().__new__(mcls, name, bases, namespace, eq=False, **options)
+
+
+def annotations_of(namespace: dict[str, Any], frame: FrameType) -> dict[str, Any]:
+    """Return the annotations of a class that is being made in `frame`, as objects."""
+    found: dict[str, Any] | None = namespace.get("__annotations__")
+    if found is None and sys.version_info >= (3, 14):  # made on demand there
+        import annotationlib  # noqa: PLC0415 (new in 3.14)
+
+        make = annotationlib.get_annotate_from_class_namespace(namespace)
+        if make is not None:
+            form = annotationlib.Format.VALUE
+            found = annotationlib.call_annotate_function(make, form)
+    return {
+        key: eval(value, frame.f_globals, frame.f_locals) if isinstance(value, str) else value  # noqa: S307 (an annotation in the source of a class)
+        for key, value in (found or {}).items()
+    }
+
+
+def checked_type_name(name: str) -> str:
+    """Return `name` if it is one of a ROS type, or raise `TypeError`."""
+    if not TYPE_NAME.fullmatch(name):
+        msg = f"{name!r}: not the name of a ROS type; it looks like 'my_robot_msgs/msg/Words'"
+        raise TypeError(msg)
+    return name
+
+
+def checked_field_name(owner: str, name: str) -> None:
+    """Raise `TypeError` if no ROS field can have this name."""
+    if not FIELD_NAME.fullmatch(name) or iskeyword(name):
+        msg = (
+            f"{owner}.{name}: not the name of a ROS field; lower-case letters, digits and single "
+            "underscores fit, beginning with a letter, except Python's keywords"
+        )
+        raise TypeError(msg)
+
+
+class Message(msgspec.Struct, metaclass=MessageMeta):
+    """Base of all messages.
+
+    Write a message as a class with annotations from `aionode.message`::
+
+        class Words(Message, typename="tutorial/msg/Words"):
+            text: str = ""
+            scores: Sequence[float32] = DEFAULT
+
+    Every field has a default, values are given by keyword and not validated until the message is
+    published, called with or encoded. Two messages are equal if they are of one class and their
+    values are, those in arrays included. Copies and pickles stand on their own.
+    """
+
+    __ros_type__: ClassVar[str] = ""
+    __ros_fields__: ClassVar[tuple[Field, ...]]
+    __ros_constants__: ClassVar[tuple[Constant, ...]]
+    __ros_functions__: ClassVar[dict[str, Any]]
+    """Functions that were generated for this class, by purpose."""
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether both have the same class and values."""
+        if other.__class__ is not self.__class__:
+            return NotImplemented
+        return all(same(getattr(self, f), getattr(other, f)) for f in self.__struct_fields__)
+
+    def __ne__(self, other: object) -> bool:
+        """Return whether class or values differ."""
+        if other.__class__ is not self.__class__:
+            return NotImplemented
+        return not self == other
+
+    __hash__ = None  # type: ignore[assignment] # mutable values have no hash
+
+    def __repr__(self) -> str:
+        """Return it as rclpy prints messages: ``std_msgs.msg.String(data='hi')``."""
+        name = self.__ros_type__.replace("/", ".") or type(self).__qualname__
+        values = (f"{f.name}={shown(f.type, getattr(self, f.name))}" for f in self.__ros_fields__)
+        return f"{name}({', '.join(values)})"
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Message:
+        """Return a copy that shares nothing that can change."""
+        return type(self)(*(copy.deepcopy(owned(self, f), memo) for f in self.__struct_fields__))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return how to make it again, for pickle."""
+        values = {name: owned(self, name) for name in self.__struct_fields__}
+        return functools.partial(type(self), **values), ()
+
+
+def owned(message: Message, name: str) -> object:
+    """Return a field's value; a view of foreign memory as bytes, as it cannot be pickled."""
+    value = getattr(message, name)
+    return bytes(value) if isinstance(value, memoryview) else value
+
+
+class Hidden:
+    """A part of a service or action type that is made when it is first asked for."""
+
+    def __init__(self, make: Any) -> None:
+        self.make = make
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        """Learn under which name to keep the part."""
+        self.name = name
+
+    def __get__(self, instance: object, owner: type) -> Any:
+        """Return the part of `owner`, kept for the next time."""
+        part = self.make(owner)
+        setattr(owner, self.name, part)
+        return part
+
+
+def shipped(package: str, kind: str, name: str) -> Any:
+    """Return a generated type of aionode.interfaces.
+
+    By name and late, because those modules stand on this one: every service and action has parts
+    that are made of ROS's own messages.
+    """
+    return getattr(import_module(f"aionode.interfaces.{package}.{kind}"), name)
+
+
+def name_halves(cls: type, typename: str, halves: tuple[str, ...]) -> None:
+    """Give a service or action class and its nested messages their ROS names."""
+    cls.__ros_type__ = checked_type_name(typename)  # type: ignore[attr-defined] # both declare it
+    for half in halves:
+        message = cls.__dict__.get(half)
+        if not isinstance(message, MessageMeta):
+            msg = f"{typename}: has no nested class {half}(Message); it may be one without fields"
+            raise TypeError(msg)
+        message.__ros_type__ = f"{typename}_{half}"  # type: ignore[attr-defined] # of Message
+
+
+def make_event(cls: type[ServiceType]) -> type[Message]:
+    """Return the message that tells of one request or response of a service."""
+    info = shipped("service_msgs", "msg", "ServiceEventInfo")
+    namespace = {
+        "__module__": cls.__module__,
+        "__qualname__": f"{cls.__qualname__}.Event",
+        "__doc__": f"A request to or a response from {cls.__name__}, with who and when.",
+        "__annotations__": {
+            "info": info,
+            "request": SequenceOf[cls.Request, 1],  # type: ignore[attr-defined] # nested classes
+            "response": SequenceOf[cls.Response, 1],  # type: ignore[attr-defined] # nested classes
+        },
+    }
+    return MessageMeta("Event", (Message,), namespace, typename=f"{cls.__ros_type__}_Event")  # type: ignore[return-value] # a class of Message
+
+
+class ServiceType:
+    """Base of all service types, with nested messages `Request` and `Response`.
+
+    Write a service as a class::
+
+        class Add(ServiceType, typename="tutorial/srv/Add"):
+            class Request(Message):
+                a: int64 = 0
+                b: int64 = 0
+
+            class Response(Message):
+                sum: int64 = 0
+
+    `Event` is the message of service introspection.
+    """
+
+    __ros_type__: ClassVar[str] = ""
+    Event: ClassVar[Any] = Hidden(make_event)
+
+    def __init_subclass__(cls, *, typename: str) -> None:
+        """Name the service and its messages."""
+        name_halves(cls, typename, ("Request", "Response"))
+
+
+def make_impl(cls: type[ActionType]) -> type:
+    """Return the services and messages that an action is carried out with."""
+    uuid = shipped("unique_identifier_msgs", "msg", "UUID")
+    time = shipped("builtin_interfaces", "msg", "Time")
+    place = f"{cls.__qualname__}.Impl"
+
+    def message(name: str, annotations: dict[str, Any], doc: str, typename: str = "") -> Any:
+        namespace = {
+            "__module__": cls.__module__,
+            "__qualname__": f"{place}.{name}",
+            "__doc__": doc,
+            "__annotations__": annotations,
+        }
+        return MessageMeta(name.rpartition(".")[2], (Message,), namespace, typename=typename)
+
+    def service(name: str, request: dict[str, Any], response: dict[str, Any]) -> Any:
+        typename = f"{cls.__ros_type__}_{name.removesuffix('Service')}"
+        namespace = {
+            "__module__": cls.__module__,
+            "__qualname__": f"{place}.{name}",
+            "__doc__": f"The service {typename}.",
+            "Request": message(f"{name}.Request", request, f"A request to {typename}."),
+            "Response": message(f"{name}.Response", response, f"A response of {typename}."),
+        }
+        return type(ServiceType)(name, (ServiceType,), namespace, typename=typename)
+
+    parts = {
+        "__module__": cls.__module__,
+        "__qualname__": place,
+        "__doc__": f"What {cls.__ros_type__} is carried out with.",
+        "SendGoalService": service(
+            "SendGoalService",
+            {"goal_id": uuid, "goal": cls.Goal},  # type: ignore[attr-defined] # nested class
+            {"accepted": bool, "stamp": time},
+        ),
+        "GetResultService": service(
+            "GetResultService",
+            {"goal_id": uuid},
+            {"status": int8, "result": cls.Result},  # type: ignore[attr-defined] # nested class
+        ),
+        "FeedbackMessage": message(
+            "FeedbackMessage",
+            {"goal_id": uuid, "feedback": cls.Feedback},  # type: ignore[attr-defined] # nested class
+            "Feedback, and the goal that it belongs to.",
+            f"{cls.__ros_type__}_FeedbackMessage",
+        ),
+        "CancelGoalService": shipped("action_msgs", "srv", "CancelGoal"),
+        "GoalStatusMessage": shipped("action_msgs", "msg", "GoalStatusArray"),
+    }
+    return type("Impl", (), parts)
+
+
+class ActionType:
+    """Base of all action types, with nested messages `Goal`, `Result` and `Feedback`.
+
+    `Impl` holds the types that only the action protocol uses, named as in rclpy:
+    `SendGoalService`, `GetResultService`, `CancelGoalService`, `FeedbackMessage` and
+    `GoalStatusMessage`.
+    """
+
+    __ros_type__: ClassVar[str] = ""
+    Impl: ClassVar[Any] = Hidden(make_impl)
+
+    def __init_subclass__(cls, *, typename: str) -> None:
+        """Name the action and its messages."""
+        name_halves(cls, typename, ("Goal", "Result", "Feedback"))
+
+
+RequestT = TypeVar("RequestT", bound=Message, covariant=True)
+ResponseT = TypeVar("ResponseT", bound=Message, covariant=True)
+GoalT = TypeVar("GoalT", bound=Message, covariant=True)
+ResultT = TypeVar("ResultT", bound=Message, covariant=True)
+FeedbackT = TypeVar("FeedbackT", bound=Message, covariant=True)
+
+
+class ServiceClass(Protocol[RequestT, ResponseT]):
+    """To type checkers: a service type, by what its requests and responses are.
+
+    ``def create_client(self, srv_type: ServiceClass[RequestT, ResponseT], …)`` learns both types
+    from ``AddTwoInts``. The nested classes are described as functions that make a message, as that
+    is the form in which mypy and pyright both find them.
+    """
+
+    def Request(self, *args: Any, **values: Any) -> RequestT:  # noqa: D102, N802 (a class)
+        ...
+
+    def Response(self, *args: Any, **values: Any) -> ResponseT:  # noqa: D102, N802 (a class)
+        ...
+
+
+class ActionClass(Protocol[GoalT, ResultT, FeedbackT]):
+    """To type checkers: an action type, by what its goals, results and feedback are."""
+
+    def Goal(self, *args: Any, **values: Any) -> GoalT:  # noqa: D102, N802 (a class)
+        ...
+
+    def Result(self, *args: Any, **values: Any) -> ResultT:  # noqa: D102, N802 (a class)
+        ...
+
+    def Feedback(self, *args: Any, **values: Any) -> FeedbackT:  # noqa: D102, N802 (a class)
+        ...
+
+
+def type_name(cls: Any) -> str:
+    """Return the ROS name of a message, service or action class, such as ``std_msgs/msg/String``.
+
+    The halves have names of their own, such as ``example_interfaces/srv/AddTwoInts_Request``.
+
+    Raises:
+        TypeError: `cls` is no such class, or was made without a name.
+    """
+    name = getattr(cls, "__ros_type__", None) if isinstance(cls, type) else None
+    if name is None:
+        msg = f"{cls!r}: not a message, service or action class"
+        raise TypeError(msg)
+    if not name:
+        msg = f"{cls.__qualname__}: has no ROS name; give it typename='my_package/msg/Name'"
+        raise TypeError(msg)
+    return str(name)
+
+
+def message_class(cls: Any) -> type[Message]:
+    """Return `cls` if it is a message class, or raise a `TypeError` that says what it is."""
+    if not isinstance(cls, MessageMeta):
+        msg = f"{cls!r}: not a message class"
+        if isinstance(cls, type) and issubclass(cls, ServiceType | ActionType):
+            msg += "; a service or action is described by its nested messages, such as .Request"
+        raise TypeError(msg)
+    return cls  # type: ignore[return-value] # all of this metaclass are messages
+
+
+def fields(cls: type[Message]) -> tuple[Field, ...]:
+    """Return the fields of a message class in their order on the wire.
+
+    Raises:
+        TypeError: `cls` is not a message class.
+    """
+    return message_class(cls).__ros_fields__
+
+
+def constants(cls: type[Message]) -> tuple[Constant, ...]:
+    """Return the constants of a message class in the order of its definition.
+
+    Raises:
+        TypeError: `cls` is not a message class.
+    """
+    return message_class(cls).__ros_constants__
