@@ -1,0 +1,34 @@
+"""action_msgs."""
+
+from typing import Annotated, ClassVar
+
+from aionode.interfaces.builtin_interfaces.msg import Time
+from aionode.interfaces.unique_identifier_msgs.msg import UUID
+from aionode.message import DEFAULT, Message, Sequence, int8
+
+
+class GoalInfo(Message, typename="action_msgs/msg/GoalInfo"):
+    """GoalInfo."""
+
+    goal_id: UUID = DEFAULT
+    stamp: Time = DEFAULT
+
+
+class GoalStatus(Message, typename="action_msgs/msg/GoalStatus"):
+    """GoalStatus."""
+
+    STATUS_UNKNOWN: ClassVar[int8] = 0
+    STATUS_ACCEPTED: ClassVar[int8] = 1
+    STATUS_EXECUTING: ClassVar[int8] = 2
+    STATUS_CANCELING: ClassVar[int8] = 3
+    STATUS_SUCCEEDED: ClassVar[int8] = 4
+    STATUS_CANCELED: ClassVar[int8] = 5
+    STATUS_ABORTED: ClassVar[int8] = 6
+    goal_info: GoalInfo = DEFAULT
+    status: int8 = 0
+
+
+class GoalStatusArray(Message, typename="action_msgs/msg/GoalStatusArray"):
+    """GoalStatusArray."""
+
+    status_list: Annotated[list[GoalStatus], Sequence[GoalStatus]] = DEFAULT

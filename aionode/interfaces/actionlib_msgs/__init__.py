@@ -1,0 +1,1 @@
+"""actionlib_msgs."""

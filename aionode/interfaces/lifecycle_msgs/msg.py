@@ -1,0 +1,59 @@
+"""lifecycle_msgs."""
+
+from typing import ClassVar
+
+from aionode.message import DEFAULT, Message, uint64, uint8
+
+
+class State(Message, typename="lifecycle_msgs/msg/State"):
+    """State."""
+
+    PRIMARY_STATE_UNKNOWN: ClassVar[uint8] = 0
+    PRIMARY_STATE_UNCONFIGURED: ClassVar[uint8] = 1
+    PRIMARY_STATE_INACTIVE: ClassVar[uint8] = 2
+    PRIMARY_STATE_ACTIVE: ClassVar[uint8] = 3
+    PRIMARY_STATE_FINALIZED: ClassVar[uint8] = 4
+    TRANSITION_STATE_CONFIGURING: ClassVar[uint8] = 10
+    TRANSITION_STATE_CLEANINGUP: ClassVar[uint8] = 11
+    TRANSITION_STATE_SHUTTINGDOWN: ClassVar[uint8] = 12
+    TRANSITION_STATE_ACTIVATING: ClassVar[uint8] = 13
+    TRANSITION_STATE_DEACTIVATING: ClassVar[uint8] = 14
+    TRANSITION_STATE_ERRORPROCESSING: ClassVar[uint8] = 15
+    id: uint8 = 0
+    label: str = ""
+
+
+class Transition(Message, typename="lifecycle_msgs/msg/Transition"):
+    """Transition."""
+
+    TRANSITION_CREATE: ClassVar[uint8] = 0
+    TRANSITION_CONFIGURE: ClassVar[uint8] = 1
+    TRANSITION_CLEANUP: ClassVar[uint8] = 2
+    TRANSITION_ACTIVATE: ClassVar[uint8] = 3
+    TRANSITION_DEACTIVATE: ClassVar[uint8] = 4
+    TRANSITION_UNCONFIGURED_SHUTDOWN: ClassVar[uint8] = 5
+    TRANSITION_INACTIVE_SHUTDOWN: ClassVar[uint8] = 6
+    TRANSITION_ACTIVE_SHUTDOWN: ClassVar[uint8] = 7
+    TRANSITION_DESTROY: ClassVar[uint8] = 8
+    TRANSITION_CALLBACK_SUCCESS: ClassVar[uint8] = 97
+    TRANSITION_CALLBACK_FAILURE: ClassVar[uint8] = 98
+    TRANSITION_CALLBACK_ERROR: ClassVar[uint8] = 99
+    id: uint8 = 0
+    label: str = ""
+
+
+class TransitionDescription(Message, typename="lifecycle_msgs/msg/TransitionDescription"):
+    """TransitionDescription."""
+
+    transition: Transition = DEFAULT
+    start_state: State = DEFAULT
+    goal_state: State = DEFAULT
+
+
+class TransitionEvent(Message, typename="lifecycle_msgs/msg/TransitionEvent"):
+    """TransitionEvent."""
+
+    timestamp: uint64 = 0
+    transition: Transition = DEFAULT
+    start_state: State = DEFAULT
+    goal_state: State = DEFAULT

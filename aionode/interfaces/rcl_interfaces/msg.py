@@ -1,0 +1,155 @@
+"""rcl_interfaces."""
+
+from typing import Annotated, ClassVar
+
+from aionode.interfaces.builtin_interfaces.msg import Time
+from aionode.message import (
+    Bools,
+    Bytes,
+    DEFAULT,
+    Floats,
+    Ints,
+    Message,
+    Sequence,
+    byte,
+    float64,
+    int64,
+    uint32,
+    uint64,
+    uint8,
+)
+
+
+class FloatingPointRange(Message, typename="rcl_interfaces/msg/FloatingPointRange"):
+    """FloatingPointRange."""
+
+    from_value: float64 = 0.0
+    to_value: float64 = 0.0
+    step: float64 = 0.0
+
+
+class IntegerRange(Message, typename="rcl_interfaces/msg/IntegerRange"):
+    """IntegerRange."""
+
+    from_value: int64 = 0
+    to_value: int64 = 0
+    step: uint64 = 0
+
+
+class ListParametersResult(Message, typename="rcl_interfaces/msg/ListParametersResult"):
+    """ListParametersResult."""
+
+    names: Annotated[list[str], Sequence[str]] = DEFAULT
+    prefixes: Annotated[list[str], Sequence[str]] = DEFAULT
+
+
+class Log(Message, typename="rcl_interfaces/msg/Log"):
+    """Log."""
+
+    DEBUG: ClassVar[uint8] = 10
+    INFO: ClassVar[uint8] = 20
+    WARN: ClassVar[uint8] = 30
+    ERROR: ClassVar[uint8] = 40
+    FATAL: ClassVar[uint8] = 50
+    stamp: Time = DEFAULT
+    level: uint8 = 0
+    name: str = ""
+    msg: str = ""
+    file: str = ""
+    function: str = ""
+    line: uint32 = 0
+
+
+class LoggerLevel(Message, typename="rcl_interfaces/msg/LoggerLevel"):
+    """LoggerLevel."""
+
+    name: str = ""
+    level: uint32 = 0
+
+
+class ParameterValue(Message, typename="rcl_interfaces/msg/ParameterValue"):
+    """ParameterValue."""
+
+    type: uint8 = 0
+    bool_value: bool = False
+    integer_value: int64 = 0
+    double_value: float64 = 0.0
+    string_value: str = ""
+    byte_array_value: Annotated[Bytes, Sequence[byte]] = DEFAULT
+    bool_array_value: Annotated[Bools, Sequence[bool]] = DEFAULT
+    integer_array_value: Annotated[Ints, Sequence[int64]] = DEFAULT
+    double_array_value: Annotated[Floats, Sequence[float64]] = DEFAULT
+    string_array_value: Annotated[list[str], Sequence[str]] = DEFAULT
+
+
+class Parameter(Message, typename="rcl_interfaces/msg/Parameter"):
+    """Parameter."""
+
+    name: str = ""
+    value: ParameterValue = DEFAULT
+
+
+class ParameterDescriptor(Message, typename="rcl_interfaces/msg/ParameterDescriptor"):
+    """ParameterDescriptor."""
+
+    name: str = ""
+    type: uint8 = 0
+    description: str = ""
+    additional_constraints: str = ""
+    read_only: bool = False
+    dynamic_typing: bool = False
+    floating_point_range: Annotated[list[FloatingPointRange], Sequence[FloatingPointRange, 1]] = (
+        DEFAULT
+    )
+    integer_range: Annotated[list[IntegerRange], Sequence[IntegerRange, 1]] = DEFAULT
+
+
+class ParameterEvent(Message, typename="rcl_interfaces/msg/ParameterEvent"):
+    """ParameterEvent."""
+
+    stamp: Time = DEFAULT
+    node: str = ""
+    new_parameters: Annotated[list[Parameter], Sequence[Parameter]] = DEFAULT
+    changed_parameters: Annotated[list[Parameter], Sequence[Parameter]] = DEFAULT
+    deleted_parameters: Annotated[list[Parameter], Sequence[Parameter]] = DEFAULT
+
+
+class ParameterEventDescriptors(Message, typename="rcl_interfaces/msg/ParameterEventDescriptors"):
+    """ParameterEventDescriptors."""
+
+    new_parameters: Annotated[list[ParameterDescriptor], Sequence[ParameterDescriptor]] = DEFAULT
+    changed_parameters: Annotated[list[ParameterDescriptor], Sequence[ParameterDescriptor]] = (
+        DEFAULT
+    )
+    deleted_parameters: Annotated[list[ParameterDescriptor], Sequence[ParameterDescriptor]] = (
+        DEFAULT
+    )
+
+
+class ParameterType(Message, typename="rcl_interfaces/msg/ParameterType"):
+    """ParameterType."""
+
+    PARAMETER_NOT_SET: ClassVar[uint8] = 0
+    PARAMETER_BOOL: ClassVar[uint8] = 1
+    PARAMETER_INTEGER: ClassVar[uint8] = 2
+    PARAMETER_DOUBLE: ClassVar[uint8] = 3
+    PARAMETER_STRING: ClassVar[uint8] = 4
+    PARAMETER_BYTE_ARRAY: ClassVar[uint8] = 5
+    PARAMETER_BOOL_ARRAY: ClassVar[uint8] = 6
+    PARAMETER_INTEGER_ARRAY: ClassVar[uint8] = 7
+    PARAMETER_DOUBLE_ARRAY: ClassVar[uint8] = 8
+    PARAMETER_STRING_ARRAY: ClassVar[uint8] = 9
+
+
+class SetLoggerLevelsResult(Message, typename="rcl_interfaces/msg/SetLoggerLevelsResult"):
+    """SetLoggerLevelsResult."""
+
+    successful: bool = False
+    reason: str = ""
+
+
+class SetParametersResult(Message, typename="rcl_interfaces/msg/SetParametersResult"):
+    """SetParametersResult."""
+
+    successful: bool = False
+    reason: str = ""

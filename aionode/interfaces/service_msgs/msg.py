@@ -1,0 +1,19 @@
+"""service_msgs."""
+
+from typing import Annotated, ClassVar
+
+from aionode.interfaces.builtin_interfaces.msg import Time
+from aionode.message import Array, DEFAULT, Ints, Message, char, int64, uint8
+
+
+class ServiceEventInfo(Message, typename="service_msgs/msg/ServiceEventInfo"):
+    """ServiceEventInfo."""
+
+    REQUEST_SENT: ClassVar[uint8] = 0
+    REQUEST_RECEIVED: ClassVar[uint8] = 1
+    RESPONSE_SENT: ClassVar[uint8] = 2
+    RESPONSE_RECEIVED: ClassVar[uint8] = 3
+    event_type: uint8 = 0
+    stamp: Time = DEFAULT
+    client_gid: Annotated[Ints, Array[char, 16]] = DEFAULT
+    sequence_number: int64 = 0

@@ -1,0 +1,47 @@
+"""shape_msgs."""
+
+from typing import Annotated, ClassVar
+
+from aionode.interfaces.geometry_msgs.msg import Point, Polygon
+from aionode.message import Array, DEFAULT, Floats, Ints, Message, Sequence, float64, uint32, uint8
+
+
+class MeshTriangle(Message, typename="shape_msgs/msg/MeshTriangle"):
+    """MeshTriangle."""
+
+    vertex_indices: Annotated[Ints, Array[uint32, 3]] = DEFAULT
+
+
+class Mesh(Message, typename="shape_msgs/msg/Mesh"):
+    """Mesh."""
+
+    triangles: Annotated[list[MeshTriangle], Sequence[MeshTriangle]] = DEFAULT
+    vertices: Annotated[list[Point], Sequence[Point]] = DEFAULT
+
+
+class Plane(Message, typename="shape_msgs/msg/Plane"):
+    """Plane."""
+
+    coef: Annotated[Floats, Array[float64, 4]] = DEFAULT
+
+
+class SolidPrimitive(Message, typename="shape_msgs/msg/SolidPrimitive"):
+    """SolidPrimitive."""
+
+    BOX: ClassVar[uint8] = 1
+    SPHERE: ClassVar[uint8] = 2
+    CYLINDER: ClassVar[uint8] = 3
+    CONE: ClassVar[uint8] = 4
+    PRISM: ClassVar[uint8] = 5
+    type: uint8 = 0
+    dimensions: Annotated[Floats, Sequence[float64, 3]] = DEFAULT
+    BOX_X: ClassVar[uint8] = 0
+    BOX_Y: ClassVar[uint8] = 1
+    BOX_Z: ClassVar[uint8] = 2
+    SPHERE_RADIUS: ClassVar[uint8] = 0
+    CYLINDER_HEIGHT: ClassVar[uint8] = 0
+    CYLINDER_RADIUS: ClassVar[uint8] = 1
+    CONE_HEIGHT: ClassVar[uint8] = 0
+    CONE_RADIUS: ClassVar[uint8] = 1
+    PRISM_HEIGHT: ClassVar[uint8] = 0
+    polygon: Polygon = DEFAULT

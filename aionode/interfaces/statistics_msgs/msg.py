@@ -1,0 +1,35 @@
+"""statistics_msgs."""
+
+from typing import Annotated, ClassVar
+
+from aionode.interfaces.builtin_interfaces.msg import Time
+from aionode.message import DEFAULT, Message, Sequence, float64, uint8
+
+
+class StatisticDataPoint(Message, typename="statistics_msgs/msg/StatisticDataPoint"):
+    """StatisticDataPoint."""
+
+    data_type: uint8 = 0
+    data: float64 = 0.0
+
+
+class MetricsMessage(Message, typename="statistics_msgs/msg/MetricsMessage"):
+    """MetricsMessage."""
+
+    measurement_source_name: str = ""
+    metrics_source: str = ""
+    unit: str = ""
+    window_start: Time = DEFAULT
+    window_stop: Time = DEFAULT
+    statistics: Annotated[list[StatisticDataPoint], Sequence[StatisticDataPoint]] = DEFAULT
+
+
+class StatisticDataType(Message, typename="statistics_msgs/msg/StatisticDataType"):
+    """StatisticDataType."""
+
+    STATISTICS_DATA_TYPE_UNINITIALIZED: ClassVar[uint8] = 0
+    STATISTICS_DATA_TYPE_AVERAGE: ClassVar[uint8] = 1
+    STATISTICS_DATA_TYPE_MINIMUM: ClassVar[uint8] = 2
+    STATISTICS_DATA_TYPE_MAXIMUM: ClassVar[uint8] = 3
+    STATISTICS_DATA_TYPE_STDDEV: ClassVar[uint8] = 4
+    STATISTICS_DATA_TYPE_SAMPLE_COUNT: ClassVar[uint8] = 5

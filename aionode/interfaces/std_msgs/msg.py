@@ -1,0 +1,221 @@
+"""std_msgs."""
+
+from typing import Annotated
+
+from aionode.interfaces.builtin_interfaces.msg import Time
+from aionode.message import (
+    Bytes,
+    DEFAULT,
+    Floats,
+    Ints,
+    Message,
+    Sequence,
+    byte,
+    char,
+    float32,
+    float64,
+    int16,
+    int32,
+    int64,
+    int8,
+    uint16,
+    uint32,
+    uint64,
+    uint8,
+)
+
+
+class Bool(Message, typename="std_msgs/msg/Bool"):
+    """Bool."""
+
+    data: bool = False
+
+
+class Byte(Message, typename="std_msgs/msg/Byte"):
+    """Byte."""
+
+    data: byte = b"\0"
+
+
+class MultiArrayDimension(Message, typename="std_msgs/msg/MultiArrayDimension"):
+    """MultiArrayDimension."""
+
+    label: str = ""
+    size: uint32 = 0
+    stride: uint32 = 0
+
+
+class MultiArrayLayout(Message, typename="std_msgs/msg/MultiArrayLayout"):
+    """MultiArrayLayout."""
+
+    dim: Annotated[list[MultiArrayDimension], Sequence[MultiArrayDimension]] = DEFAULT
+    data_offset: uint32 = 0
+
+
+class ByteMultiArray(Message, typename="std_msgs/msg/ByteMultiArray"):
+    """ByteMultiArray."""
+
+    layout: MultiArrayLayout = DEFAULT
+    data: Annotated[Bytes, Sequence[byte]] = DEFAULT
+
+
+class Char(Message, typename="std_msgs/msg/Char"):
+    """Char."""
+
+    data: char = 0
+
+
+class ColorRGBA(Message, typename="std_msgs/msg/ColorRGBA"):
+    """ColorRGBA."""
+
+    r: float32 = 0.0
+    g: float32 = 0.0
+    b: float32 = 0.0
+    a: float32 = 0.0
+
+
+class Empty(Message, typename="std_msgs/msg/Empty"):
+    """Empty."""
+
+
+class Float32(Message, typename="std_msgs/msg/Float32"):
+    """Float32."""
+
+    data: float32 = 0.0
+
+
+class Float32MultiArray(Message, typename="std_msgs/msg/Float32MultiArray"):
+    """Float32MultiArray."""
+
+    layout: MultiArrayLayout = DEFAULT
+    data: Annotated[Floats, Sequence[float32]] = DEFAULT
+
+
+class Float64(Message, typename="std_msgs/msg/Float64"):
+    """Float64."""
+
+    data: float64 = 0.0
+
+
+class Float64MultiArray(Message, typename="std_msgs/msg/Float64MultiArray"):
+    """Float64MultiArray."""
+
+    layout: MultiArrayLayout = DEFAULT
+    data: Annotated[Floats, Sequence[float64]] = DEFAULT
+
+
+class Header(Message, typename="std_msgs/msg/Header"):
+    """Header."""
+
+    stamp: Time = DEFAULT
+    frame_id: str = ""
+
+
+class Int16(Message, typename="std_msgs/msg/Int16"):
+    """Int16."""
+
+    data: int16 = 0
+
+
+class Int16MultiArray(Message, typename="std_msgs/msg/Int16MultiArray"):
+    """Int16MultiArray."""
+
+    layout: MultiArrayLayout = DEFAULT
+    data: Annotated[Ints, Sequence[int16]] = DEFAULT
+
+
+class Int32(Message, typename="std_msgs/msg/Int32"):
+    """Int32."""
+
+    data: int32 = 0
+
+
+class Int32MultiArray(Message, typename="std_msgs/msg/Int32MultiArray"):
+    """Int32MultiArray."""
+
+    layout: MultiArrayLayout = DEFAULT
+    data: Annotated[Ints, Sequence[int32]] = DEFAULT
+
+
+class Int64(Message, typename="std_msgs/msg/Int64"):
+    """Int64."""
+
+    data: int64 = 0
+
+
+class Int64MultiArray(Message, typename="std_msgs/msg/Int64MultiArray"):
+    """Int64MultiArray."""
+
+    layout: MultiArrayLayout = DEFAULT
+    data: Annotated[Ints, Sequence[int64]] = DEFAULT
+
+
+class Int8(Message, typename="std_msgs/msg/Int8"):
+    """Int8."""
+
+    data: int8 = 0
+
+
+class Int8MultiArray(Message, typename="std_msgs/msg/Int8MultiArray"):
+    """Int8MultiArray."""
+
+    layout: MultiArrayLayout = DEFAULT
+    data: Annotated[Ints, Sequence[int8]] = DEFAULT
+
+
+class String(Message, typename="std_msgs/msg/String"):
+    """String."""
+
+    data: str = ""
+
+
+class UInt16(Message, typename="std_msgs/msg/UInt16"):
+    """UInt16."""
+
+    data: uint16 = 0
+
+
+class UInt16MultiArray(Message, typename="std_msgs/msg/UInt16MultiArray"):
+    """UInt16MultiArray."""
+
+    layout: MultiArrayLayout = DEFAULT
+    data: Annotated[Ints, Sequence[uint16]] = DEFAULT
+
+
+class UInt32(Message, typename="std_msgs/msg/UInt32"):
+    """UInt32."""
+
+    data: uint32 = 0
+
+
+class UInt32MultiArray(Message, typename="std_msgs/msg/UInt32MultiArray"):
+    """UInt32MultiArray."""
+
+    layout: MultiArrayLayout = DEFAULT
+    data: Annotated[Ints, Sequence[uint32]] = DEFAULT
+
+
+class UInt64(Message, typename="std_msgs/msg/UInt64"):
+    """UInt64."""
+
+    data: uint64 = 0
+
+
+class UInt64MultiArray(Message, typename="std_msgs/msg/UInt64MultiArray"):
+    """UInt64MultiArray."""
+
+    layout: MultiArrayLayout = DEFAULT
+    data: Annotated[Ints, Sequence[uint64]] = DEFAULT
+
+
+class UInt8(Message, typename="std_msgs/msg/UInt8"):
+    """UInt8."""
+
+    data: uint8 = 0
+
+
+class UInt8MultiArray(Message, typename="std_msgs/msg/UInt8MultiArray"):
+    """UInt8MultiArray."""
+
+    layout: MultiArrayLayout = DEFAULT
+    data: Annotated[Bytes, Sequence[uint8]] = DEFAULT

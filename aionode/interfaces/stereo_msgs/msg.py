@@ -1,0 +1,18 @@
+"""stereo_msgs."""
+
+from aionode.interfaces.sensor_msgs.msg import Image, RegionOfInterest
+from aionode.interfaces.std_msgs.msg import Header
+from aionode.message import DEFAULT, Message, float32
+
+
+class DisparityImage(Message, typename="stereo_msgs/msg/DisparityImage"):
+    """DisparityImage."""
+
+    header: Header = DEFAULT
+    image: Image = DEFAULT
+    f: float32 = 0.0
+    t: float32 = 0.0
+    valid_window: RegionOfInterest = DEFAULT
+    min_disparity: float32 = 0.0
+    max_disparity: float32 = 0.0
+    delta_d: float32 = 0.0

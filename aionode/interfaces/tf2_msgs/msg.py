@@ -1,0 +1,26 @@
+"""tf2_msgs."""
+
+from typing import Annotated, ClassVar
+
+from aionode.interfaces.geometry_msgs.msg import TransformStamped
+from aionode.message import DEFAULT, Message, Sequence, uint8
+
+
+class TF2Error(Message, typename="tf2_msgs/msg/TF2Error"):
+    """TF2Error."""
+
+    NO_ERROR: ClassVar[uint8] = 0
+    LOOKUP_ERROR: ClassVar[uint8] = 1
+    CONNECTIVITY_ERROR: ClassVar[uint8] = 2
+    EXTRAPOLATION_ERROR: ClassVar[uint8] = 3
+    INVALID_ARGUMENT_ERROR: ClassVar[uint8] = 4
+    TIMEOUT_ERROR: ClassVar[uint8] = 5
+    TRANSFORM_ERROR: ClassVar[uint8] = 6
+    error: uint8 = 0
+    error_string: str = ""
+
+
+class TFMessage(Message, typename="tf2_msgs/msg/TFMessage"):
+    """TFMessage."""
+
+    transforms: Annotated[list[TransformStamped], Sequence[TransformStamped]] = DEFAULT

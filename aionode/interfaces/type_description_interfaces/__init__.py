@@ -1,0 +1,1 @@
+"""type_description_interfaces."""

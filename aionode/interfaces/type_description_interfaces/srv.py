@@ -1,0 +1,28 @@
+"""type_description_interfaces."""
+
+from typing import Annotated
+
+from aionode.interfaces.type_description_interfaces.msg import KeyValue, TypeDescription, TypeSource
+from aionode.message import DEFAULT, Message, Sequence, ServiceType
+
+
+class GetTypeDescription(
+    ServiceType, typename="type_description_interfaces/srv/GetTypeDescription"
+):
+    """GetTypeDescription."""
+
+    class Request(Message):
+        """Request."""
+
+        type_name: str = ""
+        type_hash: str = ""
+        include_type_sources: bool = False
+
+    class Response(Message):
+        """Response."""
+
+        successful: bool = False
+        failure_reason: str = ""
+        type_description: TypeDescription = DEFAULT
+        type_sources: Annotated[list[TypeSource], Sequence[TypeSource]] = DEFAULT
+        extra_information: Annotated[list[KeyValue], Sequence[KeyValue]] = DEFAULT

@@ -1,0 +1,1 @@
+"""unique_identifier_msgs."""

@@ -1,0 +1,199 @@
+"""visualization_msgs."""
+
+from typing import Annotated, ClassVar
+
+from aionode.interfaces.builtin_interfaces.msg import Duration
+from aionode.interfaces.geometry_msgs.msg import Point, Pose, Quaternion, Vector3
+from aionode.interfaces.sensor_msgs.msg import CompressedImage
+from aionode.interfaces.std_msgs.msg import ColorRGBA, Header
+from aionode.message import Bytes, DEFAULT, Message, Sequence, float32, int32, uint32, uint64, uint8
+
+
+class ImageMarker(Message, typename="visualization_msgs/msg/ImageMarker"):
+    """ImageMarker."""
+
+    CIRCLE: ClassVar[int32] = 0
+    LINE_STRIP: ClassVar[int32] = 1
+    LINE_LIST: ClassVar[int32] = 2
+    POLYGON: ClassVar[int32] = 3
+    POINTS: ClassVar[int32] = 4
+    ADD: ClassVar[int32] = 0
+    REMOVE: ClassVar[int32] = 1
+    header: Header = DEFAULT
+    ns: str = ""
+    id: int32 = 0
+    type: int32 = 0
+    action: int32 = 0
+    position: Point = DEFAULT
+    scale: float32 = 0.0
+    outline_color: ColorRGBA = DEFAULT
+    filled: uint8 = 0
+    fill_color: ColorRGBA = DEFAULT
+    lifetime: Duration = DEFAULT
+    points: Annotated[list[Point], Sequence[Point]] = DEFAULT
+    outline_colors: Annotated[list[ColorRGBA], Sequence[ColorRGBA]] = DEFAULT
+
+
+class MenuEntry(Message, typename="visualization_msgs/msg/MenuEntry"):
+    """MenuEntry."""
+
+    id: uint32 = 0
+    parent_id: uint32 = 0
+    title: str = ""
+    command: str = ""
+    FEEDBACK: ClassVar[uint8] = 0
+    ROSRUN: ClassVar[uint8] = 1
+    ROSLAUNCH: ClassVar[uint8] = 2
+    command_type: uint8 = 0
+
+
+class UVCoordinate(Message, typename="visualization_msgs/msg/UVCoordinate"):
+    """UVCoordinate."""
+
+    u: float32 = 0.0
+    v: float32 = 0.0
+
+
+class MeshFile(Message, typename="visualization_msgs/msg/MeshFile"):
+    """MeshFile."""
+
+    filename: str = ""
+    data: Annotated[Bytes, Sequence[uint8]] = DEFAULT
+
+
+class Marker(Message, typename="visualization_msgs/msg/Marker"):
+    """Marker."""
+
+    ARROW: ClassVar[int32] = 0
+    CUBE: ClassVar[int32] = 1
+    SPHERE: ClassVar[int32] = 2
+    CYLINDER: ClassVar[int32] = 3
+    LINE_STRIP: ClassVar[int32] = 4
+    LINE_LIST: ClassVar[int32] = 5
+    CUBE_LIST: ClassVar[int32] = 6
+    SPHERE_LIST: ClassVar[int32] = 7
+    POINTS: ClassVar[int32] = 8
+    TEXT_VIEW_FACING: ClassVar[int32] = 9
+    MESH_RESOURCE: ClassVar[int32] = 10
+    TRIANGLE_LIST: ClassVar[int32] = 11
+    ARROW_STRIP: ClassVar[int32] = 12
+    ADD: ClassVar[int32] = 0
+    MODIFY: ClassVar[int32] = 0
+    DELETE: ClassVar[int32] = 2
+    DELETEALL: ClassVar[int32] = 3
+    header: Header = DEFAULT
+    ns: str = ""
+    id: int32 = 0
+    type: int32 = 0
+    action: int32 = 0
+    pose: Pose = DEFAULT
+    scale: Vector3 = DEFAULT
+    color: ColorRGBA = DEFAULT
+    lifetime: Duration = DEFAULT
+    frame_locked: bool = False
+    points: Annotated[list[Point], Sequence[Point]] = DEFAULT
+    colors: Annotated[list[ColorRGBA], Sequence[ColorRGBA]] = DEFAULT
+    texture_resource: str = ""
+    texture: CompressedImage = DEFAULT
+    uv_coordinates: Annotated[list[UVCoordinate], Sequence[UVCoordinate]] = DEFAULT
+    text: str = ""
+    mesh_resource: str = ""
+    mesh_file: MeshFile = DEFAULT
+    mesh_use_embedded_materials: bool = False
+
+
+class InteractiveMarkerControl(Message, typename="visualization_msgs/msg/InteractiveMarkerControl"):
+    """InteractiveMarkerControl."""
+
+    name: str = ""
+    orientation: Quaternion = DEFAULT
+    INHERIT: ClassVar[uint8] = 0
+    FIXED: ClassVar[uint8] = 1
+    VIEW_FACING: ClassVar[uint8] = 2
+    orientation_mode: uint8 = 0
+    NONE: ClassVar[uint8] = 0
+    MENU: ClassVar[uint8] = 1
+    BUTTON: ClassVar[uint8] = 2
+    MOVE_AXIS: ClassVar[uint8] = 3
+    MOVE_PLANE: ClassVar[uint8] = 4
+    ROTATE_AXIS: ClassVar[uint8] = 5
+    MOVE_ROTATE: ClassVar[uint8] = 6
+    MOVE_3D: ClassVar[uint8] = 7
+    ROTATE_3D: ClassVar[uint8] = 8
+    MOVE_ROTATE_3D: ClassVar[uint8] = 9
+    interaction_mode: uint8 = 0
+    always_visible: bool = False
+    markers: Annotated[list[Marker], Sequence[Marker]] = DEFAULT
+    independent_marker_orientation: bool = False
+    description: str = ""
+
+
+class InteractiveMarker(Message, typename="visualization_msgs/msg/InteractiveMarker"):
+    """InteractiveMarker."""
+
+    header: Header = DEFAULT
+    pose: Pose = DEFAULT
+    name: str = ""
+    description: str = ""
+    scale: float32 = 0.0
+    menu_entries: Annotated[list[MenuEntry], Sequence[MenuEntry]] = DEFAULT
+    controls: Annotated[list[InteractiveMarkerControl], Sequence[InteractiveMarkerControl]] = (
+        DEFAULT
+    )
+
+
+class InteractiveMarkerFeedback(
+    Message, typename="visualization_msgs/msg/InteractiveMarkerFeedback"
+):
+    """InteractiveMarkerFeedback."""
+
+    header: Header = DEFAULT
+    client_id: str = ""
+    marker_name: str = ""
+    control_name: str = ""
+    KEEP_ALIVE: ClassVar[uint8] = 0
+    POSE_UPDATE: ClassVar[uint8] = 1
+    MENU_SELECT: ClassVar[uint8] = 2
+    BUTTON_CLICK: ClassVar[uint8] = 3
+    MOUSE_DOWN: ClassVar[uint8] = 4
+    MOUSE_UP: ClassVar[uint8] = 5
+    event_type: uint8 = 0
+    pose: Pose = DEFAULT
+    menu_entry_id: uint32 = 0
+    mouse_point: Point = DEFAULT
+    mouse_point_valid: bool = False
+
+
+class InteractiveMarkerInit(Message, typename="visualization_msgs/msg/InteractiveMarkerInit"):
+    """InteractiveMarkerInit."""
+
+    server_id: str = ""
+    seq_num: uint64 = 0
+    markers: Annotated[list[InteractiveMarker], Sequence[InteractiveMarker]] = DEFAULT
+
+
+class InteractiveMarkerPose(Message, typename="visualization_msgs/msg/InteractiveMarkerPose"):
+    """InteractiveMarkerPose."""
+
+    header: Header = DEFAULT
+    pose: Pose = DEFAULT
+    name: str = ""
+
+
+class InteractiveMarkerUpdate(Message, typename="visualization_msgs/msg/InteractiveMarkerUpdate"):
+    """InteractiveMarkerUpdate."""
+
+    server_id: str = ""
+    seq_num: uint64 = 0
+    KEEP_ALIVE: ClassVar[uint8] = 0
+    UPDATE: ClassVar[uint8] = 1
+    type: uint8 = 0
+    markers: Annotated[list[InteractiveMarker], Sequence[InteractiveMarker]] = DEFAULT
+    poses: Annotated[list[InteractiveMarkerPose], Sequence[InteractiveMarkerPose]] = DEFAULT
+    erases: Annotated[list[str], Sequence[str]] = DEFAULT
+
+
+class MarkerArray(Message, typename="visualization_msgs/msg/MarkerArray"):
+    """MarkerArray."""
+
+    markers: Annotated[list[Marker], Sequence[Marker]] = DEFAULT
