@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 from aionode.clock.agenda import Agenda
 from aionode.clock.base import Alarm, MachineTime, TimeBase
 from aionode.clock.jumps import ClockChange, JumpHandle, Jumps, JumpThreshold, TimeJump
-from aionode.clock.values import ClockType, Duration, Time, expect_clock_type, time_at
+from aionode.clock.values import S_TO_NS, ClockType, Time, expect_clock_type, time_at
 from aionode.errors import EntityDestroyedError, TimeSourceChangedError
+from aionode.settle import one_turn
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -92,12 +93,14 @@ class Clock:
             EntityDestroyedError: The clock, or its node, was destroyed before (a RuntimeError).
             asyncio.CancelledError: It was destroyed meanwhile.
             TimeSourceChangedError: ROS time was switched on or off meanwhile.
+            OverflowError: `duration_sec` is infinite.
         """
         self._refuse_if_destroyed()
-        duration_ns = Duration(seconds=duration_sec).nanoseconds
-        if duration_ns <= 0:
-            await asyncio.sleep(0)
-        elif self._active:
+        if duration_sec <= 0:
+            await one_turn()
+            return
+        duration_ns = round(duration_sec * S_TO_NS)  # cut off, it would be too short
+        if self._active:
             await self._sleep(self._override_ns + duration_ns, self._agenda.add)
         else:
             await self._sleep(self._base.steady_ns() + duration_ns, self._base.call_at)
@@ -118,7 +121,7 @@ class Clock:
                 f"{self._clock_type.name}"
             )
         if self._read() >= until.nanoseconds:
-            await asyncio.sleep(0)
+            await one_turn()
         while self._read() < until.nanoseconds:  # again when the machine's clock was set back
             await self._sleep(until.nanoseconds, self.call_at)
 
