@@ -7,17 +7,7 @@ its fields and constants, as those may have any name.
 
 from __future__ import annotations
 
-from aionode.message.base import (
-    DEFAULT,
-    ActionClass,
-    ActionType,
-    Message,
-    ServiceClass,
-    ServiceType,
-    constants,
-    fields,
-    type_name,
-)
+from aionode.message.base import DEFAULT, Message, constants, fields, type_name
 from aionode.message.fieldtypes import (
     Array,
     Bools,
@@ -43,6 +33,15 @@ from aionode.message.fieldtypes import (
     uint64,
     wstring,
 )
+from aionode.message.plain import (
+    from_builtins,
+    from_json,
+    from_yaml,
+    to_builtins,
+    to_json,
+    to_yaml,
+)
+from aionode.message.services import ActionClass, ActionType, ServiceClass, ServiceType
 from aionode.message.snapshot import check, checker, snapshot, snapshotter
 
 __all__ = [
@@ -70,12 +69,18 @@ __all__ = [
     "fields",
     "float32",
     "float64",
+    "from_builtins",
+    "from_json",
+    "from_yaml",
     "int8",
     "int16",
     "int32",
     "int64",
     "snapshot",
     "snapshotter",
+    "to_builtins",
+    "to_json",
+    "to_yaml",
     "type_name",
     "uint8",
     "uint16",

@@ -1,4 +1,4 @@
-"""Messages, services and actions as Python classes, and functions that describe them.
+"""Messages as Python classes, and functions that describe them.
 
 A message class has one attribute for each field and nothing else that a field could be called:
 what there is to know about it is asked from functions (`type_name`, `fields`, `constants`).
@@ -10,39 +10,18 @@ import copy
 import functools
 import re
 import sys
-from importlib import import_module
 from keyword import iskeyword
-from typing import (
-    TYPE_CHECKING,
-    Any,
-    ClassVar,
-    Protocol,
-    TypeVar,
-    dataclass_transform,
-    get_args,
-    get_origin,
-)
+from typing import TYPE_CHECKING, Any, ClassVar, dataclass_transform, get_args, get_origin
 
 import msgspec
 
-from aionode.message.fieldtypes import Constant, Field, field_type, int8
-from aionode.message.fieldtypes import Sequence as SequenceOf
+from aionode.message.fieldtypes import Constant, Field, field_type
 from aionode.message.values import default_value, plain_default, same, shown
 
 if TYPE_CHECKING:
     from types import FrameType
 
-__all__ = [
-    "DEFAULT",
-    "ActionClass",
-    "ActionType",
-    "Message",
-    "ServiceClass",
-    "ServiceType",
-    "constants",
-    "fields",
-    "type_name",
-]
+__all__ = ["DEFAULT", "Message", "MessageMeta", "constants", "fields", "message_class", "type_name"]
 
 DEFAULT: Any = object()
 """Stands for the zero of any field type: ``header: Header = DEFAULT``.
@@ -59,7 +38,7 @@ FIELD_NAME = re.compile(r"[a-z](_?[a-z0-9]+)*")
 class MessageMeta(msgspec.StructMeta):
     """Turns annotations into the description of a message, and gives every field a default."""
 
-    def __new__(
+    def __new__(  # noqa: PYI034 (mypy has no Self in metaclasses)
         mcls,
         name: str,
         bases: tuple[type, ...],
@@ -97,7 +76,7 @@ def annotations_of(namespace: dict[str, Any], frame: FrameType) -> dict[str, Any
     """Return the annotations of a class that is being made in `frame`, as objects."""
     found: dict[str, Any] | None = namespace.get("__annotations__")
     if found is None and sys.version_info >= (3, 14):  # made on demand there
-        import annotationlib  # noqa: PLC0415 (new in 3.14)
+        import annotationlib
 
         make = annotationlib.get_annotate_from_class_namespace(namespace)
         if make is not None:
@@ -183,186 +162,6 @@ def owned(message: Message, name: str) -> object:
     return bytes(value) if isinstance(value, memoryview) else value
 
 
-class Hidden:
-    """A part of a service or action type that is made when it is first asked for."""
-
-    def __init__(self, make: Any) -> None:
-        self.make = make
-
-    def __set_name__(self, owner: type, name: str) -> None:
-        """Learn under which name to keep the part."""
-        self.name = name
-
-    def __get__(self, instance: object, owner: type) -> Any:
-        """Return the part of `owner`, kept for the next time."""
-        part = self.make(owner)
-        setattr(owner, self.name, part)
-        return part
-
-
-def shipped(package: str, kind: str, name: str) -> Any:
-    """Return a generated type of aionode.interfaces.
-
-    By name and late, because those modules stand on this one: every service and action has parts
-    that are made of ROS's own messages.
-    """
-    return getattr(import_module(f"aionode.interfaces.{package}.{kind}"), name)
-
-
-def name_halves(cls: type, typename: str, halves: tuple[str, ...]) -> None:
-    """Give a service or action class and its nested messages their ROS names."""
-    cls.__ros_type__ = checked_type_name(typename)  # type: ignore[attr-defined] # both declare it
-    for half in halves:
-        message = cls.__dict__.get(half)
-        if not isinstance(message, MessageMeta):
-            msg = f"{typename}: has no nested class {half}(Message); it may be one without fields"
-            raise TypeError(msg)
-        message.__ros_type__ = f"{typename}_{half}"  # type: ignore[attr-defined] # of Message
-
-
-def make_event(cls: type[ServiceType]) -> type[Message]:
-    """Return the message that tells of one request or response of a service."""
-    info = shipped("service_msgs", "msg", "ServiceEventInfo")
-    namespace = {
-        "__module__": cls.__module__,
-        "__qualname__": f"{cls.__qualname__}.Event",
-        "__doc__": f"A request to or a response from {cls.__name__}, with who and when.",
-        "__annotations__": {
-            "info": info,
-            "request": SequenceOf[cls.Request, 1],  # type: ignore[attr-defined] # nested classes
-            "response": SequenceOf[cls.Response, 1],  # type: ignore[attr-defined] # nested classes
-        },
-    }
-    return MessageMeta("Event", (Message,), namespace, typename=f"{cls.__ros_type__}_Event")  # type: ignore[return-value] # a class of Message
-
-
-class ServiceType:
-    """Base of all service types, with nested messages `Request` and `Response`.
-
-    Write a service as a class::
-
-        class Add(ServiceType, typename="tutorial/srv/Add"):
-            class Request(Message):
-                a: int64 = 0
-                b: int64 = 0
-
-            class Response(Message):
-                sum: int64 = 0
-
-    `Event` is the message of service introspection.
-    """
-
-    __ros_type__: ClassVar[str] = ""
-    Event: ClassVar[Any] = Hidden(make_event)
-
-    def __init_subclass__(cls, *, typename: str) -> None:
-        """Name the service and its messages."""
-        name_halves(cls, typename, ("Request", "Response"))
-
-
-def make_impl(cls: type[ActionType]) -> type:
-    """Return the services and messages that an action is carried out with."""
-    uuid = shipped("unique_identifier_msgs", "msg", "UUID")
-    time = shipped("builtin_interfaces", "msg", "Time")
-    place = f"{cls.__qualname__}.Impl"
-
-    def message(name: str, annotations: dict[str, Any], doc: str, typename: str = "") -> Any:
-        namespace = {
-            "__module__": cls.__module__,
-            "__qualname__": f"{place}.{name}",
-            "__doc__": doc,
-            "__annotations__": annotations,
-        }
-        return MessageMeta(name.rpartition(".")[2], (Message,), namespace, typename=typename)
-
-    def service(name: str, request: dict[str, Any], response: dict[str, Any]) -> Any:
-        typename = f"{cls.__ros_type__}_{name.removesuffix('Service')}"
-        namespace = {
-            "__module__": cls.__module__,
-            "__qualname__": f"{place}.{name}",
-            "__doc__": f"The service {typename}.",
-            "Request": message(f"{name}.Request", request, f"A request to {typename}."),
-            "Response": message(f"{name}.Response", response, f"A response of {typename}."),
-        }
-        return type(ServiceType)(name, (ServiceType,), namespace, typename=typename)
-
-    parts = {
-        "__module__": cls.__module__,
-        "__qualname__": place,
-        "__doc__": f"What {cls.__ros_type__} is carried out with.",
-        "SendGoalService": service(
-            "SendGoalService",
-            {"goal_id": uuid, "goal": cls.Goal},  # type: ignore[attr-defined] # nested class
-            {"accepted": bool, "stamp": time},
-        ),
-        "GetResultService": service(
-            "GetResultService",
-            {"goal_id": uuid},
-            {"status": int8, "result": cls.Result},  # type: ignore[attr-defined] # nested class
-        ),
-        "FeedbackMessage": message(
-            "FeedbackMessage",
-            {"goal_id": uuid, "feedback": cls.Feedback},  # type: ignore[attr-defined] # nested class
-            "Feedback, and the goal that it belongs to.",
-            f"{cls.__ros_type__}_FeedbackMessage",
-        ),
-        "CancelGoalService": shipped("action_msgs", "srv", "CancelGoal"),
-        "GoalStatusMessage": shipped("action_msgs", "msg", "GoalStatusArray"),
-    }
-    return type("Impl", (), parts)
-
-
-class ActionType:
-    """Base of all action types, with nested messages `Goal`, `Result` and `Feedback`.
-
-    `Impl` holds the types that only the action protocol uses, named as in rclpy:
-    `SendGoalService`, `GetResultService`, `CancelGoalService`, `FeedbackMessage` and
-    `GoalStatusMessage`.
-    """
-
-    __ros_type__: ClassVar[str] = ""
-    Impl: ClassVar[Any] = Hidden(make_impl)
-
-    def __init_subclass__(cls, *, typename: str) -> None:
-        """Name the action and its messages."""
-        name_halves(cls, typename, ("Goal", "Result", "Feedback"))
-
-
-RequestT = TypeVar("RequestT", bound=Message, covariant=True)
-ResponseT = TypeVar("ResponseT", bound=Message, covariant=True)
-GoalT = TypeVar("GoalT", bound=Message, covariant=True)
-ResultT = TypeVar("ResultT", bound=Message, covariant=True)
-FeedbackT = TypeVar("FeedbackT", bound=Message, covariant=True)
-
-
-class ServiceClass(Protocol[RequestT, ResponseT]):
-    """To type checkers: a service type, by what its requests and responses are.
-
-    ``def create_client(self, srv_type: ServiceClass[RequestT, ResponseT], …)`` learns both types
-    from ``AddTwoInts``. The nested classes are described as functions that make a message, as that
-    is the form in which mypy and pyright both find them.
-    """
-
-    def Request(self, *args: Any, **values: Any) -> RequestT:  # noqa: D102, N802 (a class)
-        ...
-
-    def Response(self, *args: Any, **values: Any) -> ResponseT:  # noqa: D102, N802 (a class)
-        ...
-
-
-class ActionClass(Protocol[GoalT, ResultT, FeedbackT]):
-    """To type checkers: an action type, by what its goals, results and feedback are."""
-
-    def Goal(self, *args: Any, **values: Any) -> GoalT:  # noqa: D102, N802 (a class)
-        ...
-
-    def Result(self, *args: Any, **values: Any) -> ResultT:  # noqa: D102, N802 (a class)
-        ...
-
-    def Feedback(self, *args: Any, **values: Any) -> FeedbackT:  # noqa: D102, N802 (a class)
-        ...
-
-
 def type_name(cls: Any) -> str:
     """Return the ROS name of a message, service or action class, such as ``std_msgs/msg/String``.
 
@@ -385,7 +184,7 @@ def message_class(cls: Any) -> type[Message]:
     """Return `cls` if it is a message class, or raise a `TypeError` that says what it is."""
     if not isinstance(cls, MessageMeta):
         msg = f"{cls!r}: not a message class"
-        if isinstance(cls, type) and issubclass(cls, ServiceType | ActionType):
+        if hasattr(cls, "__ros_type__"):
             msg += "; a service or action is described by its nested messages, such as .Request"
         raise TypeError(msg)
     return cls  # type: ignore[return-value] # all of this metaclass are messages

@@ -1,3 +1,4 @@
+# ruff: noqa: PYI042 (the aliases have ROS's names)
 """What the fields of a message can hold, and the annotations that say so.
 
 An annotation such as ``Array[float64, 9]`` is, at run time, `typing.Annotated` with a `FieldType`.
@@ -261,7 +262,7 @@ else:
 
         def __class_getitem__(cls, item: tuple[object, int]) -> object:
             """Return the annotation of a field."""
-            if not isinstance(item, tuple) or len(item) != 2:  # noqa: PLR2004 (T and N)
+            if not isinstance(item, tuple) or len(item) != 2:
                 msg = "Array: needs an element type and a size, as in Array[float64, 9]"
                 raise TypeError(msg)
             return contained(item[0], "array", item[1])

@@ -11,7 +11,7 @@ import operator
 import reprlib
 import struct
 from collections.abc import Sequence as AbstractSequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 from aionode.errors import MessageError
 from aionode.message.fieldtypes import DTYPES, INT_RANGES, FieldType
@@ -66,7 +66,7 @@ def fit_int(type_: FieldType, value: object, path: str) -> int:
 
 def fit_float(type_: FieldType, value: object, path: str) -> float:
     """Return a float; a float32 has to be able to hold it, if not exactly, then not as infinity."""
-    if not isinstance(value, numbers.Real) or isinstance(value, bool):
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise MessageError(path, f"{given(value)}, needs a float")
     try:
         number = float(value)
@@ -117,7 +117,7 @@ def fit_string(type_: FieldType, value: object, path: str) -> str:
 
 def fit_message(type_: FieldType, value: object, path: str) -> Any:
     """Return a snapshot of a nested message."""
-    from aionode.message.snapshot import snapshotter  # noqa: PLC0415 (generated code calls back)
+    from aionode.message.snapshot import snapshotter
 
     assert type_.nested is not None  # noqa: S101 (of kind message)
     take: Any = snapshotter(type_.nested)
@@ -144,7 +144,7 @@ def check_length(type_: FieldType, length: int, path: str) -> None:
         raise MessageError(path, f"{length} elements, at most {type_.size} fit")
 
 
-def is_listing(value: object) -> bool:
+def is_listing(value: object) -> TypeGuard[AbstractSequence[Any]]:
     """Return whether a value is a sequence of elements, as opposed to text or bytes."""
     return isinstance(value, AbstractSequence) and not isinstance(
         value, str | bytes | bytearray | memoryview
@@ -210,13 +210,13 @@ def bytes_view(value: object, path: str) -> bytes | memoryview:
 
 def fit_array(type_: FieldType, value: object, path: str) -> npt.NDArray[Any]:
     """Return an array of one dimension and the right dtype; one made here is read-only."""
-    import numpy as np  # noqa: PLC0415 (numpy is loaded when it is first needed)
+    import numpy as np
 
     dtype = np.dtype(DTYPES[type_.kind])
     if isinstance(value, np.ndarray):
         array = value
     elif is_listing(value) and not buffered(value):
-        array = array_of_items(type_, value, path, dtype)  # type: ignore[arg-type] # a sequence
+        array = array_of_items(type_, value, path, dtype)
     elif buffered(value) and not isinstance(value, bytes | bytearray):
         array = np.asarray(value)
     else:
@@ -233,14 +233,18 @@ def frozen(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
     return array
 
 
+FAST_ITEMS: dict[str, set[type]] = {"bool": {bool}, "float64": {float, int}}
+"""What numpy converts without a closer look at each element; {int} for the other kinds."""
+
+
 def array_of_items(
     type_: FieldType, items: AbstractSequence[object], path: str, dtype: npt.DTypeLike
 ) -> npt.NDArray[Any]:
     """Return the elements of a list as an array."""
-    import numpy as np  # noqa: PLC0415 (numpy is loaded when it is first needed)
+    import numpy as np
 
     kinds = set(map(type, items))
-    fast = {"bool": {bool}, "float64": {float, int}}.get(type_.kind, {int})
+    fast = FAST_ITEMS.get(type_.kind, {int})
     if type_.kind != "float32" and kinds <= fast:
         try:
             return frozen(np.array(items, dtype))
@@ -252,7 +256,7 @@ def array_of_items(
 
 def cast(type_: FieldType, array: npt.NDArray[Any], path: str) -> npt.NDArray[Any]:
     """Return an array of another dtype as one of this field's, if every element fits."""
-    import numpy as np  # noqa: PLC0415 (numpy is loaded when it is first needed)
+    import numpy as np
 
     dtype = np.dtype(DTYPES[type_.kind])
     if array.dtype.kind == "O":

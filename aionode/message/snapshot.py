@@ -35,7 +35,8 @@ def snapshotter(cls: type[MessageT]) -> Callable[[MessageT], MessageT]:
     Raises:
         TypeError: `cls` is not a message class, or has no ROS name.
     """
-    return generated(cls, copying=True)
+    function: Callable[[MessageT], MessageT] = generated(cls, copying=True)
+    return function
 
 
 def checker(cls: type[MessageT]) -> Callable[[MessageT], None]:
@@ -44,7 +45,8 @@ def checker(cls: type[MessageT]) -> Callable[[MessageT], None]:
     Raises:
         TypeError: `cls` is not a message class, or has no ROS name.
     """
-    return generated(cls, copying=False)
+    function: Callable[[MessageT], None] = generated(cls, copying=False)
+    return function
 
 
 def snapshot(message: MessageT) -> MessageT:
@@ -192,7 +194,7 @@ def strings(type_: FieldType, values: Any, path: str, field: str) -> list[str]:
             usual = False
         if usual:
             check_length(type_, len(values), path + field)
-            return values[:]  # type: ignore[no-any-return] # a list
+            return values[:]
     return fit(type_, values, path + field)  # type: ignore[no-any-return] # a list
 
 
@@ -211,4 +213,3 @@ def fixed_bytes(value: bytes | bytearray | memoryview) -> bytes | memoryview:
     if isinstance(value, bytearray) or (isinstance(value, memoryview) and not value.readonly):
         return bytes(value)
     return value
-

@@ -44,10 +44,10 @@ def plain_default(type_: FieldType, given_: object, path: str) -> object:
         given_ = list(given_)
     if not is_listing(given_):
         raise MessageError(path, f"{given(given_)}, needs a list or tuple")
-    check_length(type_, len(given_), path)  # type: ignore[arg-type] # just asked
+    check_length(type_, len(given_), path)
     unit = FieldType("uint8") if type_.kind == "byte" else type_
-    values = tuple(fit_element(unit, v, f"{path}[{i}]") for i, v in enumerate(given_))  # type: ignore[arg-type, var-annotated] # just asked
-    nothing = (zero(unit.kind),) * type_.size if type_.container == "array" else ()
+    values = tuple(fit_element(unit, v, f"{path}[{i}]") for i, v in enumerate(given_))
+    nothing = (zero(unit.kind),) * zeroed(type_)
     return None if values == nothing else values
 
 
@@ -56,8 +56,13 @@ def default_value(type_: FieldType, default: object) -> Any:
     if type_.form == "value" and type_.nested is None:
         return zero(type_.kind) if default is None else default
     if type_.form == "bytes":
-        return bytes(default or type_.size if type_.container == "array" else default or b"")  # type: ignore[arg-type] # a tuple of int
+        return bytes(default if isinstance(default, tuple) else zeroed(type_))
     return msgspec.field(default_factory=default_factory(type_, default))
+
+
+def zeroed(type_: FieldType) -> int:
+    """Return how many elements there are when nothing is said of them."""
+    return type_.size if type_.container == "array" else 0
 
 
 def default_factory(type_: FieldType, default: object) -> Callable[[], Any]:
@@ -67,9 +72,11 @@ def default_factory(type_: FieldType, default: object) -> Callable[[], Any]:
         if default is not None:
             return partial(filled, dtype, default)
         return partial(zeros, dtype, type_.size) if type_.container == "array" else EMPTY[dtype]
-    count = type_.size if type_.container == "array" else 0
+    count = zeroed(type_)
     if type_.nested is not None:
-        return partial(several, type_.nested, count) if type_.container != "single" else type_.nested
+        return (
+            partial(several, type_.nested, count) if type_.container != "single" else type_.nested
+        )
     items = default if isinstance(default, tuple) else ("",) * count
     return partial(list, items) if items else list
 
@@ -81,14 +88,14 @@ def several(make: Callable[[], Any], count: int) -> list[Any]:
 
 def filled(dtype: str, values: Any) -> npt.NDArray[Any]:
     """Return a new array of `values`."""
-    import numpy as np  # noqa: PLC0415 (numpy is loaded when it is first needed)
+    import numpy as np
 
     return np.array(values, dtype)
 
 
 def zeros(dtype: str, size: int) -> npt.NDArray[Any]:
     """Return a new array of zeros."""
-    import numpy as np  # noqa: PLC0415 (numpy is loaded when it is first needed)
+    import numpy as np
 
     return np.zeros(size, dtype)
 
@@ -96,7 +103,7 @@ def zeros(dtype: str, size: int) -> npt.NDArray[Any]:
 @cache
 def empty(dtype: str) -> npt.NDArray[Any]:
     """Return the one empty array of a dtype; it has nothing in it that could change."""
-    import numpy as np  # noqa: PLC0415 (numpy is loaded when it is first needed)
+    import numpy as np
 
     array = np.empty(0, dtype)
     array.flags.writeable = False
