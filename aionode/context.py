@@ -9,6 +9,7 @@ import secrets
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from aionode.clock import MachineTime
+from aionode.endpoints.mismatch import MismatchReport
 from aionode.errors import EntityDestroyedError
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from aionode.message import type_name
@@ -75,6 +76,7 @@ class Context:
         # Zenoh writes ids without leading zeros, and every peer has to see the same text.
         self.participant = secrets.token_hex(16).lstrip("0") or "1"
         self.graph = Graph()
+        MismatchReport(self.graph, self.participant)
         self.time_base: TimeBase = clock if clock is not None else MachineTime()
         self.network = network_from(
             os.environ,

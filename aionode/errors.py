@@ -10,7 +10,9 @@ name; new ones end in `Error`. They carry plain values, never live objects.
     ├── CallbackCancelledError (RuntimeError)
     ├── CallbackSignatureError (TypeError, RuntimeError)
     ├── ConfigurationError (ValueError)
+    ├── DecodeError (ValueError)
     ├── EntityDestroyedError (RuntimeError)
+    ├── InvalidLogLevelError (ValueError, RuntimeError)
     ├── InvalidQoSProfileException (ValueError)
     ├── InvalidROSArgsError (ValueError)
     │   └── UnknownROSArgsError
@@ -30,6 +32,7 @@ name; new ones end in `Error`. They carry plain values, never live objects.
     │   ├── ParameterNotDeclaredException (KeyError)
     │   └── ParameterUninitializedException (RuntimeError)
     ├── ParameterFileError (ValueError)
+    ├── NodeNameNonExistentError (LookupError, RuntimeError)
     ├── QueueFullError (RuntimeError)
     ├── ServiceError (RuntimeError)
     │   └── ServiceUnavailableError
@@ -45,7 +48,9 @@ __all__ = [
     "CallbackCancelledError",
     "CallbackSignatureError",
     "ConfigurationError",
+    "DecodeError",
     "EntityDestroyedError",
+    "InvalidLogLevelError",
     "InvalidNamespaceException",
     "InvalidNodeNameException",
     "InvalidParameterException",
@@ -58,6 +63,7 @@ __all__ = [
     "InvalidTopicNameException",
     "MessageError",
     "NameValidationException",
+    "NodeNameNonExistentError",
     "ParameterAlreadyDeclaredException",
     "ParameterException",
     "ParameterFileError",
@@ -76,6 +82,29 @@ __all__ = [
 
 class AionodeError(Exception):
     """Base of all errors that aionode raises on purpose."""
+
+
+class DecodeError(AionodeError, ValueError):
+    """Bytes do not hold a message of the type that they should.
+
+    Attributes:
+        type_name: The type that was to be read.
+        path: The field that could not be read, such as ``name[3]``; empty for the message as a
+            whole.
+        offset: Where it is in the data, in bytes.
+        problem: What is there and what was needed.
+    """
+
+    def __init__(self, type_name: str, path: str, offset: int, problem: str) -> None:
+        self.type_name = type_name
+        self.path = path
+        self.offset = offset
+        self.problem = problem
+        subject = f"{type_name}.{path}" if path else type_name
+        super().__init__(
+            f"{subject}: not readable at byte {offset}: {problem}; is the sender's definition of "
+            "the type the same?"
+        )
 
 
 class EntityDestroyedError(AionodeError, RuntimeError):
@@ -228,6 +257,18 @@ class ConfigurationError(AionodeError, ValueError):
         super().__init__(f"{source}: {given!r} given; {fits}")
 
 
+class NodeNameNonExistentError(AionodeError, LookupError, RuntimeError):
+    """No node of this name is known; a RuntimeError as in rclpy.
+
+    Attributes:
+        node: Full name that was asked for.
+    """
+
+    def __init__(self, node: str) -> None:
+        self.node = node
+        super().__init__(f"{node}: no such node; `await node.wait_for_node(name)` waits for one")
+
+
 class TransportError(AionodeError, ConnectionError):
     """A transport cannot do what was asked; the text says what to change."""
 
@@ -297,6 +338,20 @@ class InvalidRemapRuleError(AionodeError, ValueError):
         self.rule = rule
         self.problem = problem
         super().__init__(f"remap rule '{rule}': {problem}")
+
+
+class InvalidLogLevelError(AionodeError, ValueError, RuntimeError):
+    """A word is no level of logging; a RuntimeError as in rclpy.
+
+    Attributes:
+        level: The word.
+        fits: The words that fit.
+    """
+
+    def __init__(self, level: str, fits: list[str]) -> None:
+        self.level = level
+        self.fits = fits
+        super().__init__(f"log level '{level}' is unknown; it may be {', '.join(fits)}")
 
 
 class InvalidQoSProfileException(AionodeError, ValueError):

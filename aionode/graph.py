@@ -30,6 +30,19 @@ class EndpointKind(enum.Enum):
     SERVER = "server"
     CLIENT = "client"
 
+    @property
+    def opposite(self) -> EndpointKind:
+        """The kind that an endpoint of this kind talks to."""
+        return OPPOSITES[self]
+
+
+OPPOSITES = {
+    EndpointKind.PUBLISHER: EndpointKind.SUBSCRIPTION,
+    EndpointKind.SUBSCRIPTION: EndpointKind.PUBLISHER,
+    EndpointKind.SERVER: EndpointKind.CLIENT,
+    EndpointKind.CLIENT: EndpointKind.SERVER,
+}
+
 
 @dataclass(frozen=True, slots=True)
 class NodeInfo:
@@ -55,9 +68,11 @@ class NodeInfo:
         return names.fully_qualified_name(self.namespace, self.name)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class EndpointInfo:
     """One publisher, subscription, server or client as the graph knows it.
+
+    Two are equal if their `gid` is: it identifies an endpoint, whoever describes it.
 
     Attributes:
         kind: What it does.
@@ -78,6 +93,12 @@ class EndpointInfo:
     type_hash: str
     qos: QoSProfile
     gid: bytes
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, EndpointInfo) and self.gid == other.gid
+
+    def __hash__(self) -> int:
+        return hash(self.gid)
 
     def mismatch(self, other: EndpointInfo) -> str | None:
         """Return why this endpoint and its opposite `other` do not talk; None if they do.

@@ -35,6 +35,7 @@ __all__ = [
     "expand",
     "fully_qualified_name",
     "is_hidden",
+    "logger_name",
     "normalize_namespace",
     "remap",
     "remap_namespace",
@@ -281,6 +282,11 @@ def absolute(name: str, node_name: str, namespace: str) -> str:
 def fully_qualified_name(namespace: str, node_name: str) -> str:
     """Return ``/ns/node``, or ``/node`` in the root namespace."""
     return f"/{node_name}" if namespace in {"/", ""} else f"{namespace}/{node_name}"
+
+
+def logger_name(namespace: str, node_name: str) -> str:
+    """Return the name of a node's logger: ``ns.node``, or ``node`` in the root namespace."""
+    return fully_qualified_name(namespace, node_name)[1:].replace("/", ".")
 
 
 def split_node_name(full_name: str) -> tuple[str, str]:

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
-from aionode.endpoints.dispatch import CallbackContext, Dispatch
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import asyncio
     from collections.abc import Callable
 
-    from aionode.endpoints.dispatch import OnError
-    from aionode.endpoints.stats import CallbackStats
+    from aionode.endpoints.dispatch import Callbacks
     from aionode.graph import EndpointInfo, EndpointKind, Graph
-    from aionode.logging import RcutilsLogger
 
 __all__ = ["Channel"]
 
@@ -23,16 +19,13 @@ class Channel:
 
     Attributes:
         endpoint: The endpoint.
-        logger: The logger of its node.
+        callbacks: How its node runs callbacks.
     """
 
-    def __init__(
-        self, endpoint: EndpointInfo, graph: Graph, logger: RcutilsLogger, budget_ns: int
-    ) -> None:
+    def __init__(self, endpoint: EndpointInfo, graph: Graph, callbacks: Callbacks) -> None:
         self.endpoint = endpoint
-        self.logger = logger
+        self.callbacks = callbacks
         self._graph = graph
-        self._budget_ns = budget_ns
         self._waits: set[asyncio.Future[None]] = set()
 
     def open(self) -> None:
@@ -63,34 +56,3 @@ class Channel:
             self._waits.add(wait)
             wait.add_done_callback(self._waits.discard)
             await wait
-
-    def dispatch(
-        self,
-        callback: Callable[..., Any],
-        entity: Any,
-        stats: CallbackStats,
-        *,
-        on_error: OnError,
-        offload: bool,
-    ) -> Dispatch:
-        """Return what runs the callback of `entity`.
-
-        Raises:
-            TypeError: `callback` or `on_error` is of a wrong kind.
-            ValueError: `on_error` is an unknown word, or a coroutine function is to be offloaded.
-        """
-        name = getattr(callback, "__qualname__", repr(callback))
-        context = CallbackContext(
-            node=self.endpoint.node.fully_qualified_name,
-            subject=f"{entity.subject} (callback {name})",
-            entity=entity,
-        )
-        return Dispatch(
-            callback,
-            context,
-            stats,
-            on_error=on_error,
-            offload=offload,
-            budget_ns=self._budget_ns,
-            logger=self.logger,
-        )

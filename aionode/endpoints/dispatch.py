@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import inspect
+import traceback
 from collections.abc import Awaitable, Callable, Coroutine, Generator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
@@ -17,12 +18,14 @@ from aionode.errors import CallbackCancelledError, CallbackSignatureError
 from aionode.settle import off_loop
 
 if TYPE_CHECKING:
+    from aionode.endpoints.entity import Entity
     from aionode.endpoints.inbox import Inbox
     from aionode.endpoints.stats import CallbackStats
     from aionode.logging import RcutilsLogger
 
 __all__ = [
     "CallbackContext",
+    "Callbacks",
     "Dispatch",
     "OnError",
     "accepts",
@@ -181,9 +184,8 @@ class Dispatch:
         if self._on_error == "raise":
             raise error
         if self._on_error == "log":
-            self._logger.error(
-                f"{self._context.subject}: {type(error).__name__}: {error}", exc_info=error
-            )
+            trace = "".join(traceback.format_exception(error))
+            self._logger.error(f"{self._context.subject} failed:\n{trace}")
         else:
             self._on_error(error, self._context)
 
@@ -204,6 +206,48 @@ class Dispatch:
             f"(budget {self.budget_ns / 1e6:g} ms): nothing else could run. Move the work off the "
             "loop: offload=True runs a sync callback in a thread, a coroutine can await "
             "asyncio.to_thread(...)"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Callbacks:
+    """How the callbacks of one node are run.
+
+    Attributes:
+        node: Full name of the node.
+        logger: Its logger.
+        budget_ns: How long a callback may block the loop before that is reported.
+    """
+
+    node: str
+    logger: RcutilsLogger
+    budget_ns: int
+
+    def dispatch(
+        self,
+        callback: Callable[..., Any],
+        entity: Entity,
+        stats: CallbackStats,
+        *,
+        on_error: OnError,
+        offload: bool,
+    ) -> Dispatch:
+        """Return what runs `callback` for `entity`.
+
+        Raises:
+            TypeError: `on_error` is of a wrong kind.
+            ValueError: `on_error` is an unknown word, or a coroutine function is to be offloaded.
+        """
+        name = getattr(callback, "__qualname__", repr(callback))
+        subject = f"{entity.subject} (callback {name})"
+        return Dispatch(
+            callback,
+            CallbackContext(self.node, subject, entity),
+            stats,
+            on_error=on_error,
+            offload=offload,
+            budget_ns=self.budget_ns,
+            logger=self.logger,
         )
 
 

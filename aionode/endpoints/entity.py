@@ -35,7 +35,12 @@ class Entity:
         """Begin to work, in a task of `tasks`. Called by the node."""
         work = self.run()
         if work is not None:
-            self._task = tasks.create_task(work, name=self.subject)
+            try:
+                self._task = tasks.create_task(work, name=self.subject)
+            except RuntimeError:
+                # The node is failing already; it will destroy the entity in a moment.
+                work.close()
+                raise
 
     def run(self) -> Coroutine[Any, Any, None] | None:
         """Return the work of the entity as a coroutine; None where there is none."""

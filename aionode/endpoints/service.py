@@ -81,7 +81,7 @@ class Service(Entity, Generic[RequestT, ResponseT]):
             callback, 2, 1, subject=self.subject, wanted="(request, response) or (request)"
         )
         self._wants_response = wants == 2  # noqa: PLR2004  # request and response
-        self._dispatch = channel.dispatch(
+        self._dispatch = channel.callbacks.dispatch(
             callback, self, self.stats, on_error=on_error, offload=offload
         )
 
@@ -299,7 +299,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
     def _warn_of_silence(self) -> None:
         if not self._warned:
             self._warned = True
-            self._channel.logger.warning(
+            self._channel.callbacks.logger.warning(
                 f"{self.srv_name}: called while {silence(0)} The call waits without an answer; "
                 "`await client.wait_for_service()` first"
             )

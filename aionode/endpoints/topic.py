@@ -214,7 +214,7 @@ class Subscription(Entity, Generic[ItemT]):
                 callback, 1, 2, subject=self.subject, wanted="(message) or (message, info)"
             )
             self._wants_info = wants == 2  # noqa: PLR2004  # the message and its info
-            self._dispatch = channel.dispatch(
+            self._dispatch = channel.callbacks.dispatch(
                 callback, self, self.stats, on_error=on_error, offload=offload
             )
 

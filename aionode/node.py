@@ -1,0 +1,608 @@
+"""A node: names, clock, context and endpoints put together."""
+
+from __future__ import annotations
+
+import asyncio
+from functools import partial
+from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar, overload
+
+from aionode import names, qos
+from aionode.clock import ClockType, ROSClock
+from aionode.context import Context
+from aionode.endpoints.channel import Channel
+from aionode.endpoints.dispatch import Callbacks
+from aionode.endpoints.service import Client, Service
+from aionode.endpoints.rate import Rate
+from aionode.endpoints.timer import Timer, to_period_ns
+from aionode.endpoints.topic import Publisher, Subscription
+from aionode.errors import EntityDestroyedError
+from aionode.graph import EndpointKind
+from aionode.logging import get_logger
+from aionode.message import Message, ServiceType
+from aionode.node_graph import NodeGraphMethods
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from types import TracebackType
+
+    from aionode.clock import Clock
+    from aionode.endpoints.dispatch import OnError
+    from aionode.endpoints.entity import Entity
+    from aionode.endpoints.service import ServiceCallback
+    from aionode.endpoints.timer import TimerCallback
+    from aionode.endpoints.topic import SubscriptionCallback
+    from aionode.graph import Graph
+    from aionode.logging import RcutilsLogger
+    from aionode.message import ServiceClass
+    from aionode.qos import QoSProfile
+
+__all__ = ["Node"]
+
+MsgT = TypeVar("MsgT", bound=Message)
+RequestT = TypeVar("RequestT", bound=Message)
+ResponseT = TypeVar("ResponseT", bound=Message)
+EntityT = TypeVar("EntityT", bound="Entity")
+
+
+class Node(NodeGraphMethods):
+    """A participant in the system, with publishers, subscriptions, services, clients and timers.
+
+    A node is made at any time, with or without a running event loop, and so are its entities. Its
+    callbacks are called while it runs: inside ``async with node:``, or during ``await node.run()``.
+    It runs once; a destroyed node refuses everything with EntityDestroyedError.
+
+    An exception of a callback ends the node, unless the entity's `on_error` says otherwise: all its
+    callbacks are cancelled, and the exception comes out of ``async with`` or `run` in an
+    ExceptionGroup, as from an `asyncio.TaskGroup`.
+
+    Args:
+        node_name: Letters, digits and underscores, not beginning with a digit.
+        namespace: Prefix of its relative names; the root without it.
+        context: Whom it shares graph and transports with; `Context.default()` without it.
+        cli_args: Arguments for this node alone, as on a command line.
+        use_global_arguments: Whether the arguments given to `aionode.run` hold for it too.
+        enable_rosout: Whether its log goes to ``/rosout`` as well.
+        start_parameter_services: Whether others can read and set its parameters.
+        parameter_overrides: Values that win over those of `declare_parameter`.
+        allow_undeclared_parameters: Whether parameters can be set without being declared.
+        automatically_declare_parameters_from_overrides: Whether each override declares one.
+        enable_logger_service: Whether others can read and set its log levels.
+        callback_budget_ms: How long, in milliseconds, a callback may block the event loop before
+            that is reported.
+
+    Raises:
+        InvalidNodeNameException: `node_name` is invalid (a ValueError).
+        InvalidNamespaceException: `namespace` is invalid (a ValueError).
+        EntityDestroyedError: the context was shut down (a RuntimeError).
+    """
+
+    def __init__(
+        self,
+        node_name: str,
+        *,
+        namespace: str | None = None,
+        context: Context | None = None,
+        cli_args: Sequence[str] | None = None,
+        use_global_arguments: bool = True,
+        enable_rosout: bool = True,
+        start_parameter_services: bool = True,
+        parameter_overrides: Sequence[Any] | None = None,
+        allow_undeclared_parameters: bool = False,
+        automatically_declare_parameters_from_overrides: bool = False,
+        enable_logger_service: bool = False,
+        callback_budget_ms: float = 10.0,
+    ) -> None:
+        names.validate_node_name(node_name)
+        namespace = names.normalize_namespace(namespace)
+        self.context = Context.default() if context is None else context
+        self._rules: tuple[names.RemapRule, ...] = ()
+        self._entities: dict[Entity, None] = {}
+        self._tasks: asyncio.TaskGroup | None = None
+        self._running = False
+        self._destroyed = asyncio.Event()
+        self._clock = ROSClock(time_base=self.context.time_base)
+        self._logger = get_logger(names.logger_name(namespace, node_name))
+        self._callbacks = Callbacks(
+            node=names.fully_qualified_name(namespace, node_name),
+            logger=self._logger,
+            budget_ns=round(callback_budget_ms * 1e6),
+        )
+        self.context.add_node(self)
+        self._info = self.context.describe_node(node_name, namespace, enclave="/")
+        self._announcements = [t.create_node(self._info) for t in self.context.transports]
+        self.context.graph.add_node(self._info)
+
+    def __repr__(self) -> str:
+        state = "destroyed" if self.destroyed else "running" if self._running else "not running"
+        return f"<Node {self.get_fully_qualified_name()} {state} entities={len(self._entities)}>"
+
+    # Lifetime
+
+    async def __aenter__(self) -> Self:
+        """Begin to run: open the context, and call callbacks from now on.
+
+        Raises:
+            RuntimeError: the node runs already, or was destroyed.
+            TransportError: the context cannot connect.
+        """
+        if self.destroyed:
+            raise EntityDestroyedError(f"node {self.get_fully_qualified_name()}", "run")
+        if self._running:
+            raise RuntimeError(f"node {self.get_fully_qualified_name()} runs already")
+        self._running = True
+        try:
+            await self.context.acquire()
+        except BaseException:
+            self._running = False
+            raise
+        self._tasks = await asyncio.TaskGroup().__aenter__()
+        for entity in list(self._entities):
+            entity.start(self._tasks)
+        return self
+
+    async def __aexit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Destroy the node, and wait until its callbacks have ended.
+
+        Raises:
+            ExceptionGroup: of what callbacks and the body of ``async with`` raised.
+        """
+        tasks = self._tasks
+        assert tasks is not None  # noqa: S101  # set by __aenter__
+        self.destroy_node()
+        try:
+            await tasks.__aexit__(exc_type, exc, traceback)
+        finally:
+            self._running = False
+            await self.context.release()
+
+    async def run(self) -> None:
+        """Run until `destroy_node`, which any callback may call.
+
+        Cancelling destroys the node.
+
+        Raises:
+            ExceptionGroup: of what callbacks raised.
+            RuntimeError: the node runs already, or was destroyed.
+            TransportError: the context cannot connect.
+        """
+        async with self:
+            await self._destroyed.wait()
+
+    @property
+    def destroyed(self) -> bool:
+        """Whether `destroy_node` was called."""
+        return self._destroyed.is_set()
+
+    @property
+    def is_running(self) -> bool:
+        """Whether callbacks are called: `run` or ``async with`` has begun and not ended."""
+        return self._running
+
+    def destroy_node(self) -> None:
+        """End the node: its entities are destroyed and its callbacks cancelled. Twice is allowed.
+
+        `run` returns when the callbacks have ended.
+        """
+        if self.destroyed:
+            return
+        self._destroyed.set()
+        for entity in reversed(list(self._entities)):
+            entity.destroy()
+        self._clock.destroy()
+        for announcement in self._announcements:
+            announcement.close()
+        self.context.graph.remove_node(self._info)
+        self.context.remove_node(self)
+
+    # What it is
+
+    def get_name(self) -> str:
+        """Return the name without namespace."""
+        return self._info.name
+
+    def get_namespace(self) -> str:
+        """Return the namespace, beginning with a slash."""
+        return self._info.namespace
+
+    def get_fully_qualified_name(self) -> str:
+        """Return namespace and name in one."""
+        return self._info.fully_qualified_name
+
+    def get_logger(self) -> RcutilsLogger:
+        """Return the logger that bears the node's name."""
+        return self._logger
+
+    def get_clock(self) -> Clock:
+        """Return the node's clock: ROS time, which is the system's unless `use_sim_time` is set."""
+        return self._clock
+
+    @property
+    def graph(self) -> Graph:  # type: ignore[override]  # read-only here
+        """The nodes and endpoints known now, and ``await node.graph.changed()``."""
+        return self.context.graph
+
+    @property
+    def publishers(self) -> list[Publisher[Any]]:
+        """The publishers of this node."""
+        return self._entities_of(Publisher)
+
+    @property
+    def subscriptions(self) -> list[Subscription[Any]]:
+        """The subscriptions of this node."""
+        return self._entities_of(Subscription)
+
+    @property
+    def services(self) -> list[Service[Any, Any]]:
+        """The services of this node."""
+        return self._entities_of(Service)
+
+    @property
+    def clients(self) -> list[Client[Any, Any]]:
+        """The clients of this node."""
+        return self._entities_of(Client)
+
+    @property
+    def timers(self) -> list[Timer]:
+        """The timers of this node."""
+        return self._entities_of(Timer)
+
+    def _entities_of(self, kind: type[EntityT]) -> list[EntityT]:
+        return [entity for entity in self._entities if isinstance(entity, kind)]
+
+    # Names
+
+    def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
+        """Return the full name of a topic of this node, remapped unless `only_expand`.
+
+        Raises:
+            InvalidTopicNameException: `topic` is invalid (a ValueError).
+        """
+        return self._resolve(topic, only_expand=only_expand)
+
+    def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
+        """Return the full name of a service of this node, remapped unless `only_expand`.
+
+        Raises:
+            InvalidServiceNameException: `service` is invalid (a ValueError).
+        """
+        return self._resolve(service, only_expand=only_expand, is_service=True)
+
+    def _resolve(self, name: str, *, only_expand: bool = False, is_service: bool = False) -> str:
+        rules = () if only_expand else self._rules
+        return names.resolve(
+            name, self.get_name(), self.get_namespace(), rules, is_service=is_service
+        )
+
+    # Entities
+
+    def create_publisher(
+        self, msg_type: type[MsgT], topic: str, qos_profile: QoSProfile | int
+    ) -> Publisher[MsgT]:
+        """Return a publisher of `msg_type`.
+
+        Args:
+            msg_type: A message class.
+            topic: Name of the topic; a relative one gets the node's namespace.
+            qos_profile: A profile, or the number of messages to keep.
+
+        Raises:
+            TypeError: `msg_type` is no message class, or `qos_profile` neither profile nor number.
+            ValueError: `qos_profile` is a negative number.
+            InvalidTopicNameException: `topic` is invalid (a ValueError).
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        self._refuse_if_destroyed("publisher")
+        expect_message_type(msg_type, f"publisher of {topic}")
+        channel = self._channel(EndpointKind.PUBLISHER, topic, msg_type, qos_profile)
+        writers = [
+            transport.create_writer(channel.endpoint, msg_type)
+            for transport in self.context.transports
+        ]
+        return self._add(
+            Publisher(channel, msg_type, writers, self.context.time_base), channel
+        )
+
+    @overload
+    def create_subscription(
+        self,
+        msg_type: type[Message],
+        topic: str,
+        callback: SubscriptionCallback[bytes] | None = None,
+        qos_profile: QoSProfile | int = 10,
+        *,
+        concurrent: bool | int = False,
+        raw: Literal[True],
+        on_error: OnError = "raise",
+        offload: bool = False,
+    ) -> Subscription[bytes]: ...
+
+    @overload
+    def create_subscription(
+        self,
+        msg_type: type[MsgT],
+        topic: str,
+        callback: SubscriptionCallback[MsgT] | None = None,
+        qos_profile: QoSProfile | int = 10,
+        *,
+        concurrent: bool | int = False,
+        raw: Literal[False] = False,
+        on_error: OnError = "raise",
+        offload: bool = False,
+    ) -> Subscription[MsgT]: ...
+
+    def create_subscription(
+        self,
+        msg_type: type[Any],
+        topic: str,
+        callback: SubscriptionCallback[Any] | None = None,
+        qos_profile: QoSProfile | int = 10,
+        *,
+        concurrent: bool | int = False,
+        raw: bool = False,
+        on_error: OnError = "raise",
+        offload: bool = False,
+    ) -> Subscription[Any]:
+        """Return a subscription to `topic`.
+
+        Args:
+            msg_type: A message class.
+            topic: Name of the topic; a relative one gets the node's namespace.
+            callback: Called with each message, or with message and `MessageInfo`; sync or async.
+                Without it the subscription is an async iterator.
+            qos_profile: A profile, or the number of unread messages to keep.
+            concurrent: False calls back one message after the other, True all at once, a number at
+                most so many at once.
+            raw: Whether to receive CDR bytes instead of messages.
+            on_error: What becomes of an exception in the callback: ``"raise"`` ends the node,
+                ``"log"`` logs and counts it, a function gets (exception, CallbackContext).
+            offload: Whether to run a sync callback in a thread.
+
+        Raises:
+            TypeError: an argument is of a wrong kind, or the callback takes other arguments.
+            ValueError: `concurrent`, `on_error` or `qos_profile` has an impossible value.
+            InvalidTopicNameException: `topic` is invalid (a ValueError).
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        self._refuse_if_destroyed("subscription")
+        expect_message_type(msg_type, f"subscription of {topic}")
+        channel = self._channel(EndpointKind.SUBSCRIPTION, topic, msg_type, qos_profile)
+        subscription: Subscription[Any] = Subscription(
+            channel,
+            msg_type,
+            callback,
+            self.context.time_base,
+            concurrent=concurrent,
+            raw=raw,
+            on_error=on_error,
+            offload=offload,
+        )
+        subscription.connect(
+            [
+                transport.create_reader(channel.endpoint, msg_type, subscription)
+                for transport in self.context.transports
+            ]
+        )
+        return self._add(subscription, channel)
+
+    def create_service(
+        self,
+        srv_type: ServiceClass[RequestT, ResponseT],
+        srv_name: str,
+        callback: ServiceCallback[RequestT, ResponseT],
+        *,
+        qos_profile: QoSProfile | int = qos.qos_profile_services_default,
+        concurrent: bool | int = False,
+        on_error: OnError = "raise",
+        offload: bool = False,
+    ) -> Service[RequestT, ResponseT]:
+        """Return a server of `srv_name`.
+
+        Args:
+            srv_type: A service class.
+            srv_name: Name of the service; a relative one gets the node's namespace.
+            callback: Called with (request, response), or with (request); returns the response; sync
+                or async. What it raises is told to the client as a `ServiceError` first.
+            qos_profile: A profile, or a depth.
+            concurrent: False answers one request after the other, True all at once, a number at
+                most so many at once.
+            on_error: What becomes of an exception in the callback: ``"raise"`` ends the node,
+                ``"log"`` logs and counts it, a function gets (exception, CallbackContext).
+            offload: Whether to run a sync callback in a thread.
+
+        Raises:
+            TypeError: an argument is of a wrong kind, or the callback takes other arguments.
+            ValueError: `concurrent`, `on_error` or `qos_profile` has an impossible value.
+            InvalidServiceNameException: `srv_name` is invalid (a ValueError).
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        self._refuse_if_destroyed("service")
+        expect_service_type(srv_type, f"service {srv_name}")
+        channel = self._channel(EndpointKind.SERVER, srv_name, srv_type, qos_profile)
+        service: Service[RequestT, ResponseT] = Service(
+            channel,
+            srv_type,
+            callback,
+            concurrent=concurrent,
+            on_error=on_error,
+            offload=offload,
+        )
+        service.connect(
+            [
+                transport.create_server(channel.endpoint, srv_type, service.serve)
+                for transport in self.context.transports
+            ]
+        )
+        return self._add(service, channel)
+
+    def create_client(
+        self,
+        srv_type: ServiceClass[RequestT, ResponseT],
+        srv_name: str,
+        *,
+        qos_profile: QoSProfile | int = qos.qos_profile_services_default,
+    ) -> Client[RequestT, ResponseT]:
+        """Return a client of `srv_name`, whose `call` is awaited.
+
+        Args:
+            srv_type: A service class.
+            srv_name: Name of the service; a relative one gets the node's namespace.
+            qos_profile: A profile, or a depth.
+
+        Raises:
+            TypeError: an argument is of a wrong kind.
+            InvalidServiceNameException: `srv_name` is invalid (a ValueError).
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        self._refuse_if_destroyed("client")
+        expect_service_type(srv_type, f"client of {srv_name}")
+        channel = self._channel(EndpointKind.CLIENT, srv_name, srv_type, qos_profile)
+        requesters = [
+            transport.create_requester(channel.endpoint, srv_type)
+            for transport in self.context.transports
+        ]
+        return self._add(Client(channel, srv_type, requesters, self.context.time_base), channel)
+
+    def create_timer(
+        self,
+        timer_period_sec: float,
+        callback: TimerCallback,
+        clock: Clock | None = None,
+        autostart: bool = True,  # noqa: FBT001, FBT002  # rclpy's signature
+        *,
+        on_error: OnError = "raise",
+        offload: bool = False,
+    ) -> Timer:
+        """Return a timer that calls `callback` every `timer_period_sec` seconds.
+
+        The first call is one period from now. A late call does not move the later ones, and missed
+        ones are skipped; calls never overlap.
+
+        Args:
+            timer_period_sec: The period in seconds; 0 calls as often as the loop allows.
+            callback: Called without arguments, or with a `TimerInfo`; sync or async.
+            clock: Whose time counts; the node's clock without it.
+            autostart: Whether it runs at once, or only after `reset`.
+            on_error: What becomes of an exception in the callback: ``"raise"`` ends the node,
+                ``"log"`` logs and counts it, a function gets (exception, CallbackContext).
+            offload: Whether to run a sync callback in a thread.
+
+        Raises:
+            TypeError: an argument is of a wrong kind, or the callback takes other arguments.
+            ValueError: the period is negative, or `on_error` is an unknown word.
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        self._refuse_if_destroyed("timer")
+        timer = Timer(
+            callback,
+            to_period_ns(timer_period_sec),
+            self._clock if clock is None else clock,
+            partial(self._callbacks.dispatch, on_error=on_error, offload=offload),
+            autostart=autostart,
+        )
+        return self._add(timer)
+
+    def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
+        """Return a rate that one awaits: ``await rate.sleep()``, or ``async for _ in rate``.
+
+        Args:
+            frequency: Ticks per second.
+            clock: Whose time counts; the node's clock without it.
+
+        Raises:
+            TypeError: `frequency` is no number.
+            ValueError: `frequency` is not positive.
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        self._refuse_if_destroyed("rate")
+        return self._add(Rate(frequency, self._clock if clock is None else clock))
+
+    def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
+        """Destroy a publisher of this node, as `publisher.destroy()` does."""
+        return self._destroy(publisher)
+
+    def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
+        """Destroy a subscription of this node, as `subscription.destroy()` does."""
+        return self._destroy(subscription)
+
+    def destroy_service(self, service: Service[Any, Any]) -> bool:
+        """Destroy a service of this node, as `service.destroy()` does."""
+        return self._destroy(service)
+
+    def destroy_client(self, client: Client[Any, Any]) -> bool:
+        """Destroy a client of this node, as `client.destroy()` does."""
+        return self._destroy(client)
+
+    def destroy_timer(self, timer: Timer) -> bool:
+        """Destroy a timer of this node, as `timer.destroy()` does."""
+        return self._destroy(timer)
+
+    def destroy_rate(self, rate: Rate) -> bool:
+        """Destroy a rate of this node, as `rate.destroy()` does."""
+        return self._destroy(rate)
+
+    def _destroy(self, entity: Entity) -> bool:
+        """Destroy `entity`; return whether it was one of this node's."""
+        if entity not in self._entities:
+            return False
+        entity.destroy()
+        return True
+
+    def _channel(
+        self, kind: EndpointKind, name: str, ros_type: type[Any], qos_profile: QoSProfile | int
+    ) -> Channel:
+        """Return the entry of a new endpoint; it is entered into the graph by `_add`."""
+        is_service = kind in {EndpointKind.SERVER, EndpointKind.CLIENT}
+        full_name = self._resolve(name, is_service=is_service)
+        profile = qos.as_profile(qos_profile)
+        others = [e.qos for e in self.graph.endpoints(kind.opposite, name=full_name)]
+        if kind is EndpointKind.PUBLISHER:
+            profile = qos.best_available_for_publisher(profile, others)
+        elif kind is EndpointKind.SUBSCRIPTION:
+            profile = qos.best_available_for_subscription(profile, others)
+        endpoint = self.context.describe_endpoint(
+            kind, self._info, full_name, ros_type, profile.resolved()
+        )
+        return Channel(endpoint, self.graph, self._callbacks)
+
+    def _add(self, entity: EntityT, channel: Channel | None = None) -> EntityT:
+        """Take `entity` in: announce it, and start it if the node runs."""
+        self._entities[entity] = None
+        entity.adopt(self._forget)
+        if channel is not None:
+            channel.open()
+        if self._tasks is not None:
+            entity.start(self._tasks)
+        return entity
+
+    def _forget(self, entity: Entity) -> None:
+        self._entities.pop(entity, None)
+
+    def _refuse_if_destroyed(self, wanted: str) -> None:
+        if self.destroyed:
+            raise EntityDestroyedError(
+                f"node {self.get_fully_qualified_name()}", f"given a {wanted}"
+            )
+
+
+def expect_message_type(msg_type: object, subject: str) -> None:
+    """Raise TypeError unless `msg_type` is a message class."""
+    if not (isinstance(msg_type, type) and issubclass(msg_type, Message)):
+        raise TypeError(
+            f"{subject}: {msg_type!r} is no message class; use one such as "
+            "aionode.interfaces.std_msgs.msg.String, or derive from aionode.message.Message"
+        )
+
+
+def expect_service_type(srv_type: object, subject: str) -> None:
+    """Raise TypeError unless `srv_type` is a service class."""
+    if not (isinstance(srv_type, type) and issubclass(srv_type, ServiceType)):
+        raise TypeError(
+            f"{subject}: {srv_type!r} is no service class; use one such as "
+            "aionode.interfaces.example_interfaces.srv.AddTwoInts, or derive from "
+            "aionode.message.ServiceType"
+        )
