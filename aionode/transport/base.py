@@ -20,7 +20,7 @@ import msgspec
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.errors import ServiceError
+    from aionode.errors import DecodeError, ServiceError
     from aionode.graph import EndpointInfo, Graph, NodeInfo
 
 __all__ = [
@@ -72,6 +72,9 @@ class Reader(Protocol):
 
     def deliver(self, msg: Any, origin: Origin) -> None:
         """Take one message, which nobody may change from now on. Never raises, never waits."""
+
+    def reject(self, error: DecodeError) -> None:
+        """Note that something came which is no message of this type. Never raises."""
 
     def has_room(self) -> bool:
         """Whether a message can be taken without losing one that should be kept (KEEP_ALL)."""
