@@ -12,6 +12,8 @@ name; new ones end in `Error`. They carry plain values, never live objects.
     ├── ConfigurationError (ValueError)
     ├── DecodeError (ValueError)
     ├── EntityDestroyedError (RuntimeError)
+    ├── IdlError (ValueError)
+    ├── InterfaceNotFoundError (LookupError)
     ├── InvalidLogLevelError (ValueError, RuntimeError)
     ├── InvalidQoSProfileException (ValueError)
     ├── InvalidROSArgsError (ValueError)
@@ -50,6 +52,8 @@ __all__ = [
     "ConfigurationError",
     "DecodeError",
     "EntityDestroyedError",
+    "IdlError",
+    "InterfaceNotFoundError",
     "InvalidLogLevelError",
     "InvalidNamespaceException",
     "InvalidNodeNameException",
@@ -482,9 +486,7 @@ class InvalidParameterValueException(ParameterException, ValueError):
         self.name = name
         self.value = value
         self.reason = reason
-        super().__init__(
-            f"Invalid parameter value ({value}) for parameter. Reason: {reason}", name
-        )
+        super().__init__(f"Invalid parameter value ({value}) for parameter. Reason: {reason}", name)
 
 
 class ParameterImmutableException(ParameterException, RuntimeError):
@@ -499,3 +501,43 @@ class ParameterUninitializedException(ParameterException, RuntimeError):
 
     def __init__(self, parameter_name: str) -> None:
         super().__init__(f"The parameter '{parameter_name}' is not initialized", parameter_name)
+
+
+class IdlError(AionodeError, ValueError):
+    """An interface definition cannot be read.
+
+    Attributes:
+        file: Path of the file, or the name of the type where the text came from elsewhere.
+        line: Number of the line, from 1; 0 if the whole file is meant.
+        column: Number of the character in it, from 1; 0 if the whole line is meant.
+        problem: What is wrong and what fits.
+    """
+
+    def __init__(self, file: str, line: int, column: int, problem: str) -> None:
+        self.file = file
+        self.line = line
+        self.column = column
+        self.problem = problem
+        place = ":".join(str(part) for part in (file, line, column) if part)
+        super().__init__(f"{place}: {problem}")
+
+
+class InterfaceNotFoundError(AionodeError, LookupError):
+    """There is no message, service or action type of this name.
+
+    Attributes:
+        name: The name that was asked for.
+        suggestions: Names like it that there are, the closest first.
+    """
+
+    def __init__(self, name: str, suggestions: tuple[str, ...] = (), problem: str = "") -> None:
+        self.name = name
+        self.suggestions = suggestions
+        hint = f"did you mean {' or '.join(suggestions)}?" if suggestions else HOW_TO_FIND
+        super().__init__(f"{name}: {problem or 'no such interface'}; {hint}")
+
+
+HOW_TO_FIND = (
+    "names look like std_msgs/msg/String, `aionode interface list` shows those there are, and "
+    "aionode.idl.load_interfaces() adds your own"
+)
