@@ -1,0 +1,392 @@
+"""Writes, for one message type, the function that decodes its messages.
+
+It reads little endian data that is as ROS writes it, without a look ahead: whatever does not fit
+raises somewhere, and the plain codec then reads the data again and finds the place, or finds that
+it may be read after all.
+"""
+
+from __future__ import annotations
+
+import struct
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from aionode.message.base import fields, type_name
+from aionode.message.fieldtypes import DTYPES
+from aionode.message.values import EMPTY
+from aionode.wire.layout import (
+    COUNT_SIZE,
+    HEADER,
+    PRIMITIVES,
+    is_small,
+    minimum_size,
+    padding,
+    uniform_alignment,
+)
+from aionode.wire.source import Misfit, Source
+from aionode.wire.texts import TextList, read_wide_texts, wide_text
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.message.fieldtypes import FieldType
+
+__all__ = ["MISFITS", "bools", "generate_decoder"]
+
+MISFITS = (Misfit, struct.error, IndexError, ValueError)
+"""What the generated function meets when data is not as ROS writes it, or cut, or corrupted."""
+
+PLACES = 8
+"""Places that differ in alignment."""
+
+MAGIC = int.from_bytes(HEADER[:2], "little")
+
+
+def bools(data: Any, count: int, pos: int) -> Any:
+    """Return an array of bool over `data`; a copy if another byte than 0 and 1 means True."""
+    import numpy as np  # noqa: PLC0415 - only where a type needs it
+
+    numbers = np.frombuffer(data, np.uint8, count, pos)
+    if count and numbers.max() > 1:
+        numbers = numbers != 0
+        numbers.flags.writeable = False
+    return numbers.view(np.bool_)
+
+
+def generate_decoder(
+    cls: type[Any],
+    plain: Callable[[Any], Any],
+    other: Callable[[Any], Any] | None = None,
+) -> Callable[[Any], Any]:
+    """Return the function that decodes messages of class `cls`.
+
+    Args:
+        cls: A message class.
+        plain: Decodes what the function does not, or raises the error.
+        other: Decodes what is not a bytes object; without it, the function takes memoryviews only.
+    """
+    return Decoding(cls, of_bytes=other is not None).whole(plain, other)
+
+
+@cache
+def element_decoder(
+    cls: type[Any], *, of_bytes: bool
+) -> Callable[[Any, memoryview, int], tuple[Any, int]]:
+    """Return the function that reads one message, and gives it and the new `pos`."""
+    return Decoding(cls, of_bytes=of_bytes).element()
+
+
+class Decoding:
+    """One decoder while it is being written.
+
+    What is known of `pos` at the start of the run being collected: its value as `_offset`, or None
+    where that depends on the data; in any case that, not counting the header, it is `_residue`
+    modulo `_modulus`.
+    """
+
+    def __init__(self, cls: type[Any], *, of_bytes: bool) -> None:
+        self._cls = cls
+        self._of_bytes = of_bytes
+        self._source = Source()
+        self._layout = "<"
+        self._targets: list[str] = []
+        self._afterwards: list[str] = []
+        self._has_view = False
+        self._offset: int | None = 0
+        self._modulus, self._residue = PLACES, -len(HEADER) % PLACES
+
+    def whole(
+        self, plain: Callable[[Any], Any], other: Callable[[Any], Any] | None
+    ) -> Callable[[Any], Any]:
+        """Compile the function that decodes all of `data`."""
+        source = self._source
+        fallback = source.constant("plain", plain)
+        misfits = source.constant("misfits", MISFITS)
+        magic = source.local("magic")
+        if other is not None:
+            source.line(f"if data.__class__ is not bytes: return {source.constant('other', other)}(data)")
+        with source.block("try:"):
+            self._value("Hxx", 1, magic)
+            self._afterwards.append(f"if {magic} != {MAGIC}: raise Misfit")
+            result = self._message(self._cls)
+            self._flush()
+            source.line(f"return {result}")
+        source.line(f"except {misfits}: pass")
+        source.line(f"return {fallback}(data)")
+        return source.function("def decode(data):", type_name(self._cls))
+
+    def element(self) -> Callable[[Any, memoryview, int], tuple[Any, int]]:
+        """Compile the function that reads one message from anywhere."""
+        self._has_view = True
+        self._unknown()
+        result = self._message(self._cls)
+        self._flush()
+        self._source.reads_position()
+        self._source.line(f"return {result}, pos")
+        return self._source.function("def read(data, view, pos):", type_name(self._cls))
+
+    # What a message consists of.
+
+    def _message(self, cls: type[Any]) -> str:
+        """Read all fields; return the expression that makes the message of them."""
+        described = fields(cls)
+        if not described:
+            self._value("x", 1)
+        values = [f"{field.name}={self._field(field.type, field.name)}" for field in described]
+        return f"{self._source.constant(cls.__name__, cls)}({', '.join(values)})"
+
+    def _field(self, kind: FieldType, name: str) -> str:
+        """Read one field; return the expression of its value."""
+        if kind.container == "single" and kind.nested is not None and is_small(kind.nested):
+            return self._message(kind.nested)
+        local = self._source.local(name)
+        if kind.nested is not None:
+            self._messages(kind, kind.nested, local)
+        elif kind.kind not in PRIMITIVES:
+            read = self._text if kind.container == "single" else self._texts
+            read(kind, local)
+        elif kind.container == "single":
+            primitive = PRIMITIVES[kind.kind]
+            self._value(primitive.code, primitive.size, local)
+        elif kind.form == "bytes":
+            self._octets(kind, local)
+        else:
+            self._numbers(kind, local)
+        return local
+
+    def _text(self, kind: FieldType, local: str) -> None:
+        source = self._source
+        size = self._count(kind)
+        if kind.kind == "wstring":
+            start = self._skip(f"4 * {size}", COUNT_SIZE)
+            source.require("pos <= len(data)")
+            source.line(f"{local} = {source.constant('wide', wide_text)}(data[{start}:pos])")
+        else:
+            start = self._skip(size, 1)
+            source.line("if data[pos - 1]: raise Misfit")
+            text = f"data[{start}:pos - 1]"
+            # The first form is faster, and slices of bytes only have it.
+            source.line(f"{local} = " + (f"{text}.decode()" if self._of_bytes else f"str({text}, 'utf-8')"))
+        source.reads_position()
+        if kind.string_bound is not None:
+            source.require(f"len({local}) <= {kind.string_bound}")
+
+    def _texts(self, kind: FieldType, local: str) -> None:
+        source = self._source
+        count = self._count(kind)
+        self._align(COUNT_SIZE)
+        wide = kind.kind == "wstring"
+        read = source.constant("texts", read_wide_texts if wide else TextList())
+        source.line(f"{local}, pos = {read}(data, {self._place()}, {count})")
+        self._unknown()
+        if kind.string_bound is not None:
+            source.require(f"max(map(len, {local}), default=0) <= {kind.string_bound}")
+
+    def _octets(self, kind: FieldType, local: str) -> None:
+        if kind.container == "array":
+            self._value(f"{kind.size}s", 1, local)
+            return
+        count = self._count(kind)
+        start = self._skip(count, 1)
+        self._source.require("pos <= len(data)")
+        self._source.line(f"{local} = {self._view()}[{start}:pos]")
+        self._source.reads_position()
+
+    def _numbers(self, kind: FieldType, local: str) -> None:
+        import numpy as np  # noqa: PLC0415 - only where a type needs it
+
+        source = self._source
+        primitive = PRIMITIVES[kind.kind]
+        dtype = np.dtype(f"<{primitive.dtype}")
+        if kind.kind == "bool":
+            make = f"{source.constant('bools', bools)}(data"
+        else:
+            make = f"{source.constant('frombuffer', np.frombuffer)}(data"
+            make += f", {source.constant('dtype', dtype)}"
+        if kind.container == "array":
+            place = self._value(f"{kind.size * primitive.size}x", primitive.size)
+            self._afterwards.append(f"{local} = {make}, {kind.size}, {place})")
+            return
+        count = self._count(kind)
+        self._align_elements(primitive.size, count)
+        empty = source.constant("empty", EMPTY[DTYPES[kind.kind]]())
+        source.reads_position()
+        source.line(f"{local} = {make}, {count}, pos) if {count} else {empty}")
+        source.position(f"pos += {primitive.size} * {count}")
+
+    def _messages(self, kind: FieldType, cls: type[Any], local: str) -> None:
+        source = self._source
+        count = self._count(kind)
+        self._flush()
+        if kind.container in ("bounded", "unbounded"):
+            source.reads_position()
+            source.require(f"{minimum_size(cls)} * {count} <= len(data) - {self._place()}")
+            if self._uniform_messages(cls, count, local):
+                return
+        view = self._view()
+        read = source.constant("read", element_decoder(cls, of_bytes=self._of_bytes))
+        if self._offset is not None:
+            source.line(f"pos = {self._offset}")
+        self._unknown()
+        if kind.container == "single":
+            source.reads_position()
+            source.line(f"{local}, pos = {read}(data, {view}, pos)")
+            return
+        item = source.local("item")
+        source.line(f"{local} = []")
+        with source.loop(f"for _ in range({count}):"):
+            source.line(f"{item}, pos = {read}(data, {view}, pos)")
+            source.line(f"{local}.append({item})")
+
+    def _uniform_messages(self, cls: type[Any], count: str, local: str) -> bool:
+        """Read messages of scalars without padding by one Struct, if `cls` is so."""
+        alignment = uniform_alignment(cls)
+        if alignment is None or has_arrays(cls):
+            return False
+        source = self._source
+        self._align_elements(alignment, count)
+        before = self._modulus, self._residue
+        self._modulus, self._residue = alignment, 0
+        result = self._message(cls)
+        self._modulus, self._residue = before
+        element = struct.Struct(self._layout)
+        targets, self._layout, self._targets = self._targets, "<", []
+        start = self._skip(f"{element.size} * {count}", alignment)
+        source.require("pos <= len(data)")
+        unpack = source.constant("unpack", element.iter_unpack)
+        elements = f"{unpack}({self._view()}[{start}:pos])"
+        source.line(f"{local} = [{result} for {', '.join(targets)}, in {elements}]")
+        source.reads_position()
+        return True
+
+    # How it is read.
+
+    def _count(self, kind: FieldType) -> str:
+        """Return the expression of how many elements, or bytes of text, follow."""
+        if kind.container == "array":
+            return str(kind.size)
+        if kind.nested is not None and kind.container == "single":
+            return "1"
+        count = self._source.local("n")
+        self._value("I", COUNT_SIZE, count)
+        self._flush()
+        if kind.container == "bounded":
+            self._source.require(f"{count} <= {kind.size}")
+        return count
+
+    def _value(self, code: str, alignment: int, target: str = "") -> str:
+        """Read one value of fixed size into `target`; return the expression of its place."""
+        if alignment > self._modulus:
+            self._align(alignment)
+        at = self._residue + struct.calcsize(self._layout)
+        gap = -at % alignment
+        place = self._place(struct.calcsize(self._layout) + gap)
+        self._layout += f"{gap}x{code}" if gap else code
+        if target:
+            self._targets.append(target)
+        return place
+
+    def _flush(self) -> None:
+        """Read the run collected so far."""
+        packed = struct.Struct(self._layout)
+        source = self._source
+        if self._targets:
+            unpack = source.constant("unpack", packed.unpack_from)
+            source.reads_position()
+            source.line(f"{', '.join(self._targets)}, = {unpack}(data, {self._place()})")
+        elif packed.size:
+            source.reads_position()
+            source.require(f"len(data) >= {self._place(packed.size)}")
+        for statement in self._afterwards:
+            source.line(statement)
+        self._layout, self._targets, self._afterwards = "<", [], []
+        self._advance(packed.size)
+
+    def _place(self, further: int = 0) -> str:
+        """Return the expression of where the run starts, or of what is `further`."""
+        if self._offset is not None:
+            return str(self._offset + further)
+        return f"pos + {further}" if further else "pos"
+
+    def _advance(self, size: int) -> None:
+        """Note that the next run starts `size` further."""
+        if size and self._offset is None:
+            self._source.position(f"pos += {size}")
+        elif self._offset is not None:
+            self._offset += size
+        self._residue = (self._residue + size) % self._modulus
+
+    def _align(self, alignment: int) -> None:
+        """Go to the next aligned place."""
+        self._flush()
+        if alignment <= self._modulus:
+            self._advance(-self._residue % alignment)
+            return
+        self._source.reads_position()
+        self._source.line(f"pos = {aligned(alignment)}")
+        self._modulus, self._residue = alignment, 0
+
+    def _align_elements(self, alignment: int, count: str) -> None:
+        """Go to the first of `count` elements after a count; none are not aligned."""
+        if self._offset is not None:
+            self._source.line(f"pos = {self._offset}")
+            self._offset = None
+        if alignment > COUNT_SIZE and (self._modulus < alignment or self._residue):
+            self._source.reads_position()
+            self._source.line(f"if {count}: pos = {aligned(alignment)}")
+        self._unknown(self._kept(alignment))
+
+    def _skip(self, size: str, alignment: int) -> str:
+        """Set `pos` to the end of something variable; return the expression of its start.
+
+        Args:
+            size: Expression of how long it is.
+            alignment: What that is always a multiple of.
+        """
+        source = self._source
+        if self._offset is not None:
+            start = str(self._offset)
+            source.line(f"pos = {start} + {size}")
+        else:
+            start = source.local("start")
+            source.reads_position()
+            source.line(f"{start} = pos")
+            source.line(f"pos += {size}")
+        self._unknown(self._kept(alignment))
+        return start
+
+    def _kept(self, alignment: int) -> int:
+        """Return what `pos` stays aligned to after a multiple of `alignment`."""
+        known = min(alignment, self._modulus)
+        while self._residue % known:
+            known //= 2
+        return known
+
+    def _unknown(self, modulus: int = 1) -> None:
+        """Note that `pos` depends on the data, and is aligned to `modulus`."""
+        self._offset = None
+        self._modulus, self._residue = modulus, 0
+
+    def _view(self) -> str:
+        """Return the name of the memoryview of `data`."""
+        if not self._has_view:
+            self._source.line("view = memoryview(data)")
+            self._has_view = True
+        return "view"
+
+
+def aligned(alignment: int) -> str:
+    """Return the expression of the next aligned place at or after `pos`."""
+    shift = len(HEADER) % alignment
+    if shift:
+        return f"(pos + {alignment - 1 - shift} & -{alignment}) + {shift}"
+    return f"pos + {alignment - 1} & -{alignment}"
+
+
+def has_arrays(cls: type[Any]) -> bool:
+    """Tell whether a message of fixed size holds arrays."""
+    kinds = [field.type for field in fields(cls)]
+    return any(
+        kind.container == "array" or (kind.nested is not None and has_arrays(kind.nested))
+        for kind in kinds
+    )

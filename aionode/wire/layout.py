@@ -1,0 +1,142 @@
+"""Sizes and alignments of XCDR1, the form in which ROS 2 writes messages.
+
+A value is aligned to its own size, counted from the end of the four bytes that open every message.
+Only values are aligned, not structures: where a structure starts depends on its first field alone.
+Offsets in this package count those four bytes too, so they are places in the data as it is sent.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from aionode.message.base import fields
+
+if TYPE_CHECKING:
+    from aionode.message.fieldtypes import FieldType
+
+__all__ = [
+    "COUNT_SIZE",
+    "HEADER",
+    "PRIMITIVES",
+    "Primitive",
+    "first_alignment",
+    "is_small",
+    "minimum_size",
+    "padding",
+    "uniform_alignment",
+]
+
+HEADER = b"\x00\x01\x00\x00"
+"""What opens a message: CDR, little endian, no options."""
+
+COUNT_SIZE = 4
+"""Bytes of the uint32 that opens strings and sequences."""
+
+MOST_LEAVES = 64
+DEEPEST = 16
+
+
+@dataclass(frozen=True, slots=True)
+class Primitive:
+    """How one value of a primitive kind is written.
+
+    Attributes:
+        code: Its letter for `struct`.
+        size: Bytes on the wire, which is also its alignment.
+        dtype: Its numpy type without byte order.
+    """
+
+    code: str
+    size: int
+    dtype: str
+
+
+PRIMITIVES = {
+    "int8": Primitive("b", 1, "i1"),
+    "uint8": Primitive("B", 1, "u1"),
+    "int16": Primitive("h", 2, "i2"),
+    "uint16": Primitive("H", 2, "u2"),
+    "int32": Primitive("i", 4, "i4"),
+    "uint32": Primitive("I", 4, "u4"),
+    "int64": Primitive("q", 8, "i8"),
+    "uint64": Primitive("Q", 8, "u8"),
+    "float32": Primitive("f", 4, "f4"),
+    "float64": Primitive("d", 8, "f8"),
+    "bool": Primitive("?", 1, "b1"),
+    "byte": Primitive("c", 1, "u1"),
+    "char": Primitive("B", 1, "u1"),
+}
+
+
+def padding(offset: int, alignment: int) -> int:
+    """Return how many bytes there are between `offset` and the next aligned place."""
+    return (len(HEADER) - offset) % alignment
+
+
+def first_alignment(kind: FieldType) -> int:
+    """Return the alignment of the first value of a field, which aligns the field as a whole."""
+    if kind.container in ("bounded", "unbounded"):
+        return COUNT_SIZE
+    if kind.nested is not None:
+        inner = fields(kind.nested)
+        return first_alignment(inner[0].type) if inner else 1
+    primitive = PRIMITIVES.get(kind.kind)
+    return primitive.size if primitive else COUNT_SIZE
+
+
+def minimum_size(cls: type[Any]) -> int:
+    """Return the fewest bytes that a message of this class takes, padding not counted.
+
+    Never 0, so that a sequence that claims more elements than there are bytes is refused unread.
+    """
+    return totals(cls)[0]
+
+
+def is_small(cls: type[Any]) -> bool:
+    """Tell whether code may be written out for the fields of a nested message.
+
+    Larger ones get a function of their own, so that no definition makes code grow without bound.
+    """
+    _, leaves, depth = totals(cls)
+    return leaves <= MOST_LEAVES and depth <= DEEPEST
+
+
+@cache
+def totals(cls: type[Any]) -> tuple[int, int, int]:
+    """Return the least size, the number of unfolded fields, and the depth of their nesting."""
+    size = leaves = depth = 0
+    for field in fields(cls):
+        kind = field.type
+        repeats = {"single": 1, "array": kind.size}.get(kind.container)
+        if kind.nested is not None:
+            inner_size, inner_leaves, inner_depth = totals(kind.nested)
+        else:
+            primitive = PRIMITIVES.get(kind.kind)
+            inner_size, inner_leaves, inner_depth = primitive.size if primitive else COUNT_SIZE, 1, 0
+        size += COUNT_SIZE if repeats is None else inner_size * repeats
+        leaves += inner_leaves if kind.container == "single" else 1
+        depth = max(depth, inner_depth)
+    # A message without fields has one byte that says nothing.
+    return max(size, 1), max(leaves, 1), depth + 1
+
+
+@cache
+def uniform_alignment(cls: type[Any]) -> int | None:
+    """Return the one alignment of all values of a fixed-size message, None if there is no such one.
+
+    Messages of such a class follow each other without padding, once the first is aligned.
+    """
+    alignments: set[int | None] = set()
+    for field in fields(cls):
+        kind = field.type
+        if kind.container not in ("single", "array") or (kind.nested and kind.container == "array"):
+            return None
+        if kind.nested is not None:
+            alignments.add(uniform_alignment(kind.nested))
+        elif kind.kind in PRIMITIVES:
+            alignments.add(PRIMITIVES[kind.kind].size)
+        else:
+            return None
+    return alignments.pop() if len(alignments) == 1 else None

@@ -1,0 +1,132 @@
+"""Strings on the wire: UTF-8 with a length and a NUL, and wide ones, four bytes per character."""
+
+from __future__ import annotations
+
+import struct
+from typing import Any
+
+from aionode.wire.layout import COUNT_SIZE, padding
+from aionode.wire.source import Misfit
+
+__all__ = ["TextList", "padded_texts", "read_wide_texts", "wide_bytes", "wide_text", "wide_texts"]
+
+COUNT = struct.Struct("<I")
+
+LARGEST_KEPT = 4096
+"""Bytes of strings that are kept for the next message; longer ones do not repeat."""
+
+MOST_KEPT = 1024
+
+
+class EncodedTexts(dict[str, bytes]):
+    """Strings as they are written in a sequence: names of joints and parameters come again."""
+
+    def __missing__(self, text: str) -> bytes:
+        data = str.encode(text)
+        block = COUNT.pack(len(data) + 1) + data + bytes(1 + gap_after(len(data) + 1))
+        if len(block) <= LARGEST_KEPT // 16:
+            if len(self) >= MOST_KEPT:
+                self.clear()
+            self[text] = block
+        return block
+
+
+ENCODED = EncodedTexts()
+
+
+def gap_after(size: int) -> int:
+    """Return the padding between a string of `size` bytes and the next one's length."""
+    return -size % COUNT_SIZE
+
+
+def padded_texts(texts: list[str], exact: bool) -> bytes:
+    """Return the strings of a sequence, from an aligned place, each padded for the next.
+
+    Args:
+        texts: The strings.
+        exact: Without the padding after the last one.
+    """
+    known = ENCODED
+    block = b"".join([known[text] for text in texts])
+    if exact and texts:
+        gap = gap_after(len(str.encode(texts[-1])) + 1)
+        return block[: len(block) - gap]
+    return block
+
+
+class TextList:
+    """Reads the strings of one field. Those of the last message are known when they come again.
+
+    A robot's joints keep their names, so one comparison mostly saves making all strings.
+    """
+
+    def __init__(self) -> None:
+        self._last: tuple[int, bytes, list[str]] = (0, b"", [])
+
+    def __call__(self, data: Any, pos: int, count: int) -> tuple[list[str], int]:
+        """Return `count` strings from `pos` (aligned), and where they end."""
+        known_count, block, known = self._last
+        if count == known_count and data[pos : pos + len(block)] == block:
+            return known.copy(), pos + len(block)
+        if COUNT_SIZE * count > len(data) - pos:
+            raise Misfit
+        texts = []
+        end = pos
+        for _ in range(count):
+            end += padding(end, COUNT_SIZE)
+            (size,) = COUNT.unpack_from(data, end)
+            start = end + COUNT_SIZE
+            end = start + size
+            if data[end - 1]:
+                raise Misfit
+            texts.append(str(data[start : end - 1], "utf-8"))
+        if end - pos <= LARGEST_KEPT:
+            self._last = count, bytes(data[pos:end]), texts.copy()
+        return texts, end
+
+
+def wide_bytes(text: str) -> bytes:
+    """Return the characters of a wide string.
+
+    ROS holds it as UTF-16, and writes each half of a surrogate pair as a character of its own.
+    """
+    data = str.encode(text, "utf-16-le")
+    units = len(data) // 2
+    if units == len(text):
+        return text.encode("utf-32-le")
+    return struct.pack(f"<{units}I", *struct.unpack(f"<{units}H", data))
+
+
+def wide_texts(texts: list[str]) -> bytes:
+    """Return the wide strings of a sequence."""
+    encoded = map(wide_bytes, texts)
+    return b"".join([COUNT.pack(len(data) // 4) + data for data in encoded])
+
+
+def wide_text(data: Any, order: str = "<") -> str:
+    """Return the wide string of these bytes, whether its writer used pairs or whole characters.
+
+    Raises:
+        ValueError: A character does not exist, or half of a pair is missing.
+    """
+    units = struct.unpack(f"{order}{len(data) // 4}I", data)
+    if not any(0xD800 <= unit < 0xE000 for unit in units):
+        return str(data, "utf-32-le" if order == "<" else "utf-32-be")
+    if max(units) >= 0x10000:
+        raise UnicodeDecodeError("utf-16", bytes(data), 0, len(data), "pairs and whole characters")
+    return struct.pack(f"<{len(units)}H", *units).decode("utf-16-le")
+
+
+def read_wide_texts(data: Any, pos: int, count: int) -> tuple[list[str], int]:
+    """Return `count` wide strings from `pos` (aligned), and where they end."""
+    if COUNT_SIZE * count > len(data) - pos:
+        raise Misfit
+    texts = []
+    for _ in range(count):
+        (units,) = COUNT.unpack_from(data, pos)
+        start = pos + COUNT_SIZE
+        pos = start + 4 * units
+        if pos > len(data):
+            raise Misfit
+        texts.append(wide_text(data[start:pos]))
+    return texts, pos
