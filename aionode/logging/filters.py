@@ -1,0 +1,142 @@
+"""Which of many calls of one line of code get through: once, skip_first, throttle.
+
+The state belongs to the call site: the place in the code that calls the logger. Two calls on one
+line are two sites.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import CodeType, FrameType
+from typing import TypedDict
+
+from aionode.clock import S_TO_NS, Clock
+
+__all__ = ["CallSite", "CallSites", "LogOptions"]
+
+
+class LogOptions(TypedDict, total=False):
+    """The keyword arguments that every logging method takes.
+
+    Attributes:
+        name: Log under this name in place of the logger's.
+        once: Let only the first message of this place in the code through.
+        skip_first: Let all but the first through.
+        throttle_duration_sec: Let one message through per this many seconds.
+        throttle_time_source_type: The clock for it; the system's clock without.
+    """
+
+    name: str | None
+    once: bool
+    skip_first: bool
+    throttle_duration_sec: float
+    throttle_time_source_type: Clock
+
+
+FILTERS = ("throttle_duration_sec", "throttle_time_source_type", "skip_first", "once")
+
+
+class CallSite:
+    """One place in the code that logs, with the state of its filters."""
+
+    __slots__ = ("code", "last_ns", "logged", "name", "options", "severity", "skipped")
+
+    def __init__(self, code: CodeType, severity: int, name: str, options: LogOptions) -> None:
+        # The code object is kept so that its id, a part of the key, is not given to another.
+        self.code = code
+        self.severity = severity
+        self.name = name
+        self.options = checked(options)
+        self.last_ns = 0
+        self.skipped = False
+        self.logged = False
+
+    def check(self, severity: int, name: str, options: LogOptions) -> None:
+        """Refuse a call that differs from the first one from here.
+
+        Raises:
+            ValueError: Severity, name or filters are not those of the first call.
+        """
+        if severity != self.severity:
+            message = "Logger severity cannot be changed between calls."
+            raise ValueError(message)
+        if name != self.name:
+            message = "Logger name cannot be changed between calls."
+            raise ValueError(message)
+        if not options and not self.options:
+            return
+        options = checked(options)
+        if options.keys() != self.options.keys():
+            message = "Requested logging filters cannot be changed between calls."
+            raise ValueError(message)
+        if options != self.options:
+            message = "Logging filter parameters cannot be changed between calls."
+            raise ValueError(message)
+
+    def lets_through(self, now_ns: Callable[[], int]) -> bool:
+        """Return whether this message is to be logged, and remember that it came.
+
+        A filter that stops a message leaves those behind it as they were: with throttle and once,
+        the one message is the first that throttle lets through.
+        """
+        options = self.options
+        if "throttle_duration_sec" in options and not self._throttle(now_ns):
+            return False
+        if "skip_first" in options and not self.skipped:
+            self.skipped = True
+            return False
+        if "once" in options:
+            if self.logged:
+                return False
+            self.logged = True
+        return True
+
+    def _throttle(self, now_ns: Callable[[], int]) -> bool:
+        clock = self.options.get("throttle_time_source_type")
+        now = now_ns() if clock is None else clock.now_ns()
+        period_ns = self.options["throttle_duration_sec"] * S_TO_NS
+        # A clock that was set back, as when a simulation starts again, must not silence the site.
+        if self.last_ns <= now < self.last_ns + period_ns:
+            return False
+        self.last_ns = now
+        return True
+
+
+def checked(options: LogOptions) -> LogOptions:
+    """Return the filters that `options` turn on.
+
+    Raises:
+        TypeError: An option is unknown, or lacks another one.
+        ValueError: The clock is none.
+    """
+    for option in options:
+        if option not in FILTERS:
+            message = f"parameter {option!r} is not one of the recognized logging options {FILTERS}"
+            raise TypeError(message)
+    clock: object = options.get("throttle_time_source_type")
+    if clock is not None and not isinstance(clock, Clock):
+        message = f"Received throttle_time_source_type of {clock!r} is not a clock instance"
+        raise ValueError(message)
+    if clock is not None and "throttle_duration_sec" not in options:
+        message = "required parameter 'throttle_duration_sec' not specified but is required for "
+        raise TypeError(message + "throttle_time_source_type")
+    return {option: value for option, value in options.items() if value}  # type: ignore[return-value]  # a part of it
+
+
+class CallSites:
+    """The call sites of one logger."""
+
+    __slots__ = ("_sites",)
+
+    def __init__(self) -> None:
+        self._sites: dict[tuple[int, int], CallSite] = {}
+
+    def find(self, frame: FrameType, severity: int, name: str, options: LogOptions) -> CallSite:
+        """Return the site that `frame` stands at, made on its first call and checked on others."""
+        key = (id(frame.f_code), frame.f_lasti)
+        site = self._sites.get(key)
+        if site is None:
+            site = self._sites[key] = CallSite(frame.f_code, severity, name, options)
+        else:
+            site.check(severity, name, options)
+        return site
