@@ -13,8 +13,8 @@ from functools import cache
 from typing import Any, TypeAlias, TypeVar
 
 from aionode.errors import MessageError
-from aionode.message.base import Message, fields, type_name
-from aionode.message.snapshot import snapshotter
+from aionode.message import Message, fields, type_name
+from aionode.message import snapshotter
 from aionode.wire.decoding import generate_decoder
 from aionode.wire.encoding import MISFITS, generate_encoder
 from aionode.wire.plain import decode_plainly

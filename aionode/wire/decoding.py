@@ -11,7 +11,7 @@ import struct
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from aionode.message.base import fields, type_name
+from aionode.message import fields, type_name
 from aionode.message.fieldtypes import DTYPES
 from aionode.message.values import EMPTY
 from aionode.wire.layout import (
@@ -29,7 +29,7 @@ from aionode.wire.texts import TextList, read_wide_texts, wide_text
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.message.fieldtypes import FieldType
+    from aionode.message import FieldType
 
 __all__ = ["MISFITS", "bools", "generate_decoder"]
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from aionode.message.base import fields, type_name
+from aionode.message import fields, type_name
 from aionode.wire.layout import (
     COUNT_SIZE,
     HEADER,
@@ -30,7 +30,7 @@ from aionode.wire.texts import padded_texts, wide_bytes, wide_texts
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.message.fieldtypes import FieldType
+    from aionode.message import FieldType
 
 __all__ = ["MISFITS", "generate_encoder"]
 

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from aionode.message.base import fields
+from aionode.message import fields
 
 if TYPE_CHECKING:
-    from aionode.message.fieldtypes import FieldType
+    from aionode.message import FieldType
 
 __all__ = [
     "COUNT_SIZE",

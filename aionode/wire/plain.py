@@ -12,15 +12,15 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from aionode.errors import DecodeError
-from aionode.message.base import fields, type_name
+from aionode.message import fields, type_name
 from aionode.wire.layout import COUNT_SIZE, HEADER, PRIMITIVES, minimum_size, padding
 from aionode.wire.texts import wide_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from aionode.message.base import Message
-    from aionode.message.fieldtypes import FieldType
+    from aionode.message import Message
+    from aionode.message import FieldType
 
 __all__ = ["decode_plainly"]
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypedDict
 
-from aionode.message.base import ActionType, ServiceType, fields, type_name
-from aionode.message.fieldtypes import FieldType
+from aionode.message import ActionType, ServiceType, fields, type_name
+from aionode.message import FieldType
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
