@@ -1,4 +1,137 @@
 """ROS 2's standard interfaces as Python classes, under their ROS names.
 
-``std_msgs/msg/String`` is `aionode.interfaces.std_msgs.msg.String`.
+``std_msgs/msg/String`` is `aionode.interfaces.std_msgs.msg.String`. The modules of the packages are
+generated from ROS 2 Jazzy's definitions; this one finds a class by its name. Nothing is imported
+before it is asked for.
 """
+
+from __future__ import annotations
+
+import difflib
+import sys
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from aionode.errors import InterfaceNotFoundError
+from aionode.message import ActionType, Interface, Message, ServiceType
+
+__all__ = [
+    "get_action",
+    "get_interface",
+    "get_message",
+    "get_service",
+    "interface_names",
+    "shipped_packages",
+]
+
+KINDS = ("msg", "srv", "action")
+
+
+def get_interface(name: str) -> type[Interface]:
+    """Return the class of a message, service or action type.
+
+    Args:
+        name: Its ROS name, such as ``std_msgs/msg/String``; ``std_msgs/String`` is understood if
+            there is only one kind of that name.
+
+    Raises:
+        InterfaceNotFoundError: There is no such type; the error has names that are close.
+    """
+    parts = name.split("/")
+    kinds = KINDS if len(parts) == 2 else parts[1:2]
+    if len(parts) in {2, 3}:
+        for kind in kinds:
+            found = types_of(parts[0], kind).get(parts[-1])
+            if found is not None:
+                return found
+    raise not_found(name, parts)
+
+
+def get_message(name: str) -> type[Message]:
+    """Return the class of a message type; see `get_interface`."""
+    found: type[Message] = of_kind(name, Message, "a message")
+    return found
+
+
+def get_service(name: str) -> type[ServiceType]:
+    """Return the class of a service type; see `get_interface`."""
+    found: type[ServiceType] = of_kind(name, ServiceType, "a service")
+    return found
+
+
+def get_action(name: str) -> type[ActionType]:
+    """Return the class of an action type; see `get_interface`."""
+    found: type[ActionType] = of_kind(name, ActionType, "an action")
+    return found
+
+
+def of_kind(name: str, base: type[Any], what: str) -> Any:
+    """Return the class of a type that has to be of one kind."""
+    found = get_interface(name)
+    if not issubclass(found, base):
+        raise InterfaceNotFoundError(name, problem=f"not {what}")
+    return found
+
+
+@cache
+def shipped_packages() -> frozenset[str]:
+    """Return the names of the packages that come with aionode."""
+    folder = Path(__file__).parent
+    return frozenset(entry.name for entry in folder.iterdir() if (entry / "__init__.py").is_file())
+
+
+def interface_names(package: str | None = None) -> tuple[str, ...]:
+    """Return the ROS names of all types, sorted; those of one package if it is given.
+
+    This imports their modules.
+    """
+    packages = shipped_packages() | loaded_packages() if package is None else {package}
+    return tuple(
+        f"{one}/{kind}/{name}"
+        for one in sorted(packages)
+        for kind in KINDS
+        for name in sorted(types_of(one, kind))
+    )
+
+
+def loaded_packages() -> frozenset[str]:
+    """Return the names of the packages that `aionode.idl.load_interfaces` has added."""
+    prefix = f"{__name__}."
+    return frozenset(
+        name.removeprefix(prefix)
+        for name in sys.modules
+        if name.startswith(prefix) and "." not in name.removeprefix(prefix)
+    )
+
+
+def types_of(package: str, kind: str) -> dict[str, type[Interface]]:
+    """Return the types of one kind in a package, by name; none if there is no such package."""
+    if not package.isidentifier() or kind not in KINDS:
+        return {}
+    module_name = f"{__name__}.{package}.{kind}"
+    try:
+        module = import_module(module_name)
+    except ModuleNotFoundError as error:
+        if error.name is not None and module_name.startswith(error.name):
+            return {}
+        raise
+    prefix = f"{package}/{kind}/"
+    return {
+        name: value
+        for name, value in vars(module).items()
+        if getattr(value, "__ros_type__", "") == f"{prefix}{name}"
+    }
+
+
+def not_found(name: str, parts: list[str]) -> InterfaceNotFoundError:
+    """Return the error for a name that is not there, with names that are close."""
+    packages = shipped_packages() | loaded_packages()
+    if parts[0] not in packages:
+        close = difflib.get_close_matches(parts[0], packages, 1)
+        near = interface_names(close[0]) if close else ()
+    else:
+        near = interface_names(parts[0])
+    wanted = name if len(parts) == 3 else f"{parts[0]}/msg/{parts[-1]}"
+    return InterfaceNotFoundError(name, tuple(difflib.get_close_matches(wanted, near, 3)))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from aionode.message.base import DEFAULT, Message, constants, fields, type_name
 from aionode.message.fieldtypes import (
+    DTYPES,
     Array,
     Bools,
     Bounded,
@@ -33,6 +34,7 @@ from aionode.message.fieldtypes import (
     uint64,
     wstring,
 )
+from aionode.message.fit import fit, fit_element
 from aionode.message.plain import (
     from_builtins,
     from_json,
@@ -41,11 +43,18 @@ from aionode.message.plain import (
     to_json,
     to_yaml,
 )
-from aionode.message.services import ActionClass, ActionType, ServiceClass, ServiceType
+from aionode.message.services import (
+    ActionClass,
+    ActionType,
+    Interface,
+    ServiceClass,
+    ServiceType,
+)
 from aionode.message.snapshot import check, checker, snapshot, snapshotter
 
 __all__ = [
     "DEFAULT",
+    "DTYPES",
     "ActionClass",
     "ActionType",
     "Array",
@@ -56,6 +65,7 @@ __all__ = [
     "Field",
     "FieldType",
     "Floats",
+    "Interface",
     "Ints",
     "Message",
     "Sequence",
@@ -67,6 +77,8 @@ __all__ = [
     "checker",
     "constants",
     "fields",
+    "fit",
+    "fit_element",
     "float32",
     "float64",
     "from_builtins",

@@ -31,7 +31,7 @@ out.
 """
 
 TYPE_NAME = re.compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Z][A-Za-z0-9_]*")
-FIELD_NAME = re.compile(r"[a-z](_?[a-z0-9]+)*")
+FIELD_NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 
 
 @dataclass_transform(kw_only_default=True, field_specifiers=(msgspec.field,))
@@ -137,8 +137,6 @@ class Message(msgspec.Struct, metaclass=MessageMeta):
         if other.__class__ is not self.__class__:
             return NotImplemented
         return not self == other
-
-    __hash__ = None  # type: ignore[assignment] # mutable values have no hash
 
     def __repr__(self) -> str:
         """Return it as rclpy prints messages: ``std_msgs.msg.String(data='hi')``."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from importlib import import_module
 from types import new_class
-from typing import Any, ClassVar, Protocol, TypeVar
+from typing import Any, ClassVar, Protocol, TypeAlias, TypeVar
 
 from aionode.message.base import Message, MessageMeta, checked_type_name
 from aionode.message.fieldtypes import Sequence, int8
 
-__all__ = ["ActionClass", "ActionType", "ServiceClass", "ServiceType"]
+__all__ = ["ActionClass", "ActionType", "Interface", "ServiceClass", "ServiceType"]
 
 
 class Hidden:
@@ -158,6 +158,9 @@ class ActionType:
         """Name the action and its messages."""
         name_halves(cls, typename, ("Goal", "Result", "Feedback"))
 
+
+Interface: TypeAlias = Message | ServiceType | ActionType
+"""What a ROS type name can stand for."""
 
 Request_co = TypeVar("Request_co", bound=Message, covariant=True)
 Response_co = TypeVar("Response_co", bound=Message, covariant=True)
