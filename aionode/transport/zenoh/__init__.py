@@ -1,0 +1,10 @@
+"""Between processes and machines: messages travel through Zenoh, as rmw_zenoh_cpp sends them.
+
+Zenoh's threads only append what arrives to a queue and wake the event loop (`transport.wakeup`);
+everything else happens on the loop. What may block while sending goes through a thread
+(`transport.sender`).
+"""
+
+from aionode.transport.zenoh.transport import ZenohTransport
+
+__all__ = ["ZenohTransport"]

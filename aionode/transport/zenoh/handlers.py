@@ -1,0 +1,34 @@
+"""Small things around Zenoh's own calls."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TypeVar
+
+import zenoh
+
+from aionode.errors import TransportError
+
+__all__ = ["direct", "translated"]
+
+T = TypeVar("T")
+
+
+@contextmanager
+def translated(what: str) -> Iterator[None]:
+    """Turn Zenoh's errors into ours, which say what was being done."""
+    try:
+        yield
+    except zenoh.ZError as error:
+        raise TransportError(f"{what}: {error}") from error
+
+
+def direct(
+    callback: Callable[[T], None], drop: Callable[[], None] | None = None
+) -> zenoh.handlers.Callback[T]:
+    """Return a handler that runs in Zenoh's network thread, for what comes seldom.
+
+    It saves a thread for each entity and each call, and costs some latency where much comes.
+    """
+    return zenoh.handlers.Callback(callback, drop, indirect=False)

@@ -1,0 +1,339 @@
+"""Servers and clients on Zenoh: a request is a query, a response its reply."""
+
+from __future__ import annotations
+
+import json
+import logging
+from typing import TYPE_CHECKING, Any
+
+import zenoh
+
+from aionode.errors import DecodeError, ServiceError
+from aionode.graph import EndpointKind
+from aionode.transport.base import Origin, Request, Requester
+from aionode.transport.zenoh.handlers import direct, translated
+from aionode.transport.zenoh.link import Entity
+from aionode.transport.zenoh.topics import BULK_BYTES, NOBODY, origin_of
+from aionode.wire import attachment, cdr
+from aionode.wire.keyexpr import data_key
+from aionode.wire.liveliness import endpoint_token
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.graph import EndpointInfo
+    from aionode.transport.base import Call, ReplyTo
+    from aionode.transport.zenoh.link import Link
+
+__all__ = ["ZenohRequester", "ZenohServer", "error_payload", "parse_error"]
+
+logger = logging.getLogger("aionode.transport.zenoh")
+
+FOREVER_S = 1e9
+"""Timeout of a query: whoever calls sets the limit, and cancels."""
+
+CALLS_BEFORE_THREAD = 32
+"""From so many unanswered calls of a client on, the next are sent from a thread.
+
+Sending waits where the way is blocked, and so many small requests do not yet block it.
+"""
+
+WAITING_REQUESTS = 1_000
+"""How many requests wait for the loop at most; one more ends the oldest, whose client is told."""
+
+
+def error_payload(error_type: str, error_text: str) -> bytes:
+    """Return an error as it goes to a client."""
+    return json.dumps({"type": error_type, "text": error_text}).encode()
+
+
+def parse_error(payload: bytes, service: str) -> ServiceError:
+    """Return the error that a server sent: ours with its type, or anybody's plain text."""
+    text = payload.decode(errors="replace")
+    try:
+        fields = json.loads(text)
+        return ServiceError(service, str(fields["text"]), str(fields["type"]))
+    except (ValueError, TypeError, LookupError):
+        return ServiceError(service, text or "the server sent an error without a text")
+
+
+# Servers
+
+
+class ZenohServer(Entity):
+    """A server as the clients of others see it."""
+
+    def __init__(
+        self,
+        link: Link,
+        endpoint: EndpointInfo,
+        srv_type: type[Any],
+        serve: Callable[[Request], None],
+    ) -> None:
+        super().__init__(link, endpoint_token(link.domain_id, endpoint))
+        self.endpoint = endpoint
+        self.key = data_key(link.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
+        self.encode = cdr.encoder(srv_type.Response)
+        self._decode = cdr.decoder(srv_type.Request)
+        self._serve = serve
+        self._queryable: zenoh.Queryable[None] | None = None
+        self._lane = link.lane(self._take, WAITING_REQUESTS)
+        self.unanswered: dict[tuple[bytes, int], ZenohRequest] = {}
+        link.cancellations.listeners[self.cancel] = None
+        link.add(self)
+
+    def declare_data(self, session: zenoh.Session) -> None:
+        """Declare the queryable."""
+        self._queryable = session.declare_queryable(
+            self.key,
+            direct(self._lane.put),
+            complete=True,
+            allowed_origin=zenoh.Locality.REMOTE,
+        )
+
+    def undeclare_data(self) -> None:
+        """Withdraw it, and end the calls that were not answered."""
+        queryable, self._queryable = self._queryable, None
+        if queryable is not None:
+            queryable.undeclare()
+        self._lane.clear()
+        for request in list(self.unanswered.values()):
+            request.drop()
+
+    def close(self) -> None:
+        """Withdraw the server for good."""
+        self.link.cancellations.listeners.pop(self.cancel, None)
+        super().close()
+
+    def cancel(self, gid: bytes, sequence: int) -> None:
+        """Note that a client has given a request up."""
+        request = self.unanswered.get((gid, sequence))
+        if request is not None:
+            request.cancelled = True
+
+    def _take(self, query: zenoh.Query) -> None:
+        origin = origin_of(query.attachment)
+        if origin is None:
+            if query.attachment is not None:
+                self.link.note_garbage(self.key, "an attachment")
+            origin = Origin(NOBODY, 0, 0, True)
+        payload = query.payload
+        try:
+            message = self._decode(b"" if payload is None else payload.to_bytes())
+        except DecodeError as error:
+            self.link.note_garbage(self.key, str(error))
+            problem = error_payload("DecodeError", str(error))
+            answer(query, lambda: query.reply_err(problem))
+        else:
+            self._serve(ZenohRequest(message, origin, query, self))
+
+
+def answer(query: zenoh.Query, reply: Callable[[], None] | None = None) -> None:
+    """End `query`, with a reply or without; nothing happens if its client has gone."""
+    try:
+        if reply is not None:
+            reply()
+        query.drop()
+    except zenoh.ZError as error:
+        logger.debug("%s: not answered: %s", query.key_expr, error)
+
+
+class ZenohRequest(Request):
+    """One request from another process."""
+
+    def __init__(
+        self, message: Any, origin: Origin, query: zenoh.Query, server: ZenohServer
+    ) -> None:
+        self.message = message
+        self.origin = origin
+        self._query = query
+        self._server = server
+        self._id = (origin.gid, origin.sequence)
+        # Who sends no attachment has no number either; then the object itself is unique.
+        if self._id in server.unanswered or origin.gid == NOBODY:
+            self._id = (origin.gid, id(self))
+        server.unanswered[self._id] = self
+
+    def _finish(self) -> bool:
+        """Note that the request is done with; return whether it was not yet."""
+        return self._server.unanswered.pop(self._id, None) is not None
+
+    def reply(self, response: Any) -> None:
+        """Send the response, with the client's own number."""
+        payload = self._server.encode(response)
+        if not self._finish():
+            return
+        query = self._query
+        extra = attachment.pack(self.origin.sequence, self._server.link.now_ns(), self.origin.gid)
+        self._answer(lambda: query.reply(query.key_expr, payload, attachment=extra), len(payload))
+
+    def fail(self, error_type: str, error_text: str) -> None:
+        """Send an error; a ROS client logs it and goes on waiting."""
+        if self._finish():
+            payload = error_payload(error_type, error_text)
+            query = self._query
+            self._answer(lambda: query.reply_err(payload), len(payload))
+
+    def drop(self) -> None:
+        """End the query, which tells the client that nothing will come."""
+        if self._finish():
+            answer(self._query)
+
+    def _answer(self, reply: Callable[[], None], size_bytes: int) -> None:
+        query = self._query
+        if size_bytes < BULK_BYTES:
+            answer(query, reply)
+        else:
+            self._server.link.bulk.submit(lambda: answer(query, reply))
+
+
+# Clients
+
+
+class ZenohRequester(Entity, Requester):
+    """A client as the servers of others see it."""
+
+    def __init__(self, link: Link, endpoint: EndpointInfo, srv_type: type[Any]) -> None:
+        super().__init__(link, endpoint_token(link.domain_id, endpoint))
+        self.endpoint = endpoint
+        self.key = data_key(link.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
+        self._encode = cdr.encoder(srv_type.Request)
+        self.decode = cdr.decoder(srv_type.Response)
+        self.unanswered: set[ZenohCall] = set()
+        link.add(self)
+
+    def declare_data(self, session: zenoh.Session) -> None:
+        """A client declares nothing but its token."""
+
+    def undeclare_data(self) -> None:
+        """End the calls under way: nothing can answer them any more."""
+        for call in list(self.unanswered):
+            call.end()
+
+    def _matched(self) -> list[EndpointInfo]:
+        graph = self.link.graph
+        if graph is None:
+            return []
+        return [
+            server
+            for server in graph.endpoints(EndpointKind.SERVER, name=self.endpoint.name)
+            if server.node.participant != self.link.participant and self.endpoint.matches(server)
+        ]
+
+    @property
+    def servers(self) -> int:
+        """How many servers of other contexts are matched."""
+        return len(self._matched())
+
+    def tell_cancelled(self, sequence: int) -> None:
+        """Tell the servers that a request need not be served."""
+        participants = {server.node.participant for server in self._matched()}
+        self.link.cancellations.tell(participants, self.gid, sequence)
+
+    def send(self, request: Any, origin: Origin, reply_to: ReplyTo) -> Call:
+        """Send `request` to every server of other contexts."""
+        payload = self._encode(request)
+        extra = attachment.pack(origin.sequence, origin.source_ns, self.gid)
+        call = ZenohCall(self, reply_to, origin.sequence)
+        session = self.link.session
+        if session is None:
+            call.refuse()
+            return call
+
+        def get() -> None:
+            call.get(session, payload, extra)
+
+        if len(payload) < BULK_BYTES and len(self.unanswered) <= CALLS_BEFORE_THREAD:
+            get()
+        else:
+            self.link.bulk.submit(get)
+        return call
+
+
+class ZenohCall:
+    """One call under way."""
+
+    def __init__(self, requester: ZenohRequester, reply_to: ReplyTo, sequence: int) -> None:
+        self._requester = requester
+        self._reply_to: ReplyTo | None = reply_to
+        self._sequence = sequence
+        self._token = zenoh.CancellationToken()
+        self._unreadable: ServiceError | None = None
+        self._lane = requester.link.lane(self._take)
+        requester.unanswered.add(self)
+
+    def get(self, session: zenoh.Session, payload: bytes, extra: bytes) -> None:
+        """Send the request; on any thread."""
+        try:
+            session.get(
+                self._requester.key,
+                direct(self._lane.put, lambda: self._lane.put(None)),
+                target=zenoh.QueryTarget.ALL_COMPLETE,
+                consolidation=zenoh.ConsolidationMode.NONE,
+                timeout=FOREVER_S,
+                payload=payload,
+                attachment=extra,
+                allowed_destination=zenoh.Locality.REMOTE,
+                cancellation_token=self._token,
+            )
+        except zenoh.ZError as error:
+            logger.debug("%s: not sent: %s", self._requester.key, error)
+            self.refuse()
+
+    def refuse(self) -> None:
+        """End the call soon: it cannot be sent."""
+        self._lane.put(None)
+
+    def _take(self, reply: zenoh.Reply | None) -> None:
+        reply_to = self._reply_to
+        if reply_to is None:
+            return
+        if reply is None:
+            self.end()
+            return
+        sample = reply.ok
+        if sample is None:
+            error = reply.err
+            self._finish()
+            reply_to.fail(
+                parse_error(
+                    b"" if error is None else error.payload.to_bytes(),
+                    self._requester.endpoint.name,
+                )
+            )
+            return
+        try:
+            response = self._requester.decode(sample.payload.to_bytes())
+        except DecodeError as decode_error:
+            # Another server may answer in a better form; else the caller gets to know this.
+            self._requester.link.note_garbage(self._requester.key, str(decode_error))
+            self._unreadable = ServiceError(
+                self._requester.endpoint.name, f"the response is unreadable: {decode_error}"
+            )
+            return
+        self._finish()
+        reply_to.reply(response, origin_of(sample.attachment) or Origin(NOBODY, 0, 0, True))
+
+    def end(self) -> None:
+        """Note that nothing will come any more."""
+        reply_to = self._reply_to
+        self._finish()
+        if reply_to is None:
+            return
+        if self._unreadable is not None:
+            reply_to.fail(self._unreadable)
+        else:
+            reply_to.end()
+
+    def _finish(self) -> None:
+        self._reply_to = None
+        self._requester.unanswered.discard(self)
+
+    def cancel(self) -> None:
+        """Forget the call, and tell the servers, as far as they can be told."""
+        if self._reply_to is None:
+            return
+        self._finish()
+        with translated(self._requester.key):
+            self._token.cancel()
+        self._requester.tell_cancelled(self._sequence)

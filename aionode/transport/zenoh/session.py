@@ -1,0 +1,227 @@
+"""Opening and closing a Zenoh session, without blocking the event loop."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+import select
+import socket
+import threading
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import zenoh
+
+from aionode.clock import perf_ns
+from aionode.errors import ConfigurationError, TransportError
+from aionode.transport.zenoh.handlers import direct
+from aionode.transport.zenoh_config import (
+    LOOPBACK,
+    probed_ports,
+    router_settings,
+    session_settings,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from aionode.transport.wakeup import Lane
+    from aionode.transport.zenoh_config import Network
+
+__all__ = ["Links", "answering_ports", "close_session", "in_thread", "open_router", "open_session"]
+
+logger = logging.getLogger("aionode.transport.zenoh")
+
+T = TypeVar("T")
+
+PROBE_S = 0.2
+"""How long a port on this machine may take to accept a connection; it takes 0.1 ms."""
+
+FIRST_LINK_S = 1.0
+"""How long `open` waits for the first of those who accept connections; a frozen one never comes."""
+
+NEXT_LINK_S = 0.3
+"""How long it waits for each further one."""
+
+QUIET_S = 0.03
+"""For so long nobody new has come when everybody is there: the first ones introduce the others."""
+
+CLOSE_S = 0.8
+"""How long closing may hold its caller up. A frozen peer can take longer, and ends in the back."""
+
+
+async def in_thread(work: Callable[[], T], late: Callable[[T], object] | None = None) -> T:
+    """Run `work` in a thread that ends with it, and return its result.
+
+    Cancelling gives the result up, to `late` if there is one.
+    """
+    loop = asyncio.get_running_loop()
+    done: asyncio.Future[T] = loop.create_future()
+
+    def deliver(result: T | None, error: BaseException | None) -> None:
+        if error is None and done.cancelled() and late is not None:
+            threading.Thread(target=late, args=(result,), daemon=True).start()
+        elif not done.done():
+            if error is None:
+                done.set_result(result)  # type: ignore[arg-type]  # there is one without an error
+            else:
+                done.set_exception(error)
+
+    def run() -> None:
+        result, error = None, None
+        try:
+            result = work()
+        except BaseException as raised:  # noqa: BLE001  # goes to whoever waits
+            error = raised
+        with suppress(RuntimeError):  # the loop was closed meanwhile
+            loop.call_soon_threadsafe(deliver, result, error)
+
+    threading.Thread(target=run, name="aionode-zenoh", daemon=True).start()
+    return await done
+
+
+def answering_ports(ports: Iterable[int]) -> list[int]:
+    """Return those ports of this machine that accept a connection."""
+    pending: dict[int, tuple[int, socket.socket]] = {}
+    answering = []
+    ends_ns = perf_ns() + int(PROBE_S * 1e9)
+    try:
+        for port in ports:
+            probe = socket.socket()
+            probe.setblocking(False)
+            pending[probe.fileno()] = (port, probe)
+            with suppress(BlockingIOError):
+                # Refused at once is as good as refused later: select() shows both.
+                probe.connect_ex((LOOPBACK, port))
+        while pending and (left_s := (ends_ns - perf_ns()) / 1e9) > 0:
+            # Windows tells of a refused connection in the third list.
+            _, writable, failed = select.select([], list(pending), list(pending), left_s)
+            for fd in {*writable, *failed}:
+                port, probe = pending.pop(fd)
+                if probe.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR) == 0:
+                    answering.append(port)
+                probe.close()
+    finally:
+        for _, probe in pending.values():
+            probe.close()
+    return answering
+
+
+def load_config(network: Network, settings: dict[str, Any], participant: str) -> zenoh.Config:
+    """Return Zenoh's own form of a configuration.
+
+    Raises:
+        ConfigurationError: the file or an override cannot be used; the text says why.
+    """
+    config = zenoh.Config()
+    if network.config_file is not None:
+        path = network.config_file.removeprefix("file://")
+        try:
+            config = zenoh.Config.from_file(path)
+        except zenoh.ZError as error:
+            fits = f"the path of a Zenoh configuration (JSON5) fits: {error}"
+            raise ConfigurationError("ZENOH_SESSION_CONFIG_URI", path, fits) from error
+    for key, value in settings.items():
+        config.insert_json5(key, json.dumps(value))
+    for key, text in network.overrides:
+        try:
+            config.insert_json5(key, text)
+        except zenoh.ZError as error:
+            fits = f"key paths and values of Zenoh's configuration fit: {error}"
+            raise ConfigurationError(network.override_source, f"{key}={text}", fits) from error
+    config.insert_json5("id", json.dumps(participant))
+    return config
+
+
+async def open_session(network: Network, participant: str) -> tuple[zenoh.Session, int]:
+    """Open a session, and return it with the number of neighbours that are about to be linked.
+
+    Raises:
+        ConfigurationError: the configuration cannot be used.
+        TransportError: Zenoh cannot open a session.
+    """
+
+    def work() -> tuple[zenoh.Session, int]:
+        answering = answering_ports(probed_ports(network))
+        config = load_config(network, session_settings(network, answering), participant)
+        try:
+            return zenoh.open(config), len(answering)
+        except zenoh.ZError as error:
+            raise TransportError(
+                f"Zenoh: no session could be opened: {error}; look at "
+                "ZENOH_SESSION_CONFIG_URI, ZENOH_CONFIG_OVERRIDE and Context(config=...)"
+            ) from error
+
+    return await in_thread(work, late=lambda opened: opened[0].close())
+
+
+async def open_router(listen: Iterable[str]) -> zenoh.Session:
+    """Open a router for those who have no `rmw_zenohd`; `close_session` ends it.
+
+    Raises:
+        TransportError: it cannot listen there, for example because another router does.
+    """
+    endpoints = list(listen)
+
+    def work() -> zenoh.Session:
+        config = zenoh.Config()
+        for key, value in router_settings(endpoints).items():
+            config.insert_json5(key, json.dumps(value))
+        try:
+            return zenoh.open(config)
+        except zenoh.ZError as error:
+            raise TransportError(
+                f"router on {', '.join(endpoints)}: {error}; is another router running there?"
+            ) from error
+
+    return await in_thread(work, late=lambda session: session.close())
+
+
+async def close_session(session: zenoh.Session) -> None:
+    """Close a session; when that takes too long it goes on without its caller."""
+
+    def work() -> None:
+        try:
+            session.close()
+        except zenoh.ZError as error:
+            logger.debug("session: not closed properly: %s", error)
+
+    with suppress(TimeoutError):
+        async with asyncio.timeout(CLOSE_S):
+            await in_thread(work)
+
+
+class Links:
+    """The connections of a session to others, as they come."""
+
+    def __init__(self, session: zenoh.Session, lane: Callable[..., Lane[Any]]) -> None:
+        self._session = session
+        self._changed = asyncio.Event()
+        self._lane = lane(lambda _: self._changed.set(), 1)
+        self._listener = session.info.declare_transport_events_listener(direct(self._lane.put))
+
+    def close(self) -> None:
+        """Look no longer."""
+        self._listener.undeclare()
+
+    async def settle(self, expected: int) -> None:
+        """Return when `expected` neighbours, and those whom they introduce, are linked.
+
+        Or when it seems that they will not be, which takes a second at most.
+        """
+        if expected == 0:
+            return
+        try:
+            while (count := len(self._session.info.transports())) < expected:
+                async with asyncio.timeout(NEXT_LINK_S if count else FIRST_LINK_S):
+                    await self._next()
+            for _ in range(expected + 8):
+                async with asyncio.timeout(QUIET_S):
+                    await self._next()
+        except TimeoutError:
+            return
+
+    async def _next(self) -> None:
+        self._changed.clear()
+        await self._changed.wait()

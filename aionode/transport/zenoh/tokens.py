@@ -1,0 +1,127 @@
+"""The graph of others, from their liveliness tokens."""
+
+from __future__ import annotations
+
+import logging
+from typing import TYPE_CHECKING
+
+import zenoh
+
+from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
+from aionode.transport.zenoh.handlers import direct, translated
+from aionode.transport.zenoh.link import Entity
+from aionode.wire.liveliness import PREFIX, node_token, parse_token
+
+if TYPE_CHECKING:
+    import asyncio
+
+    from aionode.transport.zenoh.link import Link
+
+__all__ = ["NodeEntity", "Watcher"]
+
+logger = logging.getLogger("aionode.transport.zenoh")
+
+
+class NodeEntity(Entity):
+    """A node: nothing but its token."""
+
+    def __init__(self, link: Link, node: NodeInfo) -> None:
+        super().__init__(link, node_token(link.domain_id, node))
+        link.add(self)
+
+    def declare_data(self, session: zenoh.Session) -> None:
+        """Nodes send and receive nothing themselves."""
+
+    def undeclare_data(self) -> None:
+        """Nor is there anything to withdraw."""
+
+
+def ignore(_: zenoh.Reply) -> None:
+    """Do nothing with an answer."""
+
+
+class Watcher:
+    """Keeps the graph as the tokens of others say."""
+
+    def __init__(self, link: Link) -> None:
+        self._link = link
+        self._known: dict[str, NodeInfo | EndpointInfo] = {}
+        self._domains: set[int] = set()
+        self._subscriber: zenoh.Subscriber[None] | None = None
+        self._lane = link.lane(self._take)
+
+    def start(self, session: zenoh.Session) -> None:
+        """Begin to listen; what exists already comes at once."""
+        with translated("the graph"):
+            # Of all domains: a node that is not heard because of its domain can be named.
+            self._subscriber = session.liveliness().declare_subscriber(
+                f"{PREFIX}/**", direct(self._lane.put), history=True
+            )
+
+    def stop(self) -> None:
+        """Listen no longer, and forget what was known."""
+        if self._subscriber is not None:
+            self._subscriber.undeclare()
+            self._subscriber = None
+        self._lane.clear()
+        self._known.clear()
+
+    def ask(self, session: zenoh.Session, answered: asyncio.Future[None]) -> None:
+        """Resolve `answered` when the tokens of everyone connected now are in the graph."""
+        # The answers themselves are the same tokens that the subscriber gets, and they may be older
+        # than a withdrawal that it has got since: only their end is of interest.
+        session.liveliness().get(
+            f"{PREFIX}/{self._link.domain_id}/**",
+            direct(ignore, lambda: self._lane.put(answered)),
+            timeout=10,
+        )
+
+    def _take(self, item: zenoh.Sample | asyncio.Future[None]) -> None:
+        if not isinstance(item, zenoh.Sample):
+            if not item.done():
+                item.set_result(None)
+        elif item.kind == zenoh.SampleKind.PUT:
+            self._add(str(item.key_expr))
+        else:
+            self._remove(str(item.key_expr))
+
+    def _add(self, key: str) -> None:
+        if key in self._known or key.split("/", 3)[2:3] == [self._link.participant]:
+            return
+        token = parse_token(key)
+        if token is None:
+            self._link.note_garbage(key, "a liveliness token")
+        elif token.domain_id != self._link.domain_id:
+            self._note_domain(token.domain_id)
+        elif self._link.graph is not None:
+            info = self._known[key] = token.info
+            if isinstance(info, NodeInfo):
+                self._link.graph.add_node(info)
+            else:
+                self._link.graph.add_endpoint(info)
+                self._tell_writers(info)
+
+    def _remove(self, key: str) -> None:
+        info = self._known.pop(key, None)
+        if info is None or self._link.graph is None:
+            return
+        if isinstance(info, NodeInfo):
+            self._link.graph.remove_node(info)
+        else:
+            self._link.graph.remove_endpoint(info)
+            self._tell_writers(info)
+
+    def _tell_writers(self, info: EndpointInfo) -> None:
+        if info.kind is EndpointKind.SUBSCRIPTION:
+            for update in self._link.on_reader.get(info.name, ()):
+                update()
+
+    def _note_domain(self, domain_id: int) -> None:
+        if domain_id not in self._domains:
+            self._domains.add(domain_id)
+            logger.info(
+                "nodes of domain %d can be reached, but this is domain %d: they do not hear each "
+                "other; ROS_DOMAIN_ID or Context(domain_id=...) changes it",
+                domain_id,
+                self._link.domain_id,
+            )

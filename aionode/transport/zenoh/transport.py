@@ -1,0 +1,110 @@
+"""The contract of transports, on Zenoh."""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
+
+from aionode.transport.base import Transport
+from aionode.transport.zenoh.link import Link
+from aionode.transport.zenoh.services import ZenohRequester, ZenohServer
+from aionode.transport.zenoh.session import Links, close_session, open_session
+from aionode.transport.zenoh.tokens import NodeEntity, Watcher
+from aionode.transport.zenoh.topics import ZenohReader, ZenohWriter
+
+if TYPE_CHECKING:
+    from collections import Counter
+    from collections.abc import Callable
+
+    from aionode.graph import EndpointInfo, Graph, NodeInfo
+    from aionode.transport.base import Announcement, Reader, Request, Requester, Writer
+    from aionode.transport.zenoh_config import Network
+
+__all__ = ["ZenohTransport"]
+
+KNOWN_S = 0.3
+"""How long `open` waits for the graph of those who are linked; it takes a millisecond."""
+
+FLUSH_S = 0.15
+"""How long `close` waits for what is still to be sent."""
+
+
+class ZenohTransport(Transport):
+    """Reaches other processes and machines, and ROS 2 nodes that run rmw_zenoh_cpp.
+
+    Args:
+        participant: Id of the context and of its Zenoh session: hexadecimal, no leading zeros.
+        network: Domain, discovery and peers.
+    """
+
+    def __init__(self, participant: str, network: Network) -> None:
+        self.network = network
+        self._link = Link(participant, network.domain_id)
+        self._watcher = Watcher(self._link)
+
+    def __repr__(self) -> str:
+        state = "closed" if self._link.session is None else "open"
+        return (
+            f"<ZenohTransport {self._link.participant} domain={self.network.domain_id} {state} "
+            f"garbage={self.garbage.total()}>"
+        )
+
+    @property
+    def garbage(self) -> Counter[str]:
+        """How many samples in no known form came from the network, for each key."""
+        return self._link.garbage
+
+    async def open(self, graph: Graph) -> None:
+        """Connect; return when those who are there are known, as far as can be told."""
+        session, neighbours = await open_session(self.network, self._link.participant)
+        self._link.wakeup.open(asyncio.get_running_loop())
+        links = Links(session, self._link.lane)
+        try:
+            # Before waiting for others, so that who comes meanwhile sees everything.
+            self._link.connect(session, graph)
+            self._watcher.start(session)
+            await links.settle(neighbours)
+            answered: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+            self._watcher.ask(session, answered)
+            with suppress(TimeoutError):
+                async with asyncio.timeout(KNOWN_S):
+                    await answered
+        finally:
+            links.close()
+
+    async def close(self) -> None:
+        """Withdraw everything and disconnect, within a second."""
+        link = self._link
+        with suppress(TimeoutError):
+            async with asyncio.timeout(FLUSH_S):
+                await link.flush()
+        self._watcher.stop()
+        session = link.disconnect()
+        if session is not None:
+            await close_session(session)
+        link.wakeup.close()
+
+    def create_node(self, node: NodeInfo) -> Announcement:
+        """Announce a node."""
+        return NodeEntity(self._link, node)
+
+    def create_writer(self, endpoint: EndpointInfo, msg_type: type[Any]) -> Writer:
+        """Announce a publisher."""
+        return ZenohWriter(self._link, endpoint, msg_type)
+
+    def create_reader(
+        self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
+    ) -> Announcement:
+        """Announce a subscription."""
+        return ZenohReader(self._link, endpoint, msg_type, reader)
+
+    def create_server(
+        self, endpoint: EndpointInfo, srv_type: type[Any], serve: Callable[[Request], None]
+    ) -> Announcement:
+        """Announce a server."""
+        return ZenohServer(self._link, endpoint, srv_type, serve)
+
+    def create_requester(self, endpoint: EndpointInfo, srv_type: type[Any]) -> Requester:
+        """Announce a client."""
+        return ZenohRequester(self._link, endpoint, srv_type)
