@@ -27,6 +27,8 @@ __all__ = [
 ]
 
 KINDS = ("msg", "srv", "action")
+CLOSE = 0.85
+"""How like a name has to be to be suggested, from 0 to 1."""
 
 
 def get_interface(name: str) -> type[Interface]:
@@ -128,10 +130,14 @@ def types_of(package: str, kind: str) -> dict[str, type[Interface]]:
 def not_found(name: str, parts: list[str]) -> InterfaceNotFoundError:
     """Return the error for a name that is not there, with names that are close."""
     packages = shipped_packages() | loaded_packages()
+    if len(parts) == 1:
+        everything = interface_names()
+        near = tuple(one for one in everything if one.endswith(f"/{name}"))
+        return InterfaceNotFoundError(name, near[:3])
     if parts[0] not in packages:
         close = difflib.get_close_matches(parts[0], packages, 1)
         near = interface_names(close[0]) if close else ()
     else:
         near = interface_names(parts[0])
     wanted = name if len(parts) == 3 else f"{parts[0]}/msg/{parts[-1]}"
-    return InterfaceNotFoundError(name, tuple(difflib.get_close_matches(wanted, near, 3)))
+    return InterfaceNotFoundError(name, tuple(difflib.get_close_matches(wanted, near, 3, CLOSE)))

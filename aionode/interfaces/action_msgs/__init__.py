@@ -1,1 +1,1 @@
-"""action_msgs."""
+"""Interfaces of action_msgs."""

@@ -1,10 +1,15 @@
-"""action_msgs."""
+"""Messages of action_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated, ClassVar
 
 from aionode.interfaces.builtin_interfaces.msg import Time
 from aionode.interfaces.unique_identifier_msgs.msg import UUID
 from aionode.message import DEFAULT, Message, Sequence, int8
+
+__all__ = ["GoalInfo", "GoalStatus", "GoalStatusArray"]
 
 
 class GoalInfo(Message, typename="action_msgs/msg/GoalInfo"):
@@ -24,6 +29,7 @@ class GoalStatus(Message, typename="action_msgs/msg/GoalStatus"):
     STATUS_SUCCEEDED: ClassVar[int8] = 4
     STATUS_CANCELED: ClassVar[int8] = 5
     STATUS_ABORTED: ClassVar[int8] = 6
+
     goal_info: GoalInfo = DEFAULT
     status: int8 = 0
 

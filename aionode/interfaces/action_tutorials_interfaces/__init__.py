@@ -1,1 +1,1 @@
-"""action_tutorials_interfaces."""
+"""Interfaces of action_tutorials_interfaces."""

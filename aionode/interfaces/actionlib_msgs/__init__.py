@@ -1,1 +1,1 @@
-"""actionlib_msgs."""
+"""Interfaces of actionlib_msgs."""

@@ -1,10 +1,15 @@
-"""actionlib_msgs."""
+"""Messages of actionlib_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated, ClassVar
 
 from aionode.interfaces.builtin_interfaces.msg import Time
 from aionode.interfaces.std_msgs.msg import Header
 from aionode.message import DEFAULT, Message, Sequence, uint8
+
+__all__ = ["GoalID", "GoalStatus", "GoalStatusArray"]
 
 
 class GoalID(Message, typename="actionlib_msgs/msg/GoalID"):
@@ -17,8 +22,6 @@ class GoalID(Message, typename="actionlib_msgs/msg/GoalID"):
 class GoalStatus(Message, typename="actionlib_msgs/msg/GoalStatus"):
     """GoalStatus."""
 
-    goal_id: GoalID = DEFAULT
-    status: uint8 = 0
     PENDING: ClassVar[uint8] = 0
     ACTIVE: ClassVar[uint8] = 1
     PREEMPTED: ClassVar[uint8] = 2
@@ -29,6 +32,9 @@ class GoalStatus(Message, typename="actionlib_msgs/msg/GoalStatus"):
     RECALLING: ClassVar[uint8] = 7
     RECALLED: ClassVar[uint8] = 8
     LOST: ClassVar[uint8] = 9
+
+    goal_id: GoalID = DEFAULT
+    status: uint8 = 0
     text: str = ""
 
 

@@ -1,1 +1,1 @@
-"""builtin_interfaces."""
+"""Interfaces of builtin_interfaces."""

@@ -1,17 +1,22 @@
-"""builtin_interfaces."""
+"""Messages of builtin_interfaces.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from aionode.message import Message, int32, uint32
 
+__all__ = ["Duration", "Time"]
 
-class Duration(Message, typename="builtin_interfaces/msg/Duration"):
-    """Duration."""
+
+class Time(Message, typename="builtin_interfaces/msg/Time"):
+    """Time."""
 
     sec: int32 = 0
     nanosec: uint32 = 0
 
 
-class Time(Message, typename="builtin_interfaces/msg/Time"):
-    """Time."""
+class Duration(Message, typename="builtin_interfaces/msg/Duration"):
+    """Duration."""
 
     sec: int32 = 0
     nanosec: uint32 = 0

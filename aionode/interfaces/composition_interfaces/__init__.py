@@ -1,1 +1,1 @@
-"""composition_interfaces."""
+"""Interfaces of composition_interfaces."""

@@ -1,19 +1,24 @@
-"""composition_interfaces."""
+"""Services of composition_interfaces.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated
 
 from aionode.interfaces.rcl_interfaces.msg import Parameter
-from aionode.message import DEFAULT, Ints, Message, Sequence, ServiceType, uint64, uint8
+from aionode.message import DEFAULT, Ints, Message, Sequence, ServiceType, uint8, uint64
+
+__all__ = ["ListNodes", "LoadNode", "UnloadNode"]
 
 
 class ListNodes(ServiceType, typename="composition_interfaces/srv/ListNodes"):
     """ListNodes."""
 
     class Request(Message):
-        """Request."""
+        """The request of ListNodes."""
 
     class Response(Message):
-        """Response."""
+        """The response of ListNodes."""
 
         full_node_names: Annotated[list[str], Sequence[str]] = DEFAULT
         unique_ids: Annotated[Ints, Sequence[uint64]] = DEFAULT
@@ -23,7 +28,7 @@ class LoadNode(ServiceType, typename="composition_interfaces/srv/LoadNode"):
     """LoadNode."""
 
     class Request(Message):
-        """Request."""
+        """The request of LoadNode."""
 
         package_name: str = ""
         plugin_name: str = ""
@@ -35,7 +40,7 @@ class LoadNode(ServiceType, typename="composition_interfaces/srv/LoadNode"):
         extra_arguments: Annotated[list[Parameter], Sequence[Parameter]] = DEFAULT
 
     class Response(Message):
-        """Response."""
+        """The response of LoadNode."""
 
         success: bool = False
         error_message: str = ""
@@ -47,12 +52,12 @@ class UnloadNode(ServiceType, typename="composition_interfaces/srv/UnloadNode"):
     """UnloadNode."""
 
     class Request(Message):
-        """Request."""
+        """The request of UnloadNode."""
 
         unique_id: uint64 = 0
 
     class Response(Message):
-        """Response."""
+        """The response of UnloadNode."""
 
         success: bool = False
         error_message: str = ""

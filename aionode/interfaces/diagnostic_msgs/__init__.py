@@ -1,1 +1,1 @@
-"""diagnostic_msgs."""
+"""Interfaces of diagnostic_msgs."""

@@ -1,9 +1,14 @@
-"""diagnostic_msgs."""
+"""Messages of diagnostic_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated, ClassVar
 
 from aionode.interfaces.std_msgs.msg import Header
 from aionode.message import DEFAULT, Message, Sequence, byte
+
+__all__ = ["DiagnosticArray", "DiagnosticStatus", "KeyValue"]
 
 
 class KeyValue(Message, typename="diagnostic_msgs/msg/KeyValue"):
@@ -16,11 +21,12 @@ class KeyValue(Message, typename="diagnostic_msgs/msg/KeyValue"):
 class DiagnosticStatus(Message, typename="diagnostic_msgs/msg/DiagnosticStatus"):
     """DiagnosticStatus."""
 
-    OK: ClassVar[byte] = bytes((0,))
-    WARN: ClassVar[byte] = bytes((1,))
-    ERROR: ClassVar[byte] = bytes((2,))
-    STALE: ClassVar[byte] = bytes((3,))
-    level: byte = b"\0"
+    OK: ClassVar[byte] = b"\x00"
+    WARN: ClassVar[byte] = b"\x01"
+    ERROR: ClassVar[byte] = b"\x02"
+    STALE: ClassVar[byte] = b"\x03"
+
+    level: byte = b"\x00"
     name: str = ""
     message: str = ""
     hardware_id: str = ""

@@ -1,1 +1,1 @@
-"""example_interfaces."""
+"""Interfaces of example_interfaces."""

@@ -1,24 +1,29 @@
-"""example_interfaces."""
+"""Actions of example_interfaces.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated
 
-from aionode.message import ActionType, DEFAULT, Ints, Message, Sequence, int32
+from aionode.message import DEFAULT, ActionType, Ints, Message, Sequence, int32
+
+__all__ = ["Fibonacci"]
 
 
 class Fibonacci(ActionType, typename="example_interfaces/action/Fibonacci"):
     """Fibonacci."""
 
     class Goal(Message):
-        """Goal."""
+        """The goal of Fibonacci."""
 
         order: int32 = 0
 
     class Result(Message):
-        """Result."""
+        """The result of Fibonacci."""
 
         sequence: Annotated[Ints, Sequence[int32]] = DEFAULT
 
     class Feedback(Message):
-        """Feedback."""
+        """The feedback of Fibonacci."""
 
         sequence: Annotated[Ints, Sequence[int32]] = DEFAULT

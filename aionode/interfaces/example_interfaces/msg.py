@@ -1,10 +1,13 @@
-"""example_interfaces."""
+"""Messages of example_interfaces.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated
 
 from aionode.message import (
-    Bytes,
     DEFAULT,
+    Bytes,
     Floats,
     Ints,
     Message,
@@ -13,16 +16,48 @@ from aionode.message import (
     char,
     float32,
     float64,
+    int8,
     int16,
     int32,
     int64,
-    int8,
+    uint8,
     uint16,
     uint32,
     uint64,
-    uint8,
     wstring,
 )
+
+__all__ = [
+    "Bool",
+    "Byte",
+    "ByteMultiArray",
+    "Char",
+    "Empty",
+    "Float32",
+    "Float32MultiArray",
+    "Float64",
+    "Float64MultiArray",
+    "Int8",
+    "Int8MultiArray",
+    "Int16",
+    "Int16MultiArray",
+    "Int32",
+    "Int32MultiArray",
+    "Int64",
+    "Int64MultiArray",
+    "MultiArrayDimension",
+    "MultiArrayLayout",
+    "String",
+    "UInt8",
+    "UInt8MultiArray",
+    "UInt16",
+    "UInt16MultiArray",
+    "UInt32",
+    "UInt32MultiArray",
+    "UInt64",
+    "UInt64MultiArray",
+    "WString",
+]
 
 
 class Bool(Message, typename="example_interfaces/msg/Bool"):
@@ -34,7 +69,7 @@ class Bool(Message, typename="example_interfaces/msg/Bool"):
 class Byte(Message, typename="example_interfaces/msg/Byte"):
     """Byte."""
 
-    data: byte = b"\0"
+    data: byte = b"\x00"
 
 
 class MultiArrayDimension(Message, typename="example_interfaces/msg/MultiArrayDimension"):

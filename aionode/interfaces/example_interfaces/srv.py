@@ -1,19 +1,24 @@
-"""example_interfaces."""
+"""Services of example_interfaces.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from aionode.message import Message, ServiceType, int64
+
+__all__ = ["AddTwoInts", "SetBool", "Trigger"]
 
 
 class AddTwoInts(ServiceType, typename="example_interfaces/srv/AddTwoInts"):
     """AddTwoInts."""
 
     class Request(Message):
-        """Request."""
+        """The request of AddTwoInts."""
 
         a: int64 = 0
         b: int64 = 0
 
     class Response(Message):
-        """Response."""
+        """The response of AddTwoInts."""
 
         sum: int64 = 0
 
@@ -22,12 +27,12 @@ class SetBool(ServiceType, typename="example_interfaces/srv/SetBool"):
     """SetBool."""
 
     class Request(Message):
-        """Request."""
+        """The request of SetBool."""
 
         data: bool = False
 
     class Response(Message):
-        """Response."""
+        """The response of SetBool."""
 
         success: bool = False
         message: str = ""
@@ -37,10 +42,10 @@ class Trigger(ServiceType, typename="example_interfaces/srv/Trigger"):
     """Trigger."""
 
     class Request(Message):
-        """Request."""
+        """The request of Trigger."""
 
     class Response(Message):
-        """Response."""
+        """The response of Trigger."""
 
         success: bool = False
         message: str = ""

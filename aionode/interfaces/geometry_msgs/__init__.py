@@ -1,1 +1,1 @@
-"""geometry_msgs."""
+"""Interfaces of geometry_msgs."""

@@ -1,9 +1,47 @@
-"""geometry_msgs."""
+"""Messages of geometry_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated
 
 from aionode.interfaces.std_msgs.msg import Header
-from aionode.message import Array, DEFAULT, Floats, Message, Sequence, float32, float64, int64
+from aionode.message import DEFAULT, Array, Floats, Message, Sequence, float32, float64, int64
+
+__all__ = [
+    "Accel",
+    "AccelStamped",
+    "AccelWithCovariance",
+    "AccelWithCovarianceStamped",
+    "Inertia",
+    "InertiaStamped",
+    "Point",
+    "Point32",
+    "PointStamped",
+    "Polygon",
+    "PolygonInstance",
+    "PolygonInstanceStamped",
+    "PolygonStamped",
+    "Pose",
+    "Pose2D",
+    "PoseArray",
+    "PoseStamped",
+    "PoseWithCovariance",
+    "PoseWithCovarianceStamped",
+    "Quaternion",
+    "QuaternionStamped",
+    "Transform",
+    "TransformStamped",
+    "Twist",
+    "TwistStamped",
+    "TwistWithCovariance",
+    "TwistWithCovarianceStamped",
+    "Vector3",
+    "Vector3Stamped",
+    "VelocityStamped",
+    "Wrench",
+    "WrenchStamped",
+]
 
 
 class Vector3(Message, typename="geometry_msgs/msg/Vector3"):
@@ -115,10 +153,10 @@ class PolygonStamped(Message, typename="geometry_msgs/msg/PolygonStamped"):
 class Quaternion(Message, typename="geometry_msgs/msg/Quaternion"):
     """Quaternion."""
 
-    x: float64 = 0
-    y: float64 = 0
-    z: float64 = 0
-    w: float64 = 1
+    x: float64 = 0.0
+    y: float64 = 0.0
+    z: float64 = 0.0
+    w: float64 = 1.0
 
 
 class Pose(Message, typename="geometry_msgs/msg/Pose"):

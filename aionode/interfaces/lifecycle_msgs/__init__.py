@@ -1,1 +1,1 @@
-"""lifecycle_msgs."""
+"""Interfaces of lifecycle_msgs."""

@@ -1,8 +1,13 @@
-"""lifecycle_msgs."""
+"""Messages of lifecycle_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import ClassVar
 
-from aionode.message import DEFAULT, Message, uint64, uint8
+from aionode.message import DEFAULT, Message, uint8, uint64
+
+__all__ = ["State", "Transition", "TransitionDescription", "TransitionEvent"]
 
 
 class State(Message, typename="lifecycle_msgs/msg/State"):
@@ -19,6 +24,7 @@ class State(Message, typename="lifecycle_msgs/msg/State"):
     TRANSITION_STATE_ACTIVATING: ClassVar[uint8] = 13
     TRANSITION_STATE_DEACTIVATING: ClassVar[uint8] = 14
     TRANSITION_STATE_ERRORPROCESSING: ClassVar[uint8] = 15
+
     id: uint8 = 0
     label: str = ""
 
@@ -38,6 +44,7 @@ class Transition(Message, typename="lifecycle_msgs/msg/Transition"):
     TRANSITION_CALLBACK_SUCCESS: ClassVar[uint8] = 97
     TRANSITION_CALLBACK_FAILURE: ClassVar[uint8] = 98
     TRANSITION_CALLBACK_ERROR: ClassVar[uint8] = 99
+
     id: uint8 = 0
     label: str = ""
 

@@ -1,21 +1,26 @@
-"""lifecycle_msgs."""
+"""Services of lifecycle_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated
 
 from aionode.interfaces.lifecycle_msgs.msg import State, Transition, TransitionDescription
 from aionode.message import DEFAULT, Message, Sequence, ServiceType
 
+__all__ = ["ChangeState", "GetAvailableStates", "GetAvailableTransitions", "GetState"]
+
 
 class ChangeState(ServiceType, typename="lifecycle_msgs/srv/ChangeState"):
     """ChangeState."""
 
     class Request(Message):
-        """Request."""
+        """The request of ChangeState."""
 
         transition: Transition = DEFAULT
 
     class Response(Message):
-        """Response."""
+        """The response of ChangeState."""
 
         success: bool = False
 
@@ -24,10 +29,10 @@ class GetAvailableStates(ServiceType, typename="lifecycle_msgs/srv/GetAvailableS
     """GetAvailableStates."""
 
     class Request(Message):
-        """Request."""
+        """The request of GetAvailableStates."""
 
     class Response(Message):
-        """Response."""
+        """The response of GetAvailableStates."""
 
         available_states: Annotated[list[State], Sequence[State]] = DEFAULT
 
@@ -36,10 +41,10 @@ class GetAvailableTransitions(ServiceType, typename="lifecycle_msgs/srv/GetAvail
     """GetAvailableTransitions."""
 
     class Request(Message):
-        """Request."""
+        """The request of GetAvailableTransitions."""
 
     class Response(Message):
-        """Response."""
+        """The response of GetAvailableTransitions."""
 
         available_transitions: Annotated[
             list[TransitionDescription], Sequence[TransitionDescription]
@@ -50,9 +55,9 @@ class GetState(ServiceType, typename="lifecycle_msgs/srv/GetState"):
     """GetState."""
 
     class Request(Message):
-        """Request."""
+        """The request of GetState."""
 
     class Response(Message):
-        """Response."""
+        """The response of GetState."""
 
         current_state: State = DEFAULT

@@ -1,1 +1,1 @@
-"""nav_msgs."""
+"""Interfaces of nav_msgs."""

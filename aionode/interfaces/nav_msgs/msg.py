@@ -1,4 +1,7 @@
-"""nav_msgs."""
+"""Messages of nav_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated
 
@@ -12,6 +15,8 @@ from aionode.interfaces.geometry_msgs.msg import (
 )
 from aionode.interfaces.std_msgs.msg import Header
 from aionode.message import DEFAULT, Ints, Message, Sequence, float32, int8, uint32
+
+__all__ = ["Goals", "GridCells", "MapMetaData", "OccupancyGrid", "Odometry", "Path"]
 
 
 class Goals(Message, typename="nav_msgs/msg/Goals"):

@@ -1,1 +1,1 @@
-"""rcl_interfaces."""
+"""Interfaces of rcl_interfaces."""

@@ -1,12 +1,15 @@
-"""rcl_interfaces."""
+"""Messages of rcl_interfaces.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated, ClassVar
 
 from aionode.interfaces.builtin_interfaces.msg import Time
 from aionode.message import (
+    DEFAULT,
     Bools,
     Bytes,
-    DEFAULT,
     Floats,
     Ints,
     Message,
@@ -14,10 +17,48 @@ from aionode.message import (
     byte,
     float64,
     int64,
+    uint8,
     uint32,
     uint64,
-    uint8,
 )
+
+__all__ = [
+    "FloatingPointRange",
+    "IntegerRange",
+    "ListParametersResult",
+    "Log",
+    "LoggerLevel",
+    "Parameter",
+    "ParameterDescriptor",
+    "ParameterEvent",
+    "ParameterEventDescriptors",
+    "ParameterType",
+    "ParameterValue",
+    "SetLoggerLevelsResult",
+    "SetParametersResult",
+]
+
+
+class ParameterValue(Message, typename="rcl_interfaces/msg/ParameterValue"):
+    """ParameterValue."""
+
+    type: uint8 = 0
+    bool_value: bool = False
+    integer_value: int64 = 0
+    double_value: float64 = 0.0
+    string_value: str = ""
+    byte_array_value: Annotated[Bytes, Sequence[byte]] = DEFAULT
+    bool_array_value: Annotated[Bools, Sequence[bool]] = DEFAULT
+    integer_array_value: Annotated[Ints, Sequence[int64]] = DEFAULT
+    double_array_value: Annotated[Floats, Sequence[float64]] = DEFAULT
+    string_array_value: Annotated[list[str], Sequence[str]] = DEFAULT
+
+
+class Parameter(Message, typename="rcl_interfaces/msg/Parameter"):
+    """Parameter."""
+
+    name: str = ""
+    value: ParameterValue = DEFAULT
 
 
 class FloatingPointRange(Message, typename="rcl_interfaces/msg/FloatingPointRange"):
@@ -51,6 +92,7 @@ class Log(Message, typename="rcl_interfaces/msg/Log"):
     WARN: ClassVar[uint8] = 30
     ERROR: ClassVar[uint8] = 40
     FATAL: ClassVar[uint8] = 50
+
     stamp: Time = DEFAULT
     level: uint8 = 0
     name: str = ""
@@ -65,28 +107,6 @@ class LoggerLevel(Message, typename="rcl_interfaces/msg/LoggerLevel"):
 
     name: str = ""
     level: uint32 = 0
-
-
-class ParameterValue(Message, typename="rcl_interfaces/msg/ParameterValue"):
-    """ParameterValue."""
-
-    type: uint8 = 0
-    bool_value: bool = False
-    integer_value: int64 = 0
-    double_value: float64 = 0.0
-    string_value: str = ""
-    byte_array_value: Annotated[Bytes, Sequence[byte]] = DEFAULT
-    bool_array_value: Annotated[Bools, Sequence[bool]] = DEFAULT
-    integer_array_value: Annotated[Ints, Sequence[int64]] = DEFAULT
-    double_array_value: Annotated[Floats, Sequence[float64]] = DEFAULT
-    string_array_value: Annotated[list[str], Sequence[str]] = DEFAULT
-
-
-class Parameter(Message, typename="rcl_interfaces/msg/Parameter"):
-    """Parameter."""
-
-    name: str = ""
-    value: ParameterValue = DEFAULT
 
 
 class ParameterDescriptor(Message, typename="rcl_interfaces/msg/ParameterDescriptor"):

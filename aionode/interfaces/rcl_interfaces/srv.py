@@ -1,4 +1,7 @@
-"""rcl_interfaces."""
+"""Services of rcl_interfaces.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated, ClassVar
 
@@ -11,19 +14,30 @@ from aionode.interfaces.rcl_interfaces.msg import (
     SetLoggerLevelsResult,
     SetParametersResult,
 )
-from aionode.message import Bytes, DEFAULT, Message, Sequence, ServiceType, uint64, uint8
+from aionode.message import DEFAULT, Bytes, Message, Sequence, ServiceType, uint8, uint64
+
+__all__ = [
+    "DescribeParameters",
+    "GetLoggerLevels",
+    "GetParameterTypes",
+    "GetParameters",
+    "ListParameters",
+    "SetLoggerLevels",
+    "SetParameters",
+    "SetParametersAtomically",
+]
 
 
 class DescribeParameters(ServiceType, typename="rcl_interfaces/srv/DescribeParameters"):
     """DescribeParameters."""
 
     class Request(Message):
-        """Request."""
+        """The request of DescribeParameters."""
 
         names: Annotated[list[str], Sequence[str]] = DEFAULT
 
     class Response(Message):
-        """Response."""
+        """The response of DescribeParameters."""
 
         descriptors: Annotated[list[ParameterDescriptor], Sequence[ParameterDescriptor]] = DEFAULT
 
@@ -32,12 +46,12 @@ class GetLoggerLevels(ServiceType, typename="rcl_interfaces/srv/GetLoggerLevels"
     """GetLoggerLevels."""
 
     class Request(Message):
-        """Request."""
+        """The request of GetLoggerLevels."""
 
         names: Annotated[list[str], Sequence[str]] = DEFAULT
 
     class Response(Message):
-        """Response."""
+        """The response of GetLoggerLevels."""
 
         levels: Annotated[list[LoggerLevel], Sequence[LoggerLevel]] = DEFAULT
 
@@ -46,12 +60,12 @@ class GetParameterTypes(ServiceType, typename="rcl_interfaces/srv/GetParameterTy
     """GetParameterTypes."""
 
     class Request(Message):
-        """Request."""
+        """The request of GetParameterTypes."""
 
         names: Annotated[list[str], Sequence[str]] = DEFAULT
 
     class Response(Message):
-        """Response."""
+        """The response of GetParameterTypes."""
 
         types: Annotated[Bytes, Sequence[uint8]] = DEFAULT
 
@@ -60,12 +74,12 @@ class GetParameters(ServiceType, typename="rcl_interfaces/srv/GetParameters"):
     """GetParameters."""
 
     class Request(Message):
-        """Request."""
+        """The request of GetParameters."""
 
         names: Annotated[list[str], Sequence[str]] = DEFAULT
 
     class Response(Message):
-        """Response."""
+        """The response of GetParameters."""
 
         values: Annotated[list[ParameterValue], Sequence[ParameterValue]] = DEFAULT
 
@@ -74,14 +88,15 @@ class ListParameters(ServiceType, typename="rcl_interfaces/srv/ListParameters"):
     """ListParameters."""
 
     class Request(Message):
-        """Request."""
+        """The request of ListParameters."""
 
         DEPTH_RECURSIVE: ClassVar[uint64] = 0
+
         prefixes: Annotated[list[str], Sequence[str]] = DEFAULT
         depth: uint64 = 0
 
     class Response(Message):
-        """Response."""
+        """The response of ListParameters."""
 
         result: ListParametersResult = DEFAULT
 
@@ -90,12 +105,12 @@ class SetLoggerLevels(ServiceType, typename="rcl_interfaces/srv/SetLoggerLevels"
     """SetLoggerLevels."""
 
     class Request(Message):
-        """Request."""
+        """The request of SetLoggerLevels."""
 
         levels: Annotated[list[LoggerLevel], Sequence[LoggerLevel]] = DEFAULT
 
     class Response(Message):
-        """Response."""
+        """The response of SetLoggerLevels."""
 
         results: Annotated[list[SetLoggerLevelsResult], Sequence[SetLoggerLevelsResult]] = DEFAULT
 
@@ -104,12 +119,12 @@ class SetParameters(ServiceType, typename="rcl_interfaces/srv/SetParameters"):
     """SetParameters."""
 
     class Request(Message):
-        """Request."""
+        """The request of SetParameters."""
 
         parameters: Annotated[list[Parameter], Sequence[Parameter]] = DEFAULT
 
     class Response(Message):
-        """Response."""
+        """The response of SetParameters."""
 
         results: Annotated[list[SetParametersResult], Sequence[SetParametersResult]] = DEFAULT
 
@@ -118,11 +133,11 @@ class SetParametersAtomically(ServiceType, typename="rcl_interfaces/srv/SetParam
     """SetParametersAtomically."""
 
     class Request(Message):
-        """Request."""
+        """The request of SetParametersAtomically."""
 
         parameters: Annotated[list[Parameter], Sequence[Parameter]] = DEFAULT
 
     class Response(Message):
-        """Response."""
+        """The response of SetParametersAtomically."""
 
         result: SetParametersResult = DEFAULT

@@ -1,1 +1,1 @@
-"""rosbag2_interfaces."""
+"""Interfaces of rosbag2_interfaces."""

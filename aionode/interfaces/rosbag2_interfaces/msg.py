@@ -1,6 +1,11 @@
-"""rosbag2_interfaces."""
+"""Messages of rosbag2_interfaces.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from aionode.message import Message
+
+__all__ = ["ReadSplitEvent", "WriteSplitEvent"]
 
 
 class ReadSplitEvent(Message, typename="rosbag2_interfaces/msg/ReadSplitEvent"):

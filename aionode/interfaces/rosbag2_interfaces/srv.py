@@ -1,19 +1,42 @@
-"""rosbag2_interfaces."""
+"""Services of rosbag2_interfaces.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from aionode.interfaces.builtin_interfaces.msg import Duration, Time
 from aionode.message import DEFAULT, Message, ServiceType, float64, int32, uint64
+
+__all__ = [
+    "Burst",
+    "GetRate",
+    "IsDiscoveryRunning",
+    "IsPaused",
+    "Pause",
+    "Play",
+    "PlayNext",
+    "Record",
+    "Resume",
+    "Seek",
+    "SetRate",
+    "Snapshot",
+    "SplitBagfile",
+    "StartDiscovery",
+    "Stop",
+    "StopDiscovery",
+    "TogglePaused",
+]
 
 
 class Burst(ServiceType, typename="rosbag2_interfaces/srv/Burst"):
     """Burst."""
 
     class Request(Message):
-        """Request."""
+        """The request of Burst."""
 
         num_messages: uint64 = 0
 
     class Response(Message):
-        """Response."""
+        """The response of Burst."""
 
         actually_burst: uint64 = 0
 
@@ -22,10 +45,10 @@ class GetRate(ServiceType, typename="rosbag2_interfaces/srv/GetRate"):
     """GetRate."""
 
     class Request(Message):
-        """Request."""
+        """The request of GetRate."""
 
     class Response(Message):
-        """Response."""
+        """The response of GetRate."""
 
         rate: float64 = 0.0
 
@@ -34,10 +57,10 @@ class IsDiscoveryRunning(ServiceType, typename="rosbag2_interfaces/srv/IsDiscove
     """IsDiscoveryRunning."""
 
     class Request(Message):
-        """Request."""
+        """The request of IsDiscoveryRunning."""
 
     class Response(Message):
-        """Response."""
+        """The response of IsDiscoveryRunning."""
 
         running: bool = False
 
@@ -46,10 +69,10 @@ class IsPaused(ServiceType, typename="rosbag2_interfaces/srv/IsPaused"):
     """IsPaused."""
 
     class Request(Message):
-        """Request."""
+        """The request of IsPaused."""
 
     class Response(Message):
-        """Response."""
+        """The response of IsPaused."""
 
         paused: bool = False
 
@@ -58,24 +81,24 @@ class Pause(ServiceType, typename="rosbag2_interfaces/srv/Pause"):
     """Pause."""
 
     class Request(Message):
-        """Request."""
+        """The request of Pause."""
 
     class Response(Message):
-        """Response."""
+        """The response of Pause."""
 
 
 class Play(ServiceType, typename="rosbag2_interfaces/srv/Play"):
     """Play."""
 
     class Request(Message):
-        """Request."""
+        """The request of Play."""
 
         start_offset: Time = DEFAULT
         playback_duration: Duration = DEFAULT
         playback_until_timestamp: Time = DEFAULT
 
     class Response(Message):
-        """Response."""
+        """The response of Play."""
 
         success: bool = False
 
@@ -84,10 +107,10 @@ class PlayNext(ServiceType, typename="rosbag2_interfaces/srv/PlayNext"):
     """PlayNext."""
 
     class Request(Message):
-        """Request."""
+        """The request of PlayNext."""
 
     class Response(Message):
-        """Response."""
+        """The response of PlayNext."""
 
         success: bool = False
 
@@ -96,12 +119,12 @@ class Record(ServiceType, typename="rosbag2_interfaces/srv/Record"):
     """Record."""
 
     class Request(Message):
-        """Request."""
+        """The request of Record."""
 
         uri: str = ""
 
     class Response(Message):
-        """Response."""
+        """The response of Record."""
 
         return_code: int32 = 0
         error_string: str = ""
@@ -111,22 +134,22 @@ class Resume(ServiceType, typename="rosbag2_interfaces/srv/Resume"):
     """Resume."""
 
     class Request(Message):
-        """Request."""
+        """The request of Resume."""
 
     class Response(Message):
-        """Response."""
+        """The response of Resume."""
 
 
 class Seek(ServiceType, typename="rosbag2_interfaces/srv/Seek"):
     """Seek."""
 
     class Request(Message):
-        """Request."""
+        """The request of Seek."""
 
         time: Time = DEFAULT
 
     class Response(Message):
-        """Response."""
+        """The response of Seek."""
 
         success: bool = False
 
@@ -135,12 +158,12 @@ class SetRate(ServiceType, typename="rosbag2_interfaces/srv/SetRate"):
     """SetRate."""
 
     class Request(Message):
-        """Request."""
+        """The request of SetRate."""
 
         rate: float64 = 0.0
 
     class Response(Message):
-        """Response."""
+        """The response of SetRate."""
 
         success: bool = False
 
@@ -149,10 +172,10 @@ class Snapshot(ServiceType, typename="rosbag2_interfaces/srv/Snapshot"):
     """Snapshot."""
 
     class Request(Message):
-        """Request."""
+        """The request of Snapshot."""
 
     class Response(Message):
-        """Response."""
+        """The response of Snapshot."""
 
         success: bool = False
 
@@ -161,20 +184,20 @@ class SplitBagfile(ServiceType, typename="rosbag2_interfaces/srv/SplitBagfile"):
     """SplitBagfile."""
 
     class Request(Message):
-        """Request."""
+        """The request of SplitBagfile."""
 
     class Response(Message):
-        """Response."""
+        """The response of SplitBagfile."""
 
 
 class StartDiscovery(ServiceType, typename="rosbag2_interfaces/srv/StartDiscovery"):
     """StartDiscovery."""
 
     class Request(Message):
-        """Request."""
+        """The request of StartDiscovery."""
 
     class Response(Message):
-        """Response."""
+        """The response of StartDiscovery."""
 
         return_code: int32 = 0
         error_string: str = ""
@@ -184,20 +207,20 @@ class Stop(ServiceType, typename="rosbag2_interfaces/srv/Stop"):
     """Stop."""
 
     class Request(Message):
-        """Request."""
+        """The request of Stop."""
 
     class Response(Message):
-        """Response."""
+        """The response of Stop."""
 
 
 class StopDiscovery(ServiceType, typename="rosbag2_interfaces/srv/StopDiscovery"):
     """StopDiscovery."""
 
     class Request(Message):
-        """Request."""
+        """The request of StopDiscovery."""
 
     class Response(Message):
-        """Response."""
+        """The response of StopDiscovery."""
 
         return_code: int32 = 0
         error_string: str = ""
@@ -207,7 +230,7 @@ class TogglePaused(ServiceType, typename="rosbag2_interfaces/srv/TogglePaused"):
     """TogglePaused."""
 
     class Request(Message):
-        """Request."""
+        """The request of TogglePaused."""
 
     class Response(Message):
-        """Response."""
+        """The response of TogglePaused."""

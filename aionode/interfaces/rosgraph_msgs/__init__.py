@@ -1,1 +1,1 @@
-"""rosgraph_msgs."""
+"""Interfaces of rosgraph_msgs."""

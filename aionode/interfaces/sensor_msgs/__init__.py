@@ -1,1 +1,1 @@
-"""sensor_msgs."""
+"""Interfaces of sensor_msgs."""

@@ -1,4 +1,7 @@
-"""sensor_msgs."""
+"""Messages of sensor_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated, ClassVar
 
@@ -13,21 +16,51 @@ from aionode.interfaces.geometry_msgs.msg import (
 )
 from aionode.interfaces.std_msgs.msg import Header
 from aionode.message import (
+    DEFAULT,
     Array,
     Bytes,
-    DEFAULT,
     Floats,
     Ints,
     Message,
     Sequence,
     float32,
     float64,
-    int32,
     int8,
+    int32,
+    uint8,
     uint16,
     uint32,
-    uint8,
 )
+
+__all__ = [
+    "BatteryState",
+    "CameraInfo",
+    "ChannelFloat32",
+    "CompressedImage",
+    "FluidPressure",
+    "Illuminance",
+    "Image",
+    "Imu",
+    "JointState",
+    "Joy",
+    "JoyFeedback",
+    "JoyFeedbackArray",
+    "LaserEcho",
+    "LaserScan",
+    "MagneticField",
+    "MultiDOFJointState",
+    "MultiEchoLaserScan",
+    "NavSatFix",
+    "NavSatStatus",
+    "PointCloud",
+    "PointCloud2",
+    "PointField",
+    "Range",
+    "RegionOfInterest",
+    "RelativeHumidity",
+    "Temperature",
+    "TimeReference",
+]
 
 
 class BatteryState(Message, typename="sensor_msgs/msg/BatteryState"):
@@ -56,6 +89,7 @@ class BatteryState(Message, typename="sensor_msgs/msg/BatteryState"):
     POWER_SUPPLY_TECHNOLOGY_LIMN: ClassVar[uint8] = 6
     POWER_SUPPLY_TECHNOLOGY_TERNARY: ClassVar[uint8] = 7
     POWER_SUPPLY_TECHNOLOGY_VRLA: ClassVar[uint8] = 8
+
     header: Header = DEFAULT
     voltage: float32 = 0.0
     temperature: float32 = 0.0
@@ -179,6 +213,7 @@ class JoyFeedback(Message, typename="sensor_msgs/msg/JoyFeedback"):
     TYPE_LED: ClassVar[uint8] = 0
     TYPE_RUMBLE: ClassVar[uint8] = 1
     TYPE_BUZZER: ClassVar[uint8] = 2
+
     type: uint8 = 0
     id: uint8 = 0
     intensity: float32 = 0.0
@@ -252,17 +287,23 @@ class NavSatStatus(Message, typename="sensor_msgs/msg/NavSatStatus"):
     STATUS_FIX: ClassVar[int8] = 0
     STATUS_SBAS_FIX: ClassVar[int8] = 1
     STATUS_GBAS_FIX: ClassVar[int8] = 2
-    status: int8 = -2
     SERVICE_UNKNOWN: ClassVar[uint16] = 0
     SERVICE_GPS: ClassVar[uint16] = 1
     SERVICE_GLONASS: ClassVar[uint16] = 2
     SERVICE_COMPASS: ClassVar[uint16] = 4
     SERVICE_GALILEO: ClassVar[uint16] = 8
+
+    status: int8 = -2
     service: uint16 = 0
 
 
 class NavSatFix(Message, typename="sensor_msgs/msg/NavSatFix"):
     """NavSatFix."""
+
+    COVARIANCE_TYPE_UNKNOWN: ClassVar[uint8] = 0
+    COVARIANCE_TYPE_APPROXIMATED: ClassVar[uint8] = 1
+    COVARIANCE_TYPE_DIAGONAL_KNOWN: ClassVar[uint8] = 2
+    COVARIANCE_TYPE_KNOWN: ClassVar[uint8] = 3
 
     header: Header = DEFAULT
     status: NavSatStatus = DEFAULT
@@ -270,10 +311,6 @@ class NavSatFix(Message, typename="sensor_msgs/msg/NavSatFix"):
     longitude: float64 = 0.0
     altitude: float64 = 0.0
     position_covariance: Annotated[Floats, Array[float64, 9]] = DEFAULT
-    COVARIANCE_TYPE_UNKNOWN: ClassVar[uint8] = 0
-    COVARIANCE_TYPE_APPROXIMATED: ClassVar[uint8] = 1
-    COVARIANCE_TYPE_DIAGONAL_KNOWN: ClassVar[uint8] = 2
-    COVARIANCE_TYPE_KNOWN: ClassVar[uint8] = 3
     position_covariance_type: uint8 = 0
 
 
@@ -296,6 +333,7 @@ class PointField(Message, typename="sensor_msgs/msg/PointField"):
     UINT32: ClassVar[uint8] = 6
     FLOAT32: ClassVar[uint8] = 7
     FLOAT64: ClassVar[uint8] = 8
+
     name: str = ""
     offset: uint32 = 0
     datatype: uint8 = 0
@@ -319,9 +357,10 @@ class PointCloud2(Message, typename="sensor_msgs/msg/PointCloud2"):
 class Range(Message, typename="sensor_msgs/msg/Range"):
     """Range."""
 
-    header: Header = DEFAULT
     ULTRASOUND: ClassVar[uint8] = 0
     INFRARED: ClassVar[uint8] = 1
+
+    header: Header = DEFAULT
     radiation_type: uint8 = 0
     field_of_view: float32 = 0.0
     min_range: float32 = 0.0

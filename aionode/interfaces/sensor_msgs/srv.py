@@ -1,19 +1,24 @@
-"""sensor_msgs."""
+"""Services of sensor_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from aionode.interfaces.sensor_msgs.msg import CameraInfo
 from aionode.message import DEFAULT, Message, ServiceType
+
+__all__ = ["SetCameraInfo"]
 
 
 class SetCameraInfo(ServiceType, typename="sensor_msgs/srv/SetCameraInfo"):
     """SetCameraInfo."""
 
     class Request(Message):
-        """Request."""
+        """The request of SetCameraInfo."""
 
         camera_info: CameraInfo = DEFAULT
 
     class Response(Message):
-        """Response."""
+        """The response of SetCameraInfo."""
 
         success: bool = False
         status_message: str = ""

@@ -1,1 +1,1 @@
-"""service_msgs."""
+"""Interfaces of service_msgs."""

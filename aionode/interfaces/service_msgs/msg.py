@@ -1,9 +1,14 @@
-"""service_msgs."""
+"""Messages of service_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated, ClassVar
 
 from aionode.interfaces.builtin_interfaces.msg import Time
-from aionode.message import Array, DEFAULT, Ints, Message, char, int64, uint8
+from aionode.message import DEFAULT, Array, Ints, Message, char, int64, uint8
+
+__all__ = ["ServiceEventInfo"]
 
 
 class ServiceEventInfo(Message, typename="service_msgs/msg/ServiceEventInfo"):
@@ -13,6 +18,7 @@ class ServiceEventInfo(Message, typename="service_msgs/msg/ServiceEventInfo"):
     REQUEST_RECEIVED: ClassVar[uint8] = 1
     RESPONSE_SENT: ClassVar[uint8] = 2
     RESPONSE_RECEIVED: ClassVar[uint8] = 3
+
     event_type: uint8 = 0
     stamp: Time = DEFAULT
     client_gid: Annotated[Ints, Array[char, 16]] = DEFAULT

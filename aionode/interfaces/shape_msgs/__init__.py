@@ -1,1 +1,1 @@
-"""shape_msgs."""
+"""Interfaces of shape_msgs."""

@@ -1,9 +1,14 @@
-"""shape_msgs."""
+"""Messages of shape_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated, ClassVar
 
 from aionode.interfaces.geometry_msgs.msg import Point, Polygon
-from aionode.message import Array, DEFAULT, Floats, Ints, Message, Sequence, float64, uint32, uint8
+from aionode.message import DEFAULT, Array, Floats, Ints, Message, Sequence, float64, uint8, uint32
+
+__all__ = ["Mesh", "MeshTriangle", "Plane", "SolidPrimitive"]
 
 
 class MeshTriangle(Message, typename="shape_msgs/msg/MeshTriangle"):
@@ -33,8 +38,6 @@ class SolidPrimitive(Message, typename="shape_msgs/msg/SolidPrimitive"):
     CYLINDER: ClassVar[uint8] = 3
     CONE: ClassVar[uint8] = 4
     PRISM: ClassVar[uint8] = 5
-    type: uint8 = 0
-    dimensions: Annotated[Floats, Sequence[float64, 3]] = DEFAULT
     BOX_X: ClassVar[uint8] = 0
     BOX_Y: ClassVar[uint8] = 1
     BOX_Z: ClassVar[uint8] = 2
@@ -44,4 +47,7 @@ class SolidPrimitive(Message, typename="shape_msgs/msg/SolidPrimitive"):
     CONE_HEIGHT: ClassVar[uint8] = 0
     CONE_RADIUS: ClassVar[uint8] = 1
     PRISM_HEIGHT: ClassVar[uint8] = 0
+
+    type: uint8 = 0
+    dimensions: Annotated[Floats, Sequence[float64, 3]] = DEFAULT
     polygon: Polygon = DEFAULT

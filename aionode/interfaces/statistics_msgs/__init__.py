@@ -1,1 +1,1 @@
-"""statistics_msgs."""
+"""Interfaces of statistics_msgs."""

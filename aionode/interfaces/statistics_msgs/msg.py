@@ -1,9 +1,14 @@
-"""statistics_msgs."""
+"""Messages of statistics_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated, ClassVar
 
 from aionode.interfaces.builtin_interfaces.msg import Time
 from aionode.message import DEFAULT, Message, Sequence, float64, uint8
+
+__all__ = ["MetricsMessage", "StatisticDataPoint", "StatisticDataType"]
 
 
 class StatisticDataPoint(Message, typename="statistics_msgs/msg/StatisticDataPoint"):

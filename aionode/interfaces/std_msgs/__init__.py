@@ -1,1 +1,1 @@
-"""std_msgs."""
+"""Interfaces of std_msgs."""

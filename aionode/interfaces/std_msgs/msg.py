@@ -1,11 +1,14 @@
-"""std_msgs."""
+"""Messages of std_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated
 
 from aionode.interfaces.builtin_interfaces.msg import Time
 from aionode.message import (
-    Bytes,
     DEFAULT,
+    Bytes,
     Floats,
     Ints,
     Message,
@@ -14,15 +17,55 @@ from aionode.message import (
     char,
     float32,
     float64,
+    int8,
     int16,
     int32,
     int64,
-    int8,
+    uint8,
     uint16,
     uint32,
     uint64,
-    uint8,
 )
+
+__all__ = [
+    "Bool",
+    "Byte",
+    "ByteMultiArray",
+    "Char",
+    "ColorRGBA",
+    "Empty",
+    "Float32",
+    "Float32MultiArray",
+    "Float64",
+    "Float64MultiArray",
+    "Header",
+    "Int8",
+    "Int8MultiArray",
+    "Int16",
+    "Int16MultiArray",
+    "Int32",
+    "Int32MultiArray",
+    "Int64",
+    "Int64MultiArray",
+    "MultiArrayDimension",
+    "MultiArrayLayout",
+    "String",
+    "UInt8",
+    "UInt8MultiArray",
+    "UInt16",
+    "UInt16MultiArray",
+    "UInt32",
+    "UInt32MultiArray",
+    "UInt64",
+    "UInt64MultiArray",
+]
+
+
+class Header(Message, typename="std_msgs/msg/Header"):
+    """Header."""
+
+    stamp: Time = DEFAULT
+    frame_id: str = ""
 
 
 class Bool(Message, typename="std_msgs/msg/Bool"):
@@ -34,7 +77,7 @@ class Bool(Message, typename="std_msgs/msg/Bool"):
 class Byte(Message, typename="std_msgs/msg/Byte"):
     """Byte."""
 
-    data: byte = b"\0"
+    data: byte = b"\x00"
 
 
 class MultiArrayDimension(Message, typename="std_msgs/msg/MultiArrayDimension"):
@@ -102,13 +145,6 @@ class Float64MultiArray(Message, typename="std_msgs/msg/Float64MultiArray"):
 
     layout: MultiArrayLayout = DEFAULT
     data: Annotated[Floats, Sequence[float64]] = DEFAULT
-
-
-class Header(Message, typename="std_msgs/msg/Header"):
-    """Header."""
-
-    stamp: Time = DEFAULT
-    frame_id: str = ""
 
 
 class Int16(Message, typename="std_msgs/msg/Int16"):

@@ -1,1 +1,1 @@
-"""std_srvs."""
+"""Interfaces of std_srvs."""

@@ -1,28 +1,33 @@
-"""std_srvs."""
+"""Services of std_srvs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from aionode.message import Message, ServiceType
+
+__all__ = ["Empty", "SetBool", "Trigger"]
 
 
 class Empty(ServiceType, typename="std_srvs/srv/Empty"):
     """Empty."""
 
     class Request(Message):
-        """Request."""
+        """The request of Empty."""
 
     class Response(Message):
-        """Response."""
+        """The response of Empty."""
 
 
 class SetBool(ServiceType, typename="std_srvs/srv/SetBool"):
     """SetBool."""
 
     class Request(Message):
-        """Request."""
+        """The request of SetBool."""
 
         data: bool = False
 
     class Response(Message):
-        """Response."""
+        """The response of SetBool."""
 
         success: bool = False
         message: str = ""
@@ -32,10 +37,10 @@ class Trigger(ServiceType, typename="std_srvs/srv/Trigger"):
     """Trigger."""
 
     class Request(Message):
-        """Request."""
+        """The request of Trigger."""
 
     class Response(Message):
-        """Response."""
+        """The response of Trigger."""
 
         success: bool = False
         message: str = ""

@@ -1,1 +1,1 @@
-"""stereo_msgs."""
+"""Interfaces of stereo_msgs."""

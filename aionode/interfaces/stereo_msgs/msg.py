@@ -1,8 +1,13 @@
-"""stereo_msgs."""
+"""Messages of stereo_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from aionode.interfaces.sensor_msgs.msg import Image, RegionOfInterest
 from aionode.interfaces.std_msgs.msg import Header
 from aionode.message import DEFAULT, Message, float32
+
+__all__ = ["DisparityImage"]
 
 
 class DisparityImage(Message, typename="stereo_msgs/msg/DisparityImage"):

@@ -1,1 +1,1 @@
-"""tf2_msgs."""
+"""Interfaces of tf2_msgs."""

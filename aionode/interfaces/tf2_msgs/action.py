@@ -1,16 +1,21 @@
-"""tf2_msgs."""
+"""Actions of tf2_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from aionode.interfaces.builtin_interfaces.msg import Duration, Time
 from aionode.interfaces.geometry_msgs.msg import TransformStamped
 from aionode.interfaces.tf2_msgs.msg import TF2Error
-from aionode.message import ActionType, DEFAULT, Message
+from aionode.message import DEFAULT, ActionType, Message
+
+__all__ = ["LookupTransform"]
 
 
 class LookupTransform(ActionType, typename="tf2_msgs/action/LookupTransform"):
     """LookupTransform."""
 
     class Goal(Message):
-        """Goal."""
+        """The goal of LookupTransform."""
 
         target_frame: str = ""
         source_frame: str = ""
@@ -21,10 +26,10 @@ class LookupTransform(ActionType, typename="tf2_msgs/action/LookupTransform"):
         advanced: bool = False
 
     class Result(Message):
-        """Result."""
+        """The result of LookupTransform."""
 
         transform: TransformStamped = DEFAULT
         error: TF2Error = DEFAULT
 
     class Feedback(Message):
-        """Feedback."""
+        """The feedback of LookupTransform."""

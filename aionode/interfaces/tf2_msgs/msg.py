@@ -1,9 +1,14 @@
-"""tf2_msgs."""
+"""Messages of tf2_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated, ClassVar
 
 from aionode.interfaces.geometry_msgs.msg import TransformStamped
 from aionode.message import DEFAULT, Message, Sequence, uint8
+
+__all__ = ["TF2Error", "TFMessage"]
 
 
 class TF2Error(Message, typename="tf2_msgs/msg/TF2Error"):
@@ -16,6 +21,7 @@ class TF2Error(Message, typename="tf2_msgs/msg/TF2Error"):
     INVALID_ARGUMENT_ERROR: ClassVar[uint8] = 4
     TIMEOUT_ERROR: ClassVar[uint8] = 5
     TRANSFORM_ERROR: ClassVar[uint8] = 6
+
     error: uint8 = 0
     error_string: str = ""
 

@@ -1,1 +1,1 @@
-"""trajectory_msgs."""
+"""Interfaces of trajectory_msgs."""

@@ -1,4 +1,7 @@
-"""trajectory_msgs."""
+"""Messages of trajectory_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated
 
@@ -6,6 +9,13 @@ from aionode.interfaces.builtin_interfaces.msg import Duration
 from aionode.interfaces.geometry_msgs.msg import Transform, Twist
 from aionode.interfaces.std_msgs.msg import Header
 from aionode.message import DEFAULT, Floats, Message, Sequence, float64
+
+__all__ = [
+    "JointTrajectory",
+    "JointTrajectoryPoint",
+    "MultiDOFJointTrajectory",
+    "MultiDOFJointTrajectoryPoint",
+]
 
 
 class JointTrajectoryPoint(Message, typename="trajectory_msgs/msg/JointTrajectoryPoint"):

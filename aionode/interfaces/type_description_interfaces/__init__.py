@@ -1,1 +1,1 @@
-"""type_description_interfaces."""
+"""Interfaces of type_description_interfaces."""

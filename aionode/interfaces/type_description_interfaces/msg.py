@@ -1,8 +1,20 @@
-"""type_description_interfaces."""
+"""Messages of type_description_interfaces.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated, ClassVar
 
-from aionode.message import Bounded, DEFAULT, Message, Sequence, uint64, uint8
+from aionode.message import DEFAULT, Bounded, Message, Sequence, uint8, uint64
+
+__all__ = [
+    "Field",
+    "FieldType",
+    "IndividualTypeDescription",
+    "KeyValue",
+    "TypeDescription",
+    "TypeSource",
+]
 
 
 class FieldType(Message, typename="type_description_interfaces/msg/FieldType"):
@@ -97,6 +109,7 @@ class FieldType(Message, typename="type_description_interfaces/msg/FieldType"):
     FIELD_TYPE_FIXED_WSTRING_UNBOUNDED_SEQUENCE: ClassVar[uint8] = 164
     FIELD_TYPE_BOUNDED_STRING_UNBOUNDED_SEQUENCE: ClassVar[uint8] = 165
     FIELD_TYPE_BOUNDED_WSTRING_UNBOUNDED_SEQUENCE: ClassVar[uint8] = 166
+
     type_id: uint8 = 0
     capacity: uint64 = 0
     string_capacity: uint64 = 0

@@ -1,9 +1,14 @@
-"""type_description_interfaces."""
+"""Services of type_description_interfaces.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated
 
 from aionode.interfaces.type_description_interfaces.msg import KeyValue, TypeDescription, TypeSource
 from aionode.message import DEFAULT, Message, Sequence, ServiceType
+
+__all__ = ["GetTypeDescription"]
 
 
 class GetTypeDescription(
@@ -12,14 +17,14 @@ class GetTypeDescription(
     """GetTypeDescription."""
 
     class Request(Message):
-        """Request."""
+        """The request of GetTypeDescription."""
 
         type_name: str = ""
         type_hash: str = ""
         include_type_sources: bool = False
 
     class Response(Message):
-        """Response."""
+        """The response of GetTypeDescription."""
 
         successful: bool = False
         failure_reason: str = ""

@@ -1,1 +1,1 @@
-"""unique_identifier_msgs."""
+"""Interfaces of unique_identifier_msgs."""

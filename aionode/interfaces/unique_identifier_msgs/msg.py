@@ -1,8 +1,13 @@
-"""unique_identifier_msgs."""
+"""Messages of unique_identifier_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated
 
-from aionode.message import Array, DEFAULT, Ints, Message, uint8
+from aionode.message import DEFAULT, Array, Ints, Message, uint8
+
+__all__ = ["UUID"]
 
 
 class UUID(Message, typename="unique_identifier_msgs/msg/UUID"):

@@ -1,1 +1,1 @@
-"""visualization_msgs."""
+"""Interfaces of visualization_msgs."""

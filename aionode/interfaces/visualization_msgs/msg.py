@@ -1,4 +1,7 @@
-"""visualization_msgs."""
+"""Messages of visualization_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated, ClassVar
 
@@ -6,7 +9,22 @@ from aionode.interfaces.builtin_interfaces.msg import Duration
 from aionode.interfaces.geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 from aionode.interfaces.sensor_msgs.msg import CompressedImage
 from aionode.interfaces.std_msgs.msg import ColorRGBA, Header
-from aionode.message import Bytes, DEFAULT, Message, Sequence, float32, int32, uint32, uint64, uint8
+from aionode.message import DEFAULT, Bytes, Message, Sequence, float32, int32, uint8, uint32, uint64
+
+__all__ = [
+    "ImageMarker",
+    "InteractiveMarker",
+    "InteractiveMarkerControl",
+    "InteractiveMarkerFeedback",
+    "InteractiveMarkerInit",
+    "InteractiveMarkerPose",
+    "InteractiveMarkerUpdate",
+    "Marker",
+    "MarkerArray",
+    "MenuEntry",
+    "MeshFile",
+    "UVCoordinate",
+]
 
 
 class ImageMarker(Message, typename="visualization_msgs/msg/ImageMarker"):
@@ -19,6 +37,7 @@ class ImageMarker(Message, typename="visualization_msgs/msg/ImageMarker"):
     POINTS: ClassVar[int32] = 4
     ADD: ClassVar[int32] = 0
     REMOVE: ClassVar[int32] = 1
+
     header: Header = DEFAULT
     ns: str = ""
     id: int32 = 0
@@ -37,13 +56,14 @@ class ImageMarker(Message, typename="visualization_msgs/msg/ImageMarker"):
 class MenuEntry(Message, typename="visualization_msgs/msg/MenuEntry"):
     """MenuEntry."""
 
+    FEEDBACK: ClassVar[uint8] = 0
+    ROSRUN: ClassVar[uint8] = 1
+    ROSLAUNCH: ClassVar[uint8] = 2
+
     id: uint32 = 0
     parent_id: uint32 = 0
     title: str = ""
     command: str = ""
-    FEEDBACK: ClassVar[uint8] = 0
-    ROSRUN: ClassVar[uint8] = 1
-    ROSLAUNCH: ClassVar[uint8] = 2
     command_type: uint8 = 0
 
 
@@ -81,6 +101,7 @@ class Marker(Message, typename="visualization_msgs/msg/Marker"):
     MODIFY: ClassVar[int32] = 0
     DELETE: ClassVar[int32] = 2
     DELETEALL: ClassVar[int32] = 3
+
     header: Header = DEFAULT
     ns: str = ""
     id: int32 = 0
@@ -105,12 +126,9 @@ class Marker(Message, typename="visualization_msgs/msg/Marker"):
 class InteractiveMarkerControl(Message, typename="visualization_msgs/msg/InteractiveMarkerControl"):
     """InteractiveMarkerControl."""
 
-    name: str = ""
-    orientation: Quaternion = DEFAULT
     INHERIT: ClassVar[uint8] = 0
     FIXED: ClassVar[uint8] = 1
     VIEW_FACING: ClassVar[uint8] = 2
-    orientation_mode: uint8 = 0
     NONE: ClassVar[uint8] = 0
     MENU: ClassVar[uint8] = 1
     BUTTON: ClassVar[uint8] = 2
@@ -121,6 +139,10 @@ class InteractiveMarkerControl(Message, typename="visualization_msgs/msg/Interac
     MOVE_3D: ClassVar[uint8] = 7
     ROTATE_3D: ClassVar[uint8] = 8
     MOVE_ROTATE_3D: ClassVar[uint8] = 9
+
+    name: str = ""
+    orientation: Quaternion = DEFAULT
+    orientation_mode: uint8 = 0
     interaction_mode: uint8 = 0
     always_visible: bool = False
     markers: Annotated[list[Marker], Sequence[Marker]] = DEFAULT
@@ -147,16 +169,17 @@ class InteractiveMarkerFeedback(
 ):
     """InteractiveMarkerFeedback."""
 
-    header: Header = DEFAULT
-    client_id: str = ""
-    marker_name: str = ""
-    control_name: str = ""
     KEEP_ALIVE: ClassVar[uint8] = 0
     POSE_UPDATE: ClassVar[uint8] = 1
     MENU_SELECT: ClassVar[uint8] = 2
     BUTTON_CLICK: ClassVar[uint8] = 3
     MOUSE_DOWN: ClassVar[uint8] = 4
     MOUSE_UP: ClassVar[uint8] = 5
+
+    header: Header = DEFAULT
+    client_id: str = ""
+    marker_name: str = ""
+    control_name: str = ""
     event_type: uint8 = 0
     pose: Pose = DEFAULT
     menu_entry_id: uint32 = 0
@@ -183,10 +206,11 @@ class InteractiveMarkerPose(Message, typename="visualization_msgs/msg/Interactiv
 class InteractiveMarkerUpdate(Message, typename="visualization_msgs/msg/InteractiveMarkerUpdate"):
     """InteractiveMarkerUpdate."""
 
-    server_id: str = ""
-    seq_num: uint64 = 0
     KEEP_ALIVE: ClassVar[uint8] = 0
     UPDATE: ClassVar[uint8] = 1
+
+    server_id: str = ""
+    seq_num: uint64 = 0
     type: uint8 = 0
     markers: Annotated[list[InteractiveMarker], Sequence[InteractiveMarker]] = DEFAULT
     poses: Annotated[list[InteractiveMarkerPose], Sequence[InteractiveMarkerPose]] = DEFAULT

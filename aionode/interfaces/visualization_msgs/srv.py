@@ -1,19 +1,24 @@
-"""visualization_msgs."""
+"""Services of visualization_msgs.
+
+Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
+"""
 
 from typing import Annotated
 
 from aionode.interfaces.visualization_msgs.msg import InteractiveMarker
 from aionode.message import DEFAULT, Message, Sequence, ServiceType, uint64
 
+__all__ = ["GetInteractiveMarkers"]
+
 
 class GetInteractiveMarkers(ServiceType, typename="visualization_msgs/srv/GetInteractiveMarkers"):
     """GetInteractiveMarkers."""
 
     class Request(Message):
-        """Request."""
+        """The request of GetInteractiveMarkers."""
 
     class Response(Message):
-        """Response."""
+        """The response of GetInteractiveMarkers."""
 
         sequence_number: uint64 = 0
         markers: Annotated[list[InteractiveMarker], Sequence[InteractiveMarker]] = DEFAULT
