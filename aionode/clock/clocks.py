@@ -63,7 +63,7 @@ class Clock:
         self._override_ns = 0
         self._agenda = Agenda()  # what waits for ROS time while that is set from outside
         self._jumps = Jumps()
-        self._sleepers: set[asyncio.Future[None]] = set()
+        self._sleepers: dict[asyncio.Future[None], None] = {}  # in the order they came
 
     @property
     def clock_type(self) -> ClockType:
@@ -135,11 +135,11 @@ class Clock:
                 sleeper.set_result(None)
 
         alarm = call_at(when_ns, wake)
-        self._sleepers.add(sleeper)
+        self._sleepers[sleeper] = None
         try:
             await sleeper
         finally:
-            self._sleepers.discard(sleeper)
+            del self._sleepers[sleeper]
             alarm.cancel()
 
     def call_at(self, when_ns: int, callback: Callable[[], None]) -> Alarm:

@@ -31,7 +31,7 @@ class Ticker:
         self.clock = clock
         self.schedule = Schedule(period_ns, clock.now_ns(), autostart=autostart)
         self._before_jump_ns = 0
-        self._waiters: set[asyncio.Future[None]] = set()
+        self._waiters: dict[asyncio.Future[None], None] = {}  # woken in the order they came
         self._jumps = (
             clock.create_jump_callback(
                 JUMPS, pre_callback=self._before_jump, post_callback=self._after_jump
@@ -58,11 +58,11 @@ class Ticker:
                 waiter.set_result(None)
 
         alarm = None if schedule.canceled else self.clock.call_at(schedule.next_ns, ring)
-        self._waiters.add(waiter)
+        self._waiters[waiter] = None
         try:
             await waiter
         finally:
-            self._waiters.discard(waiter)
+            del self._waiters[waiter]
             if alarm is not None:
                 alarm.cancel()
         schedule.look_back(self.clock.now_ns())  # the machine's clock may have been set back

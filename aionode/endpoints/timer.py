@@ -78,6 +78,7 @@ class Timer(Entity):
         super().__init__(f"timer of {timer_period_ns / S_TO_NS:g} s")
         self.stats = CallbackStats()
         self._wants_info = self._wants_info_of(callback)
+        self._dispatcher = dispatcher
         self._dispatch = dispatcher(callback, self, self.stats)
         self._ticker = Ticker(clock, timer_period_ns, autostart=autostart)
 
@@ -104,8 +105,9 @@ class Timer(Entity):
 
     @callback.setter
     def callback(self, callback: TimerCallback) -> None:
-        self._wants_info = self._wants_info_of(callback)
-        self._dispatch.callback = callback
+        wants_info = self._wants_info_of(callback)
+        self._dispatch = self._dispatcher(callback, self, self.stats)
+        self._wants_info = wants_info
 
     @property
     def timer_period_ns(self) -> int:
