@@ -1,0 +1,25 @@
+"""The arguments of a ROS program, and the parameter files that they name."""
+
+from aionode.arguments.parameter_yaml import (
+    ParameterRule,
+    ParameterValueType,
+    matching_parameters,
+    parse_parameter_yaml,
+    parse_scalar,
+    parse_value,
+    read_parameter_file,
+)
+from aionode.arguments.parse import Arguments, parse_arguments, remove_ros_args
+
+__all__ = [
+    "Arguments",
+    "ParameterRule",
+    "ParameterValueType",
+    "matching_parameters",
+    "parse_arguments",
+    "parse_parameter_yaml",
+    "parse_scalar",
+    "parse_value",
+    "read_parameter_file",
+    "remove_ros_args",
+]

@@ -1,0 +1,342 @@
+"""Parameter files: YAML with the rules of rcl.
+
+::
+
+    /ns/node:               # a node; /* is any one token, /** any number of them
+      ros__parameters:
+        rate: 10.0
+        camera:
+          frame: "front"    # the parameter camera.frame
+
+Scalars have the types that rcl gives them, which are neither YAML 1.1's nor YAML 1.2's: a plain
+``1e3`` is a double, ``yes`` a bool, ``null`` a string. So this reads the events of the YAML parser,
+not its values.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from aionode.errors import ParameterFileError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+__all__ = [
+    "ParameterRule",
+    "ParameterValueType",
+    "matching_parameters",
+    "parse_parameter_yaml",
+    "parse_scalar",
+    "parse_value",
+    "read_parameter_file",
+]
+
+ParameterValueType = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
+"""What a parameter in a file may be."""
+
+PARAMETERS_KEY = "ros__parameters"
+
+TRUE = {"y", "Y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"}
+FALSE = {"n", "N", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"}
+INFINITY = {".inf", ".Inf", ".INF", "+.inf", "+.Inf", "+.INF"}
+MINUS_INFINITY = {"-.inf", "-.Inf", "-.INF"}
+NOT_A_NUMBER = {".nan", ".NaN", ".NAN"}
+
+# What C's strtoll with base 0 and strtod take, which is what rcl calls.
+LONGEST_INTEGER = 100  # digits; far more than 64 bits have, far less than Python refuses
+INTEGER = re.compile(r"[+-]?(?:0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
+DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+HEXADECIMAL = re.compile(
+    r"[+-]?0[xX](?:[0-9a-fA-F]+\.?[0-9a-fA-F]*|\.[0-9a-fA-F]+)(?:[pP][+-]?[0-9]+)?"
+)
+WORDS = re.compile(r"[+-]?(?:inf|infinity|nan)", re.IGNORECASE)
+
+DEEPEST = 100  # mappings; no name has so many parts, and Python's stack must hold them
+
+NODE_TOKEN = re.compile(r"\*\*?|[A-Za-z_][A-Za-z0-9_]*")
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterRule:
+    """One parameter for the nodes whose full name matches.
+
+    Attributes:
+        node: Full name of a node, in which ``*`` stands for one token and ``**`` for any number.
+        name: Name of the parameter.
+        value: Its value.
+    """
+
+    node: str
+    name: str
+    value: ParameterValueType
+
+    def matches(self, node_name: str) -> bool:
+        """Return whether the rule is for the node with this full name."""
+        return node_pattern(self.node).fullmatch(node_name) is not None
+
+
+@lru_cache(maxsize=1024)
+def node_pattern(node: str) -> re.Pattern[str]:
+    """Return the expression for the full names that a rule's node stands for."""
+    wild = {"/*": r"/\w+", "/**": r"(?:/\w+)*"}
+    tokens = re.findall("/[^/]+", node)
+    return re.compile("".join(wild.get(token) or re.escape(token) for token in tokens))
+
+
+def matching_parameters(
+    rules: Iterable[ParameterRule], node_name: str
+) -> dict[str, ParameterValueType]:
+    """Return the parameters of the node with this full name: of each, the last that matches."""
+    return {rule.name: rule.value for rule in rules if rule.matches(node_name)}
+
+
+# Values
+
+
+def parse_scalar(text: str) -> bool | int | float | str:
+    """Return the value that rcl sees in a scalar without quotes."""
+    if text in TRUE or text in FALSE:
+        return text in TRUE
+    if INTEGER.fullmatch(text) and len(text) < LONGEST_INTEGER:
+        number = int(text, 0) if "x" in text.lower() else int(text, 8 if is_octal(text) else 10)
+        if -(2**63) <= number < 2**63:
+            return number
+    if text in NOT_A_NUMBER:
+        return float("nan")
+    if text in INFINITY or text in MINUS_INFINITY:
+        return float("-inf" if text in MINUS_INFINITY else "inf")
+    return parse_double(text)
+
+
+def is_octal(text: str) -> bool:
+    """Return whether C reads an integer with base 8."""
+    return text.lstrip("+-").startswith("0")
+
+
+def parse_double(text: str) -> float | str:
+    """Return the number that strtod sees, or the text itself if it sees none, or one too large."""
+    if WORDS.fullmatch(text):
+        return float(text)
+    number = None
+    if DECIMAL.fullmatch(text):
+        number = float(text)
+    elif HEXADECIMAL.fullmatch(text):
+        try:
+            number = float.fromhex(text)
+        except OverflowError:
+            return text
+    return text if number is None or abs(number) == float("inf") else number
+
+
+def parse_value(text: str, source: str = "value") -> ParameterValueType:
+    """Return the value of a parameter as given on a command line: a scalar or a list of scalars.
+
+    Args:
+        text: The value, in YAML.
+        source: What an error calls it.
+
+    Raises:
+        ParameterFileError: It is neither.
+    """
+    events = Events(text, source)
+    if events.at("StreamEnd"):
+        events.fail("no value; for an empty string write ''")
+    events.take("DocumentStart")
+    value = read_value(events)
+    events.take("DocumentEnd")
+    if not events.at("StreamEnd"):
+        events.fail("more than one value")
+    return value
+
+
+# Files
+
+
+def read_parameter_file(path: str | Path) -> tuple[ParameterRule, ...]:
+    """Return the rules of a file, in its order.
+
+    Raises:
+        ParameterFileError: It cannot be read, or is not a parameter file.
+    """
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise ParameterFileError(str(path), 0, f"cannot be read: {reason}") from error
+    return parse_parameter_yaml(text, str(path))
+
+
+def parse_parameter_yaml(text: str, source: str = "parameters") -> tuple[ParameterRule, ...]:
+    """Return the rules of a parameter file's text, in its order.
+
+    Raises:
+        ParameterFileError: It is not a parameter file; the error has the line.
+    """
+    events = Events(text, source)
+    rules: list[ParameterRule] = []
+    while not events.at("StreamEnd"):
+        events.take("DocumentStart")
+        if events.at("MappingStart"):
+            rules.extend(read_nodes(events, ()))
+        elif not events.is_empty_scalar():
+            events.fail("a parameter file maps names of nodes to 'ros__parameters'")
+        else:
+            events.take("Scalar")
+        events.take("DocumentEnd")
+    return tuple(rules)
+
+
+class Events:
+    """The events of the YAML parser, one ahead, as errors with file and line where it fails."""
+
+    def __init__(self, text: str, source: str) -> None:
+        import yaml
+
+        loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+        self.source = source
+        self.depth = 0
+        self._error = yaml.YAMLError
+        self._events = self._wrapped(yaml.parse(text, Loader=loader))
+        self.next: Any = next(self._events)
+        self.take("StreamStart")
+
+    def _wrapped(self, events: Iterator[Any]) -> Iterator[Any]:
+        try:
+            yield from events
+        except (self._error, ValueError) as error:  # ValueError: a character that YAML forbids
+            mark = getattr(error, "problem_mark", None)
+            problem = getattr(error, "problem", None) or str(error).partition("\n")[0]
+            line = mark.line + 1 if mark else 0
+            raise ParameterFileError(self.source, line, f"not YAML: {problem}") from error
+        while True:  # behind the end there is only the end
+            yield None
+
+    def at(self, kind: str) -> bool:
+        """Return whether the next event is of this kind."""
+        return type(self.next).__name__ == f"{kind}Event"
+
+    def is_empty_scalar(self) -> bool:
+        """Return whether the next event is the scalar that YAML puts where nothing stands."""
+        return self.at("Scalar") and self.next.value == "" and not self.next.style
+
+    def take(self, kind: str) -> Any:
+        """Return the next event, which must be of this kind, and go on."""
+        event = self.next
+        if event is None or type(event).__name__ != f"{kind}Event":
+            self.fail(f"{describe(event)} where a {kind.lower()} should stand")
+        self.depth += {"MappingStart": 1, "MappingEnd": -1}.get(kind, 0)
+        if self.depth > DEEPEST:
+            self.fail(f"nested deeper than {DEEPEST}")
+        self.next = next(self._events)
+        return event
+
+    def fail(self, problem: str) -> NoReturn:
+        """Raise the error for the next event."""
+        line = self.next.start_mark.line + 1 if self.next is not None else 0
+        raise ParameterFileError(self.source, line, problem)
+
+
+def describe(event: Any) -> str:
+    """Return what an event stands for, for an error."""
+    return {
+        "AliasEvent": "an alias (rcl supports none)",
+        "MappingStartEvent": "a mapping",
+        "SequenceStartEvent": "a sequence",
+        "ScalarEvent": f"the value '{getattr(event, 'value', '')}'",
+    }.get(type(event).__name__, "nothing")
+
+
+def read_nodes(events: Events, above: tuple[str, ...]) -> Iterator[ParameterRule]:
+    """Read a mapping of names, nested as deep as the file likes, down to the parameters."""
+    events.take("MappingStart")
+    while not events.at("MappingEnd"):
+        key = read_key(events)
+        if key == PARAMETERS_KEY:
+            if not above:
+                events.fail(f"there is no name of a node before '{PARAMETERS_KEY}'")
+            node = node_name(events, above)
+            yield from (ParameterRule(node, *each) for each in read_parameters(events, ""))
+        elif events.at("MappingStart"):
+            yield from read_nodes(events, (*above, key))
+        else:
+            events.fail(f"{describe(events.next)} before '{PARAMETERS_KEY}'")
+    events.take("MappingEnd")
+
+
+def read_key(events: Events) -> str:
+    """Read the key of a mapping."""
+    if not events.at("Scalar"):
+        events.fail(f"{describe(events.next)} cannot be a key")
+    if events.next.value == "":
+        events.fail("no key")
+    key: str = events.take("Scalar").value
+    return key
+
+
+def node_name(events: Events, parts: tuple[str, ...]) -> str:
+    """Return the full name, wildcards included, of a node whose name is spread over keys."""
+    name = ""
+    for part in parts:
+        name += part if not name or name.endswith("/") else f"/{part}"
+    full = name if name.startswith("/") else f"/{name}"
+    for token in full[1:].split("/"):
+        if not token:
+            events.fail(f"'{full}' contains repeated forward slashes or ends with one")
+        if not NODE_TOKEN.fullmatch(token):
+            events.fail(
+                f"'{token}' in '{full}' is no token of a node's name: letters, digits and '_', "
+                "or a whole '*' or '**'"
+            )
+    return full
+
+
+def read_parameters(events: Events, prefix: str) -> Iterator[tuple[str, ParameterValueType]]:
+    """Read a mapping of parameters, joining nested names with dots."""
+    if not events.at("MappingStart"):
+        events.fail(f"{describe(events.next)} where parameters should stand, each 'name: value'")
+    events.take("MappingStart")
+    while not events.at("MappingEnd"):
+        name = prefix + read_key(events)
+        if events.at("MappingStart"):
+            yield from read_parameters(events, f"{name}.")
+        else:
+            yield name, read_value(events)
+    events.take("MappingEnd")
+
+
+def read_value(events: Events) -> ParameterValueType:
+    """Read a scalar or a sequence of scalars of one type."""
+    if not events.at("SequenceStart"):
+        return read_scalar(events)
+    events.take("SequenceStart")
+    values: list[Any] = []
+    while not events.at("SequenceEnd"):
+        if not events.at("Scalar"):
+            events.fail(f"{describe(events.next)} in a sequence; only scalars may stand there")
+        text = events.next.value
+        value = read_scalar(events)
+        if values and type(value) is not type(values[0]):
+            kinds = {bool: "bool", int: "integer", float: "double", str: "string"}
+            events.fail(
+                f"Sequence should be of same type: it starts with type {kinds[type(values[0])]}, "
+                f"and '{text}' is of type {kinds[type(value)]}"
+            )
+        values.append(value)
+    events.take("SequenceEnd")
+    return values
+
+
+def read_scalar(events: Events) -> bool | int | float | str:
+    """Read one scalar."""
+    if events.is_empty_scalar():
+        events.fail("no value; for an empty string write ''")
+    event = events.take("Scalar")
+    text: str = event.value
+    if event.style in {"'", '"'} or event.tag == "tag:yaml.org,2002:str":
+        return text
+    return parse_scalar(text)
