@@ -1,0 +1,28 @@
+"""Print every message of /robot/message.
+
+Run it with ``python examples/simple_subscriber.py``, and end it with Ctrl-C.
+"""
+
+from __future__ import annotations
+
+import aionode
+from aionode import Node
+from aionode.interfaces.std_msgs.msg import String
+
+
+class SimpleSubscriber(Node):
+    """Logs what it hears."""
+
+    def __init__(self) -> None:
+        super().__init__("simple_subscriber")
+        self.subscription = self.create_subscription(
+            String, "/robot/message", self.listener_callback, 10
+        )
+
+    def listener_callback(self, msg: String) -> None:
+        """Log one message."""
+        self.get_logger().info(f'I heard: "{msg.data}"')
+
+
+if __name__ == "__main__":
+    aionode.run(SimpleSubscriber)
