@@ -315,7 +315,7 @@ def doc_lines(text: str, indent: str) -> list[str]:
     """Return the lines of a docstring."""
     text = text.replace("\\", "\\\\").replace('"""', '\\"\\"\\"')
     first, *more = text.split("\n")
-    if not more and len(indent) + len(first) + 6 <= WIDTH and not first.endswith('"'):
+    if not more and not first.endswith('"'):
         return [f'{indent}"""{first}"""']
     return [f'{indent}"""{first}', *(f"{indent}{line}".rstrip() for line in more), f'{indent}"""']
 

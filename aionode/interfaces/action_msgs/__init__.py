@@ -1,1 +1,1 @@
-"""Interfaces of action_msgs."""
+"""Interfaces of action_msgs: what every action is carried out with."""

@@ -13,14 +13,14 @@ __all__ = ["GoalInfo", "GoalStatus", "GoalStatusArray"]
 
 
 class GoalInfo(Message, typename="action_msgs/msg/GoalInfo"):
-    """GoalInfo."""
+    """A goal of an action: its id, and when its server accepted it."""
 
     goal_id: UUID = DEFAULT
     stamp: Time = DEFAULT
 
 
 class GoalStatus(Message, typename="action_msgs/msg/GoalStatus"):
-    """GoalStatus."""
+    """In which state of its life a goal is; `status` is one of the constants."""
 
     STATUS_UNKNOWN: ClassVar[int8] = 0
     STATUS_ACCEPTED: ClassVar[int8] = 1
@@ -35,6 +35,6 @@ class GoalStatus(Message, typename="action_msgs/msg/GoalStatus"):
 
 
 class GoalStatusArray(Message, typename="action_msgs/msg/GoalStatusArray"):
-    """GoalStatusArray."""
+    """The states of all goals that an action server knows, sent whenever one changes."""
 
     status_list: Annotated[list[GoalStatus], Sequence[GoalStatus]] = DEFAULT

@@ -12,15 +12,19 @@ __all__ = ["CancelGoal"]
 
 
 class CancelGoal(ServiceType, typename="action_msgs/srv/CancelGoal"):
-    """CancelGoal."""
+    """Ask an action server to cancel goals."""
 
     class Request(Message):
-        """The request of CancelGoal."""
+        """Which goals to cancel.
+
+        An id and no stamp means that goal, a stamp and no id every goal accepted up to then, both mean
+        the one and the others, and neither means all goals. "None" is all zeros.
+        """
 
         goal_info: GoalInfo = DEFAULT
 
     class Response(Message):
-        """The response of CancelGoal."""
+        """Whether the request was accepted, and which goals are being canceled."""
 
         ERROR_NONE: ClassVar[int8] = 0
         ERROR_REJECTED: ClassVar[int8] = 1

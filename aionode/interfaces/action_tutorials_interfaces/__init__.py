@@ -1,1 +1,1 @@
-"""Interfaces of action_tutorials_interfaces."""
+"""Interfaces of action_tutorials_interfaces: the action of the tutorials."""

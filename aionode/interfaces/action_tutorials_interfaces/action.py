@@ -11,19 +11,19 @@ __all__ = ["Fibonacci"]
 
 
 class Fibonacci(ActionType, typename="action_tutorials_interfaces/action/Fibonacci"):
-    """Fibonacci."""
+    """Compute Fibonacci numbers, slowly enough to watch: the example of an action."""
 
     class Goal(Message):
-        """The goal of Fibonacci."""
+        """How far to compute: `order` numbers follow the first."""
 
         order: int32 = 0
 
     class Result(Message):
-        """The result of Fibonacci."""
+        """The whole sequence."""
 
         sequence: Annotated[Ints, Sequence[int32]] = DEFAULT
 
     class Feedback(Message):
-        """The feedback of Fibonacci."""
+        """The sequence as far as it is computed."""
 
         partial_sequence: Annotated[Ints, Sequence[int32]] = DEFAULT

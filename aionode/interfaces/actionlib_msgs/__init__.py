@@ -1,1 +1,1 @@
-"""Interfaces of actionlib_msgs."""
+"""Interfaces of actionlib_msgs: goals of ROS 1 actions."""

@@ -13,14 +13,14 @@ __all__ = ["GoalID", "GoalStatus", "GoalStatusArray"]
 
 
 class GoalID(Message, typename="actionlib_msgs/msg/GoalID"):
-    """GoalID."""
+    """A goal of a ROS 1 action: its id, and when it was asked for."""
 
     stamp: Time = DEFAULT
     id: str = ""
 
 
 class GoalStatus(Message, typename="actionlib_msgs/msg/GoalStatus"):
-    """GoalStatus."""
+    """The state of a ROS 1 action's goal, as one of the constants, with a word on why."""
 
     PENDING: ClassVar[uint8] = 0
     ACTIVE: ClassVar[uint8] = 1
@@ -39,7 +39,7 @@ class GoalStatus(Message, typename="actionlib_msgs/msg/GoalStatus"):
 
 
 class GoalStatusArray(Message, typename="actionlib_msgs/msg/GoalStatusArray"):
-    """GoalStatusArray."""
+    """The states of all goals of a ROS 1 action server."""
 
     header: Header = DEFAULT
     status_list: Annotated[list[GoalStatus], Sequence[GoalStatus]] = DEFAULT

@@ -1,1 +1,1 @@
-"""Interfaces of builtin_interfaces."""
+"""Interfaces of builtin_interfaces: time and duration."""

@@ -1,1 +1,1 @@
-"""Interfaces of composition_interfaces."""
+"""Interfaces of composition_interfaces: loading nodes into a container."""

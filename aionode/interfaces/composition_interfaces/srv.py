@@ -12,23 +12,34 @@ __all__ = ["ListNodes", "LoadNode", "UnloadNode"]
 
 
 class ListNodes(ServiceType, typename="composition_interfaces/srv/ListNodes"):
-    """ListNodes."""
+    """Which nodes a component container runs."""
 
     class Request(Message):
         """The request of ListNodes."""
 
     class Response(Message):
-        """The response of ListNodes."""
+        """Names and ids of the nodes; both lists have the same order."""
 
         full_node_names: Annotated[list[str], Sequence[str]] = DEFAULT
         unique_ids: Annotated[Ints, Sequence[uint64]] = DEFAULT
 
 
 class LoadNode(ServiceType, typename="composition_interfaces/srv/LoadNode"):
-    """LoadNode."""
+    """Load a node into a component container."""
 
     class Request(Message):
-        """The request of LoadNode."""
+        """Which component to load, and how its node is to be set up.
+
+        Attributes:
+            package_name: The package that has the component.
+            plugin_name: The component's class, such as ``demo_nodes_cpp::Talker``.
+            node_name: Name for the node; its own if empty.
+            node_namespace: Namespace for the node; its own if empty.
+            log_level: Severity as in rcl_interfaces/msg/Log; 0 leaves it.
+            remap_rules: Rules such as ``chatter:=/news``.
+            parameters: Parameters for the node.
+            extra_arguments: Options for the container, such as ``use_intra_process_comms``.
+        """
 
         package_name: str = ""
         plugin_name: str = ""
@@ -40,7 +51,7 @@ class LoadNode(ServiceType, typename="composition_interfaces/srv/LoadNode"):
         extra_arguments: Annotated[list[Parameter], Sequence[Parameter]] = DEFAULT
 
     class Response(Message):
-        """The response of LoadNode."""
+        """Whether the node was loaded, or why not, and the id to unload it by."""
 
         success: bool = False
         error_message: str = ""
@@ -49,15 +60,15 @@ class LoadNode(ServiceType, typename="composition_interfaces/srv/LoadNode"):
 
 
 class UnloadNode(ServiceType, typename="composition_interfaces/srv/UnloadNode"):
-    """UnloadNode."""
+    """Remove a node from a component container."""
 
     class Request(Message):
-        """The request of UnloadNode."""
+        """The id that LoadNode gave."""
 
         unique_id: uint64 = 0
 
     class Response(Message):
-        """The response of UnloadNode."""
+        """Whether the node was removed, or why not."""
 
         success: bool = False
         error_message: str = ""

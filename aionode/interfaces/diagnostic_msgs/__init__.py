@@ -1,1 +1,1 @@
-"""Interfaces of diagnostic_msgs."""
+"""Interfaces of diagnostic_msgs: the health of a robot."""

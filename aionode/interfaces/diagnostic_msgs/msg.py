@@ -12,14 +12,22 @@ __all__ = ["DiagnosticArray", "DiagnosticStatus", "KeyValue"]
 
 
 class KeyValue(Message, typename="diagnostic_msgs/msg/KeyValue"):
-    """KeyValue."""
+    """A value with what it is called, both as text."""
 
     key: str = ""
     value: str = ""
 
 
 class DiagnosticStatus(Message, typename="diagnostic_msgs/msg/DiagnosticStatus"):
-    """DiagnosticStatus."""
+    """The health of one part of a robot.
+
+    Attributes:
+        level: One of the constants, a byte.
+        name: What reports; ``/`` makes groups.
+        message: One line on how it is.
+        hardware_id: Which piece of hardware, such as a serial number.
+        values: Measured values, as text.
+    """
 
     OK: ClassVar[byte] = b"\x00"
     WARN: ClassVar[byte] = b"\x01"
@@ -34,7 +42,7 @@ class DiagnosticStatus(Message, typename="diagnostic_msgs/msg/DiagnosticStatus")
 
 
 class DiagnosticArray(Message, typename="diagnostic_msgs/msg/DiagnosticArray"):
-    """DiagnosticArray."""
+    """What several parts of a robot report of their health at one time."""
 
     header: Header = DEFAULT
     status: Annotated[list[DiagnosticStatus], Sequence[DiagnosticStatus]] = DEFAULT

@@ -12,28 +12,28 @@ __all__ = ["AddDiagnostics", "SelfTest"]
 
 
 class AddDiagnostics(ServiceType, typename="diagnostic_msgs/srv/AddDiagnostics"):
-    """AddDiagnostics."""
+    """Have a diagnostics aggregator take in further analyzers."""
 
     class Request(Message):
-        """The request of AddDiagnostics."""
+        """The namespace that holds the parameters of the analyzers."""
 
         load_namespace: str = ""
 
     class Response(Message):
-        """The response of AddDiagnostics."""
+        """Whether they were added, or why not."""
 
         success: bool = False
         message: str = ""
 
 
 class SelfTest(ServiceType, typename="diagnostic_msgs/srv/SelfTest"):
-    """SelfTest."""
+    """Have a device test itself."""
 
     class Request(Message):
         """The request of SelfTest."""
 
     class Response(Message):
-        """The response of SelfTest."""
+        """What was tested, whether all tests passed (not 0), and each outcome."""
 
         id: str = ""
         passed: byte = b"\x00"

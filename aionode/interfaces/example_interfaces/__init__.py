@@ -1,1 +1,1 @@
-"""Interfaces of example_interfaces."""
+"""Interfaces of example_interfaces: types for examples."""

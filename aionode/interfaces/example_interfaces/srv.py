@@ -9,43 +9,43 @@ __all__ = ["AddTwoInts", "SetBool", "Trigger"]
 
 
 class AddTwoInts(ServiceType, typename="example_interfaces/srv/AddTwoInts"):
-    """AddTwoInts."""
+    """Add two integers: the example of a service."""
 
     class Request(Message):
-        """The request of AddTwoInts."""
+        """The two to add."""
 
         a: int64 = 0
         b: int64 = 0
 
     class Response(Message):
-        """The response of AddTwoInts."""
+        """Their sum."""
 
         sum: int64 = 0
 
 
 class SetBool(ServiceType, typename="example_interfaces/srv/SetBool"):
-    """SetBool."""
+    """Switch something on or off."""
 
     class Request(Message):
-        """The request of SetBool."""
+        """True switches it on."""
 
         data: bool = False
 
     class Response(Message):
-        """The response of SetBool."""
+        """Whether that worked, and a word on why not."""
 
         success: bool = False
         message: str = ""
 
 
 class Trigger(ServiceType, typename="example_interfaces/srv/Trigger"):
-    """Trigger."""
+    """Have something done that needs no arguments."""
 
     class Request(Message):
-        """The request of Trigger."""
+        """Nothing: the call is the request."""
 
     class Response(Message):
-        """The response of Trigger."""
+        """Whether it was done, and a word on how."""
 
         success: bool = False
         message: str = ""

@@ -1,1 +1,1 @@
-"""Interfaces of geometry_msgs."""
+"""Interfaces of geometry_msgs: points, rotations, poses, velocities and forces."""

@@ -45,7 +45,7 @@ __all__ = [
 
 
 class Vector3(Message, typename="geometry_msgs/msg/Vector3"):
-    """Vector3."""
+    """A direction with a length, in the unit of what it is used for; a place is a Point."""
 
     x: float64 = 0.0
     y: float64 = 0.0
@@ -53,35 +53,45 @@ class Vector3(Message, typename="geometry_msgs/msg/Vector3"):
 
 
 class Accel(Message, typename="geometry_msgs/msg/Accel"):
-    """Accel."""
+    """Acceleration: `linear` in m/s², `angular` in rad/s²."""
 
     linear: Vector3 = DEFAULT
     angular: Vector3 = DEFAULT
 
 
 class AccelStamped(Message, typename="geometry_msgs/msg/AccelStamped"):
-    """AccelStamped."""
+    """Acceleration, in m/s² and rad/s², with its time and coordinate frame."""
 
     header: Header = DEFAULT
     accel: Accel = DEFAULT
 
 
 class AccelWithCovariance(Message, typename="geometry_msgs/msg/AccelWithCovariance"):
-    """AccelWithCovariance."""
+    """Acceleration, in m/s² and rad/s², and how sure it is.
+
+    `covariance` is a 6 by 6 matrix, row by row over x, y, z and the rotations about x, y, z.
+    """
 
     accel: Accel = DEFAULT
     covariance: Annotated[Floats, Array[float64, 36]] = DEFAULT
 
 
 class AccelWithCovarianceStamped(Message, typename="geometry_msgs/msg/AccelWithCovarianceStamped"):
-    """AccelWithCovarianceStamped."""
+    """Acceleration and its covariance, with its time and coordinate frame."""
 
     header: Header = DEFAULT
     accel: AccelWithCovariance = DEFAULT
 
 
 class Inertia(Message, typename="geometry_msgs/msg/Inertia"):
-    """Inertia."""
+    """How the mass of a body is spread.
+
+    Attributes:
+        m: Mass, in kg.
+        com: Center of mass, in m.
+        ixx, ixy, ixz, iyy, iyz, izz: Inertia tensor about the center of mass, in kg·m²; it is
+            symmetric, so six numbers are all.
+    """
 
     m: float64 = 0.0
     com: Vector3 = DEFAULT
@@ -94,14 +104,14 @@ class Inertia(Message, typename="geometry_msgs/msg/Inertia"):
 
 
 class InertiaStamped(Message, typename="geometry_msgs/msg/InertiaStamped"):
-    """InertiaStamped."""
+    """The inertia of a body, with its time and coordinate frame."""
 
     header: Header = DEFAULT
     inertia: Inertia = DEFAULT
 
 
 class Point(Message, typename="geometry_msgs/msg/Point"):
-    """Point."""
+    """A point in space: coordinates in m."""
 
     x: float64 = 0.0
     y: float64 = 0.0
@@ -109,7 +119,7 @@ class Point(Message, typename="geometry_msgs/msg/Point"):
 
 
 class Point32(Message, typename="geometry_msgs/msg/Point32"):
-    """Point32."""
+    """A point in space, in m, with 32 bits a coordinate: for many points, not for one."""
 
     x: float32 = 0.0
     y: float32 = 0.0
@@ -117,41 +127,41 @@ class Point32(Message, typename="geometry_msgs/msg/Point32"):
 
 
 class PointStamped(Message, typename="geometry_msgs/msg/PointStamped"):
-    """PointStamped."""
+    """A point, in m, with its time and coordinate frame."""
 
     header: Header = DEFAULT
     point: Point = DEFAULT
 
 
 class Polygon(Message, typename="geometry_msgs/msg/Polygon"):
-    """Polygon."""
+    """An area: its corners in order, in m; the last joins the first."""
 
     points: Annotated[list[Point32], Sequence[Point32]] = DEFAULT
 
 
 class PolygonInstance(Message, typename="geometry_msgs/msg/PolygonInstance"):
-    """PolygonInstance."""
+    """A polygon with an id that tells it from others."""
 
     polygon: Polygon = DEFAULT
     id: int64 = 0
 
 
 class PolygonInstanceStamped(Message, typename="geometry_msgs/msg/PolygonInstanceStamped"):
-    """PolygonInstanceStamped."""
+    """A polygon with an id, with its time and coordinate frame."""
 
     header: Header = DEFAULT
     polygon: PolygonInstance = DEFAULT
 
 
 class PolygonStamped(Message, typename="geometry_msgs/msg/PolygonStamped"):
-    """PolygonStamped."""
+    """A polygon, in m, with its time and coordinate frame."""
 
     header: Header = DEFAULT
     polygon: Polygon = DEFAULT
 
 
 class Quaternion(Message, typename="geometry_msgs/msg/Quaternion"):
-    """Quaternion."""
+    """A rotation as a quaternion of length 1; without values it is no rotation at all."""
 
     x: float64 = 0.0
     y: float64 = 0.0
@@ -160,14 +170,16 @@ class Quaternion(Message, typename="geometry_msgs/msg/Quaternion"):
 
 
 class Pose(Message, typename="geometry_msgs/msg/Pose"):
-    """Pose."""
+    """Where something is and how it is turned: `position` in m, `orientation` as a unit quaternion.
+
+    """
 
     position: Point = DEFAULT
     orientation: Quaternion = DEFAULT
 
 
 class Pose2D(Message, typename="geometry_msgs/msg/Pose2D"):
-    """Pose2D."""
+    """Where something is in a plane: `x` and `y` in m, `theta` in rad, counterclockwise."""
 
     x: float64 = 0.0
     y: float64 = 0.0
@@ -175,49 +187,59 @@ class Pose2D(Message, typename="geometry_msgs/msg/Pose2D"):
 
 
 class PoseArray(Message, typename="geometry_msgs/msg/PoseArray"):
-    """PoseArray."""
+    """Several poses of one time and coordinate frame."""
 
     header: Header = DEFAULT
     poses: Annotated[list[Pose], Sequence[Pose]] = DEFAULT
 
 
 class PoseStamped(Message, typename="geometry_msgs/msg/PoseStamped"):
-    """PoseStamped."""
+    """A pose, with its time and coordinate frame."""
 
     header: Header = DEFAULT
     pose: Pose = DEFAULT
 
 
 class PoseWithCovariance(Message, typename="geometry_msgs/msg/PoseWithCovariance"):
-    """PoseWithCovariance."""
+    """A pose and how sure it is.
+
+    `covariance` is a 6 by 6 matrix in m² and rad², row by row over x, y, z and the rotations about x, y, z
+    (fixed axes).
+    """
 
     pose: Pose = DEFAULT
     covariance: Annotated[Floats, Array[float64, 36]] = DEFAULT
 
 
 class PoseWithCovarianceStamped(Message, typename="geometry_msgs/msg/PoseWithCovarianceStamped"):
-    """PoseWithCovarianceStamped."""
+    """A pose and its covariance, with its time and coordinate frame."""
 
     header: Header = DEFAULT
     pose: PoseWithCovariance = DEFAULT
 
 
 class QuaternionStamped(Message, typename="geometry_msgs/msg/QuaternionStamped"):
-    """QuaternionStamped."""
+    """A rotation, with its time and coordinate frame."""
 
     header: Header = DEFAULT
     quaternion: Quaternion = DEFAULT
 
 
 class Transform(Message, typename="geometry_msgs/msg/Transform"):
-    """Transform."""
+    """From one coordinate frame to another: `translation` in m, `rotation` as a unit quaternion."""
 
     translation: Vector3 = DEFAULT
     rotation: Quaternion = DEFAULT
 
 
 class TransformStamped(Message, typename="geometry_msgs/msg/TransformStamped"):
-    """TransformStamped."""
+    """Where the frame `child_frame_id` is, seen from the frame of the header, at the header's time.
+
+    Attributes:
+        header: Time, and the parent frame.
+        child_frame_id: The frame that is placed.
+        transform: Takes coordinates of the child frame to those of the parent frame, in m.
+    """
 
     header: Header = DEFAULT
     child_frame_id: str = ""
@@ -225,42 +247,57 @@ class TransformStamped(Message, typename="geometry_msgs/msg/TransformStamped"):
 
 
 class Twist(Message, typename="geometry_msgs/msg/Twist"):
-    """Twist."""
+    """A velocity: what ``/cmd_vel`` carries.
+
+    Attributes:
+        linear: In m/s; x is forward, y to the left, z up.
+        angular: In rad/s, about the same axes; a positive z turns left.
+    """
 
     linear: Vector3 = DEFAULT
     angular: Vector3 = DEFAULT
 
 
 class TwistStamped(Message, typename="geometry_msgs/msg/TwistStamped"):
-    """TwistStamped."""
+    """A velocity, in m/s and rad/s, with its time and coordinate frame."""
 
     header: Header = DEFAULT
     twist: Twist = DEFAULT
 
 
 class TwistWithCovariance(Message, typename="geometry_msgs/msg/TwistWithCovariance"):
-    """TwistWithCovariance."""
+    """A velocity, in m/s and rad/s, and how sure it is.
+
+    `covariance` is a 6 by 6 matrix, row by row over x, y, z and the rotations about x, y, z.
+    """
 
     twist: Twist = DEFAULT
     covariance: Annotated[Floats, Array[float64, 36]] = DEFAULT
 
 
 class TwistWithCovarianceStamped(Message, typename="geometry_msgs/msg/TwistWithCovarianceStamped"):
-    """TwistWithCovarianceStamped."""
+    """A velocity and its covariance, with its time and coordinate frame."""
 
     header: Header = DEFAULT
     twist: TwistWithCovariance = DEFAULT
 
 
 class Vector3Stamped(Message, typename="geometry_msgs/msg/Vector3Stamped"):
-    """Vector3Stamped."""
+    """A vector, with its time and coordinate frame."""
 
     header: Header = DEFAULT
     vector: Vector3 = DEFAULT
 
 
 class VelocityStamped(Message, typename="geometry_msgs/msg/VelocityStamped"):
-    """VelocityStamped."""
+    """A velocity of one frame seen from another, in m/s and rad/s.
+
+    Attributes:
+        header: Time, and the frame whose axes the numbers are along.
+        body_frame_id: What moves.
+        reference_frame_id: What it moves against.
+        velocity: The velocity.
+    """
 
     header: Header = DEFAULT
     body_frame_id: str = ""
@@ -269,14 +306,14 @@ class VelocityStamped(Message, typename="geometry_msgs/msg/VelocityStamped"):
 
 
 class Wrench(Message, typename="geometry_msgs/msg/Wrench"):
-    """Wrench."""
+    """What pushes and turns a body: `force` in N, `torque` in N·m."""
 
     force: Vector3 = DEFAULT
     torque: Vector3 = DEFAULT
 
 
 class WrenchStamped(Message, typename="geometry_msgs/msg/WrenchStamped"):
-    """WrenchStamped."""
+    """Force and torque, in N and N·m, with its time and coordinate frame."""
 
     header: Header = DEFAULT
     wrench: Wrench = DEFAULT

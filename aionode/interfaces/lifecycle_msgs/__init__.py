@@ -1,1 +1,1 @@
-"""Interfaces of lifecycle_msgs."""
+"""Interfaces of lifecycle_msgs: managed nodes."""

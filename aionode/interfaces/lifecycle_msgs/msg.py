@@ -11,7 +11,7 @@ __all__ = ["State", "Transition", "TransitionDescription", "TransitionEvent"]
 
 
 class State(Message, typename="lifecycle_msgs/msg/State"):
-    """State."""
+    """A state of a managed node: a number, one of the constants, and its name."""
 
     PRIMARY_STATE_UNKNOWN: ClassVar[uint8] = 0
     PRIMARY_STATE_UNCONFIGURED: ClassVar[uint8] = 1
@@ -30,7 +30,7 @@ class State(Message, typename="lifecycle_msgs/msg/State"):
 
 
 class Transition(Message, typename="lifecycle_msgs/msg/Transition"):
-    """Transition."""
+    """A move of a managed node between states: a number, one of the constants, and its name."""
 
     TRANSITION_CREATE: ClassVar[uint8] = 0
     TRANSITION_CONFIGURE: ClassVar[uint8] = 1
@@ -50,7 +50,7 @@ class Transition(Message, typename="lifecycle_msgs/msg/Transition"):
 
 
 class TransitionDescription(Message, typename="lifecycle_msgs/msg/TransitionDescription"):
-    """TransitionDescription."""
+    """A move of a managed node, with where it starts and where it leads."""
 
     transition: Transition = DEFAULT
     start_state: State = DEFAULT
@@ -58,7 +58,10 @@ class TransitionDescription(Message, typename="lifecycle_msgs/msg/TransitionDesc
 
 
 class TransitionEvent(Message, typename="lifecycle_msgs/msg/TransitionEvent"):
-    """TransitionEvent."""
+    """A move that a managed node made; `timestamp` is in ns.
+
+    From ROS 2 Lyrical on this type is another one: see the page on interfaces.
+    """
 
     timestamp: uint64 = 0
     transition: Transition = DEFAULT

@@ -12,39 +12,39 @@ __all__ = ["ChangeState", "GetAvailableStates", "GetAvailableTransitions", "GetS
 
 
 class ChangeState(ServiceType, typename="lifecycle_msgs/srv/ChangeState"):
-    """ChangeState."""
+    """Have a managed node change its state."""
 
     class Request(Message):
-        """The request of ChangeState."""
+        """Which move to make; by `label` if `id` is 0."""
 
         transition: Transition = DEFAULT
 
     class Response(Message):
-        """The response of ChangeState."""
+        """Whether the node is in the new state."""
 
         success: bool = False
 
 
 class GetAvailableStates(ServiceType, typename="lifecycle_msgs/srv/GetAvailableStates"):
-    """GetAvailableStates."""
+    """Which states a managed node has."""
 
     class Request(Message):
         """The request of GetAvailableStates."""
 
     class Response(Message):
-        """The response of GetAvailableStates."""
+        """All its states."""
 
         available_states: Annotated[list[State], Sequence[State]] = DEFAULT
 
 
 class GetAvailableTransitions(ServiceType, typename="lifecycle_msgs/srv/GetAvailableTransitions"):
-    """GetAvailableTransitions."""
+    """Which moves a managed node can make."""
 
     class Request(Message):
         """The request of GetAvailableTransitions."""
 
     class Response(Message):
-        """The response of GetAvailableTransitions."""
+        """The moves."""
 
         available_transitions: Annotated[
             list[TransitionDescription], Sequence[TransitionDescription]
@@ -52,12 +52,12 @@ class GetAvailableTransitions(ServiceType, typename="lifecycle_msgs/srv/GetAvail
 
 
 class GetState(ServiceType, typename="lifecycle_msgs/srv/GetState"):
-    """GetState."""
+    """In which state a managed node is."""
 
     class Request(Message):
         """The request of GetState."""
 
     class Response(Message):
-        """The response of GetState."""
+        """The state."""
 
         current_state: State = DEFAULT

@@ -1,1 +1,1 @@
-"""Interfaces of nav_msgs."""
+"""Interfaces of nav_msgs: maps, paths and odometry."""

@@ -20,14 +20,14 @@ __all__ = ["Goals", "GridCells", "MapMetaData", "OccupancyGrid", "Odometry", "Pa
 
 
 class Goals(Message, typename="nav_msgs/msg/Goals"):
-    """Goals."""
+    """Poses to visit, in order."""
 
     header: Header = DEFAULT
     goals: Annotated[list[PoseStamped], Sequence[PoseStamped]] = DEFAULT
 
 
 class GridCells(Message, typename="nav_msgs/msg/GridCells"):
-    """GridCells."""
+    """Marked cells of a grid: their centers, and the width and height of each, in m."""
 
     header: Header = DEFAULT
     cell_width: float32 = 0.0
@@ -36,7 +36,15 @@ class GridCells(Message, typename="nav_msgs/msg/GridCells"):
 
 
 class MapMetaData(Message, typename="nav_msgs/msg/MapMetaData"):
-    """MapMetaData."""
+    """What there is to know of a map besides its cells.
+
+    Attributes:
+        map_load_time: When it was loaded.
+        resolution: Width of a cell, in m.
+        width: Number of cells along x.
+        height: Number of cells along y.
+        origin: Pose of the corner of cell (0, 0), in m.
+    """
 
     map_load_time: Time = DEFAULT
     resolution: float32 = 0.0
@@ -46,7 +54,14 @@ class MapMetaData(Message, typename="nav_msgs/msg/MapMetaData"):
 
 
 class OccupancyGrid(Message, typename="nav_msgs/msg/OccupancyGrid"):
-    """OccupancyGrid."""
+    """A map of a floor, in cells that are free or not.
+
+    Attributes:
+        header: Time, and the frame of the map.
+        info: Size, resolution and place.
+        data: Row by row from the cell at the origin, x first: 0 is free, 100 is occupied,
+            -1 is not known.
+    """
 
     header: Header = DEFAULT
     info: MapMetaData = DEFAULT
@@ -54,7 +69,14 @@ class OccupancyGrid(Message, typename="nav_msgs/msg/OccupancyGrid"):
 
 
 class Odometry(Message, typename="nav_msgs/msg/Odometry"):
-    """Odometry."""
+    """Where a robot is and how fast it moves, by its own reckoning.
+
+    Attributes:
+        header: Time, and the frame of `pose`, such as ``odom``.
+        child_frame_id: The frame of `twist`, such as ``base_link``.
+        pose: Position in m and orientation, with covariance.
+        twist: Velocity in m/s and rad/s, with covariance.
+    """
 
     header: Header = DEFAULT
     child_frame_id: str = ""
@@ -63,7 +85,7 @@ class Odometry(Message, typename="nav_msgs/msg/Odometry"):
 
 
 class Path(Message, typename="nav_msgs/msg/Path"):
-    """Path."""
+    """Poses to pass, in order."""
 
     header: Header = DEFAULT
     poses: Annotated[list[PoseStamped], Sequence[PoseStamped]] = DEFAULT

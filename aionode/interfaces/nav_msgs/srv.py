@@ -13,43 +13,43 @@ __all__ = ["GetMap", "GetPlan", "LoadMap", "SetMap"]
 
 
 class GetMap(ServiceType, typename="nav_msgs/srv/GetMap"):
-    """GetMap."""
+    """Ask for the map."""
 
     class Request(Message):
         """The request of GetMap."""
 
     class Response(Message):
-        """The response of GetMap."""
+        """The map."""
 
         map: OccupancyGrid = DEFAULT
 
 
 class GetPlan(ServiceType, typename="nav_msgs/srv/GetPlan"):
-    """GetPlan."""
+    """Ask for a way to a goal."""
 
     class Request(Message):
-        """The request of GetPlan."""
+        """From where and to where; `tolerance` is how far off the goal is good enough, in m."""
 
         start: PoseStamped = DEFAULT
         goal: PoseStamped = DEFAULT
         tolerance: float32 = 0.0
 
     class Response(Message):
-        """The response of GetPlan."""
+        """The way, empty if there is none."""
 
         plan: Path = DEFAULT
 
 
 class LoadMap(ServiceType, typename="nav_msgs/srv/LoadMap"):
-    """LoadMap."""
+    """Have a map loaded."""
 
     class Request(Message):
-        """The request of LoadMap."""
+        """Where the map is: a path or a URL."""
 
         map_url: str = ""
 
     class Response(Message):
-        """The response of LoadMap."""
+        """The map, and how loading went: one of the constants."""
 
         RESULT_SUCCESS: ClassVar[uint8] = 0
         RESULT_MAP_DOES_NOT_EXIST: ClassVar[uint8] = 1
@@ -62,15 +62,15 @@ class LoadMap(ServiceType, typename="nav_msgs/srv/LoadMap"):
 
 
 class SetMap(ServiceType, typename="nav_msgs/srv/SetMap"):
-    """SetMap."""
+    """Give a map and the robot's place in it."""
 
     class Request(Message):
-        """The request of SetMap."""
+        """The map, and where in it the robot is."""
 
         map: OccupancyGrid = DEFAULT
         initial_pose: PoseWithCovarianceStamped = DEFAULT
 
     class Response(Message):
-        """The response of SetMap."""
+        """Whether both were taken."""
 
         success: bool = False

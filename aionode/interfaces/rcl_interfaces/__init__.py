@@ -1,1 +1,1 @@
-"""Interfaces of rcl_interfaces."""
+"""Interfaces of rcl_interfaces: parameters and logs."""

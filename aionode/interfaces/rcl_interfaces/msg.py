@@ -40,7 +40,7 @@ __all__ = [
 
 
 class ParameterValue(Message, typename="rcl_interfaces/msg/ParameterValue"):
-    """ParameterValue."""
+    """The value of a parameter: `type`, a constant of ParameterType, says in which field."""
 
     type: uint8 = 0
     bool_value: bool = False
@@ -55,14 +55,20 @@ class ParameterValue(Message, typename="rcl_interfaces/msg/ParameterValue"):
 
 
 class Parameter(Message, typename="rcl_interfaces/msg/Parameter"):
-    """Parameter."""
+    """A parameter: its name and value."""
 
     name: str = ""
     value: ParameterValue = DEFAULT
 
 
 class FloatingPointRange(Message, typename="rcl_interfaces/msg/FloatingPointRange"):
-    """FloatingPointRange."""
+    """Which values a float parameter can have.
+
+    Attributes:
+        from_value: The smallest.
+        to_value: The largest, which always fits.
+        step: From the smallest in steps of this size; 0 means any value between.
+    """
 
     from_value: float64 = 0.0
     to_value: float64 = 0.0
@@ -70,7 +76,13 @@ class FloatingPointRange(Message, typename="rcl_interfaces/msg/FloatingPointRang
 
 
 class IntegerRange(Message, typename="rcl_interfaces/msg/IntegerRange"):
-    """IntegerRange."""
+    """Which values an integer parameter can have.
+
+    Attributes:
+        from_value: The smallest.
+        to_value: The largest, which always fits.
+        step: From the smallest in steps of this size; 0 means any value between.
+    """
 
     from_value: int64 = 0
     to_value: int64 = 0
@@ -78,14 +90,24 @@ class IntegerRange(Message, typename="rcl_interfaces/msg/IntegerRange"):
 
 
 class ListParametersResult(Message, typename="rcl_interfaces/msg/ListParametersResult"):
-    """ListParametersResult."""
+    """Names of parameters, and the prefixes they have."""
 
     names: Annotated[list[str], Sequence[str]] = DEFAULT
     prefixes: Annotated[list[str], Sequence[str]] = DEFAULT
 
 
 class Log(Message, typename="rcl_interfaces/msg/Log"):
-    """Log."""
+    """One line of a node's log, as ``/rosout`` carries it.
+
+    Attributes:
+        stamp: When it was written.
+        level: Severity; the constants are the usual ones.
+        name: The logger, as a rule the node.
+        msg: The text.
+        file: Source file of the call.
+        function: Function of the call.
+        line: Line of the call in that file.
+    """
 
     DEBUG: ClassVar[uint8] = 10
     INFO: ClassVar[uint8] = 20
@@ -103,14 +125,25 @@ class Log(Message, typename="rcl_interfaces/msg/Log"):
 
 
 class LoggerLevel(Message, typename="rcl_interfaces/msg/LoggerLevel"):
-    """LoggerLevel."""
+    """A logger and the severity from which it writes; levels as in Log."""
 
     name: str = ""
     level: uint32 = 0
 
 
 class ParameterDescriptor(Message, typename="rcl_interfaces/msg/ParameterDescriptor"):
-    """ParameterDescriptor."""
+    """What a node says of one of its parameters.
+
+    Attributes:
+        name: Its name.
+        type: Its type, a constant of ParameterType.
+        description: What it is for, with the unit.
+        additional_constraints: What else a value has to satisfy, in words.
+        read_only: Whether it keeps its first value.
+        dynamic_typing: Whether its type can change.
+        floating_point_range: Its range, or nothing; for floats.
+        integer_range: Its range, or nothing; for integers.
+    """
 
     name: str = ""
     type: uint8 = 0
@@ -125,7 +158,7 @@ class ParameterDescriptor(Message, typename="rcl_interfaces/msg/ParameterDescrip
 
 
 class ParameterEvent(Message, typename="rcl_interfaces/msg/ParameterEvent"):
-    """ParameterEvent."""
+    """Which parameters of a node are new, changed or gone."""
 
     stamp: Time = DEFAULT
     node: str = ""
@@ -135,7 +168,7 @@ class ParameterEvent(Message, typename="rcl_interfaces/msg/ParameterEvent"):
 
 
 class ParameterEventDescriptors(Message, typename="rcl_interfaces/msg/ParameterEventDescriptors"):
-    """ParameterEventDescriptors."""
+    """Which parameters of a node are described anew, otherwise, or no longer."""
 
     new_parameters: Annotated[list[ParameterDescriptor], Sequence[ParameterDescriptor]] = DEFAULT
     changed_parameters: Annotated[list[ParameterDescriptor], Sequence[ParameterDescriptor]] = (
@@ -147,7 +180,7 @@ class ParameterEventDescriptors(Message, typename="rcl_interfaces/msg/ParameterE
 
 
 class ParameterType(Message, typename="rcl_interfaces/msg/ParameterType"):
-    """ParameterType."""
+    """The types that a parameter can have, as constants."""
 
     PARAMETER_NOT_SET: ClassVar[uint8] = 0
     PARAMETER_BOOL: ClassVar[uint8] = 1
@@ -162,14 +195,14 @@ class ParameterType(Message, typename="rcl_interfaces/msg/ParameterType"):
 
 
 class SetLoggerLevelsResult(Message, typename="rcl_interfaces/msg/SetLoggerLevelsResult"):
-    """SetLoggerLevelsResult."""
+    """Whether a logger's level was set, or why not."""
 
     successful: bool = False
     reason: str = ""
 
 
 class SetParametersResult(Message, typename="rcl_interfaces/msg/SetParametersResult"):
-    """SetParametersResult."""
+    """Whether a parameter was set, or why not."""
 
     successful: bool = False
     reason: str = ""

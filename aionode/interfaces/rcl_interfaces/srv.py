@@ -29,66 +29,68 @@ __all__ = [
 
 
 class DescribeParameters(ServiceType, typename="rcl_interfaces/srv/DescribeParameters"):
-    """DescribeParameters."""
+    """What a node says of its parameters."""
 
     class Request(Message):
-        """The request of DescribeParameters."""
+        """Names of parameters."""
 
         names: Annotated[list[str], Sequence[str]] = DEFAULT
 
     class Response(Message):
-        """The response of DescribeParameters."""
+        """A descriptor for each name, in order."""
 
         descriptors: Annotated[list[ParameterDescriptor], Sequence[ParameterDescriptor]] = DEFAULT
 
 
 class GetLoggerLevels(ServiceType, typename="rcl_interfaces/srv/GetLoggerLevels"):
-    """GetLoggerLevels."""
+    """From which severity loggers write."""
 
     class Request(Message):
-        """The request of GetLoggerLevels."""
+        """Names of loggers."""
 
         names: Annotated[list[str], Sequence[str]] = DEFAULT
 
     class Response(Message):
-        """The response of GetLoggerLevels."""
+        """The level of each, in order."""
 
         levels: Annotated[list[LoggerLevel], Sequence[LoggerLevel]] = DEFAULT
 
 
 class GetParameterTypes(ServiceType, typename="rcl_interfaces/srv/GetParameterTypes"):
-    """GetParameterTypes."""
+    """Which types parameters of a node have."""
 
     class Request(Message):
-        """The request of GetParameterTypes."""
+        """Names of parameters."""
 
         names: Annotated[list[str], Sequence[str]] = DEFAULT
 
     class Response(Message):
-        """The response of GetParameterTypes."""
+        """A constant of ParameterType for each name, in order; empty if one is not declared."""
 
         types: Annotated[Bytes, Sequence[uint8]] = DEFAULT
 
 
 class GetParameters(ServiceType, typename="rcl_interfaces/srv/GetParameters"):
-    """GetParameters."""
+    """Which values parameters of a node have."""
 
     class Request(Message):
-        """The request of GetParameters."""
+        """Names of parameters."""
 
         names: Annotated[list[str], Sequence[str]] = DEFAULT
 
     class Response(Message):
-        """The response of GetParameters."""
+        """A value for each name, in order; empty if one is not declared."""
 
         values: Annotated[list[ParameterValue], Sequence[ParameterValue]] = DEFAULT
 
 
 class ListParameters(ServiceType, typename="rcl_interfaces/srv/ListParameters"):
-    """ListParameters."""
+    """Which parameters a node has."""
 
     class Request(Message):
-        """The request of ListParameters."""
+        """Which names to list: those with one of `prefixes`, or all, of at most `depth` parts; 0 means any number.
+
+        """
 
         DEPTH_RECURSIVE: ClassVar[uint64] = 0
 
@@ -96,48 +98,48 @@ class ListParameters(ServiceType, typename="rcl_interfaces/srv/ListParameters"):
         depth: uint64 = 0
 
     class Response(Message):
-        """The response of ListParameters."""
+        """The names."""
 
         result: ListParametersResult = DEFAULT
 
 
 class SetLoggerLevels(ServiceType, typename="rcl_interfaces/srv/SetLoggerLevels"):
-    """SetLoggerLevels."""
+    """Set from which severity loggers write."""
 
     class Request(Message):
-        """The request of SetLoggerLevels."""
+        """Loggers with their new level."""
 
         levels: Annotated[list[LoggerLevel], Sequence[LoggerLevel]] = DEFAULT
 
     class Response(Message):
-        """The response of SetLoggerLevels."""
+        """How it went for each, in order."""
 
         results: Annotated[list[SetLoggerLevelsResult], Sequence[SetLoggerLevelsResult]] = DEFAULT
 
 
 class SetParameters(ServiceType, typename="rcl_interfaces/srv/SetParameters"):
-    """SetParameters."""
+    """Set parameters of a node, one by one."""
 
     class Request(Message):
-        """The request of SetParameters."""
+        """Parameters with their new values."""
 
         parameters: Annotated[list[Parameter], Sequence[Parameter]] = DEFAULT
 
     class Response(Message):
-        """The response of SetParameters."""
+        """How it went for each, in order."""
 
         results: Annotated[list[SetParametersResult], Sequence[SetParametersResult]] = DEFAULT
 
 
 class SetParametersAtomically(ServiceType, typename="rcl_interfaces/srv/SetParametersAtomically"):
-    """SetParametersAtomically."""
+    """Set parameters of a node, all or none."""
 
     class Request(Message):
-        """The request of SetParametersAtomically."""
+        """Parameters with their new values."""
 
         parameters: Annotated[list[Parameter], Sequence[Parameter]] = DEFAULT
 
     class Response(Message):
-        """The response of SetParametersAtomically."""
+        """How it went."""
 
         result: SetParametersResult = DEFAULT

@@ -1,1 +1,1 @@
-"""Interfaces of rosbag2_interfaces."""
+"""Interfaces of rosbag2_interfaces: recording and playing."""

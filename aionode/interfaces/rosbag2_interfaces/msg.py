@@ -9,7 +9,7 @@ __all__ = ["ReadSplitEvent", "WriteSplitEvent"]
 
 
 class ReadSplitEvent(Message, typename="rosbag2_interfaces/msg/ReadSplitEvent"):
-    """ReadSplitEvent."""
+    """A player went on to the next file of a recording."""
 
     closed_file: str = ""
     opened_file: str = ""
@@ -17,7 +17,7 @@ class ReadSplitEvent(Message, typename="rosbag2_interfaces/msg/ReadSplitEvent"):
 
 
 class WriteSplitEvent(Message, typename="rosbag2_interfaces/msg/WriteSplitEvent"):
-    """WriteSplitEvent."""
+    """A recorder went on to its next file."""
 
     closed_file: str = ""
     opened_file: str = ""

@@ -28,57 +28,57 @@ __all__ = [
 
 
 class Burst(ServiceType, typename="rosbag2_interfaces/srv/Burst"):
-    """Burst."""
+    """Have a paused player send messages as fast as it can."""
 
     class Request(Message):
-        """The request of Burst."""
+        """How many to send; 0 sends all that are left."""
 
         num_messages: uint64 = 0
 
     class Response(Message):
-        """The response of Burst."""
+        """How many were sent."""
 
         actually_burst: uint64 = 0
 
 
 class GetRate(ServiceType, typename="rosbag2_interfaces/srv/GetRate"):
-    """GetRate."""
+    """How fast a player plays."""
 
     class Request(Message):
         """The request of GetRate."""
 
     class Response(Message):
-        """The response of GetRate."""
+        """1 is as fast as it was recorded."""
 
         rate: float64 = 0.0
 
 
 class IsDiscoveryRunning(ServiceType, typename="rosbag2_interfaces/srv/IsDiscoveryRunning"):
-    """IsDiscoveryRunning."""
+    """Whether a recorder looks for new topics."""
 
     class Request(Message):
         """The request of IsDiscoveryRunning."""
 
     class Response(Message):
-        """The response of IsDiscoveryRunning."""
+        """Whether it does."""
 
         running: bool = False
 
 
 class IsPaused(ServiceType, typename="rosbag2_interfaces/srv/IsPaused"):
-    """IsPaused."""
+    """Whether a player or recorder is paused."""
 
     class Request(Message):
         """The request of IsPaused."""
 
     class Response(Message):
-        """The response of IsPaused."""
+        """Whether it is."""
 
         paused: bool = False
 
 
 class Pause(ServiceType, typename="rosbag2_interfaces/srv/Pause"):
-    """Pause."""
+    """Pause a player or recorder."""
 
     class Request(Message):
         """The request of Pause."""
@@ -88,50 +88,56 @@ class Pause(ServiceType, typename="rosbag2_interfaces/srv/Pause"):
 
 
 class Play(ServiceType, typename="rosbag2_interfaces/srv/Play"):
-    """Play."""
+    """Have a player play."""
 
     class Request(Message):
-        """The request of Play."""
+        """From where, and how long.
+
+        Attributes:
+            start_offset: How far from the beginning of the recording to start.
+            playback_duration: How long to play; negative means to the end.
+            playback_until_timestamp: Recorded time at which to stop; negative means at the end.
+        """
 
         start_offset: Time = DEFAULT
         playback_duration: Duration = DEFAULT
         playback_until_timestamp: Time = DEFAULT
 
     class Response(Message):
-        """The response of Play."""
+        """Whether it plays."""
 
         success: bool = False
 
 
 class PlayNext(ServiceType, typename="rosbag2_interfaces/srv/PlayNext"):
-    """PlayNext."""
+    """Have a paused player send its next message."""
 
     class Request(Message):
         """The request of PlayNext."""
 
     class Response(Message):
-        """The response of PlayNext."""
+        """Whether there was one."""
 
         success: bool = False
 
 
 class Record(ServiceType, typename="rosbag2_interfaces/srv/Record"):
-    """Record."""
+    """Have a recorder record."""
 
     class Request(Message):
-        """The request of Record."""
+        """Where to write the recording."""
 
         uri: str = ""
 
     class Response(Message):
-        """The response of Record."""
+        """0 if it records, else a number and a text that say why not."""
 
         return_code: int32 = 0
         error_string: str = ""
 
 
 class Resume(ServiceType, typename="rosbag2_interfaces/srv/Resume"):
-    """Resume."""
+    """Let a paused player or recorder go on."""
 
     class Request(Message):
         """The request of Resume."""
@@ -141,47 +147,47 @@ class Resume(ServiceType, typename="rosbag2_interfaces/srv/Resume"):
 
 
 class Seek(ServiceType, typename="rosbag2_interfaces/srv/Seek"):
-    """Seek."""
+    """Have a player jump."""
 
     class Request(Message):
-        """The request of Seek."""
+        """To which recorded time."""
 
         time: Time = DEFAULT
 
     class Response(Message):
-        """The response of Seek."""
+        """Whether the recording has that time."""
 
         success: bool = False
 
 
 class SetRate(ServiceType, typename="rosbag2_interfaces/srv/SetRate"):
-    """SetRate."""
+    """Set how fast a player plays."""
 
     class Request(Message):
-        """The request of SetRate."""
+        """1 is as fast as it was recorded; it has to be more than 0."""
 
         rate: float64 = 0.0
 
     class Response(Message):
-        """The response of SetRate."""
+        """Whether it was set."""
 
         success: bool = False
 
 
 class Snapshot(ServiceType, typename="rosbag2_interfaces/srv/Snapshot"):
-    """Snapshot."""
+    """Have a recorder write what it keeps in memory."""
 
     class Request(Message):
         """The request of Snapshot."""
 
     class Response(Message):
-        """The response of Snapshot."""
+        """Whether it did."""
 
         success: bool = False
 
 
 class SplitBagfile(ServiceType, typename="rosbag2_interfaces/srv/SplitBagfile"):
-    """SplitBagfile."""
+    """Have a recorder go on in a new file."""
 
     class Request(Message):
         """The request of SplitBagfile."""
@@ -191,20 +197,20 @@ class SplitBagfile(ServiceType, typename="rosbag2_interfaces/srv/SplitBagfile"):
 
 
 class StartDiscovery(ServiceType, typename="rosbag2_interfaces/srv/StartDiscovery"):
-    """StartDiscovery."""
+    """Have a recorder look for new topics."""
 
     class Request(Message):
         """The request of StartDiscovery."""
 
     class Response(Message):
-        """The response of StartDiscovery."""
+        """0 if it does, else a number and a text that say why not."""
 
         return_code: int32 = 0
         error_string: str = ""
 
 
 class Stop(ServiceType, typename="rosbag2_interfaces/srv/Stop"):
-    """Stop."""
+    """Stop a player or recorder."""
 
     class Request(Message):
         """The request of Stop."""
@@ -214,20 +220,20 @@ class Stop(ServiceType, typename="rosbag2_interfaces/srv/Stop"):
 
 
 class StopDiscovery(ServiceType, typename="rosbag2_interfaces/srv/StopDiscovery"):
-    """StopDiscovery."""
+    """Have a recorder look for new topics no more."""
 
     class Request(Message):
         """The request of StopDiscovery."""
 
     class Response(Message):
-        """The response of StopDiscovery."""
+        """0 if it stopped, else a number and a text that say why not."""
 
         return_code: int32 = 0
         error_string: str = ""
 
 
 class TogglePaused(ServiceType, typename="rosbag2_interfaces/srv/TogglePaused"):
-    """TogglePaused."""
+    """Pause a player or recorder, or let it go on."""
 
     class Request(Message):
         """The request of TogglePaused."""

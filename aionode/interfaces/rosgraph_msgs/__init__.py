@@ -1,1 +1,1 @@
-"""Interfaces of rosgraph_msgs."""
+"""Interfaces of rosgraph_msgs: simulated time."""

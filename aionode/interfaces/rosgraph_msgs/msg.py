@@ -10,6 +10,6 @@ __all__ = ["Clock"]
 
 
 class Clock(Message, typename="rosgraph_msgs/msg/Clock"):
-    """Clock."""
+    """The time of a simulation or a played recording, for nodes with ``use_sim_time``."""
 
     clock: Time = DEFAULT

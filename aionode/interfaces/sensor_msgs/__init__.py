@@ -1,1 +1,1 @@
-"""Interfaces of sensor_msgs."""
+"""Interfaces of sensor_msgs: what sensors measure."""

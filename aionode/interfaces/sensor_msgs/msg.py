@@ -64,7 +64,25 @@ __all__ = [
 
 
 class BatteryState(Message, typename="sensor_msgs/msg/BatteryState"):
-    """BatteryState."""
+    """How full and how healthy a battery is. NaN stands for what is not measured.
+
+    Attributes:
+        voltage: In V.
+        temperature: In °C.
+        current: In A, negative while discharging.
+        charge: What is in it, in Ah.
+        capacity: What it holds when full, in Ah.
+        design_capacity: What it held when new, in Ah.
+        percentage: How full it is, from 0 to 1.
+        power_supply_status: What it is doing, one of the constants.
+        power_supply_health: How well it is, one of the constants.
+        power_supply_technology: How it is made, one of the constants.
+        present: Whether there is a battery.
+        cell_voltage: Of each cell, in V.
+        cell_temperature: Of each cell, in °C.
+        location: Where it sits, such as a slot.
+        serial_number: As printed on it.
+    """
 
     POWER_SUPPLY_STATUS_UNKNOWN: ClassVar[uint8] = 0
     POWER_SUPPLY_STATUS_CHARGING: ClassVar[uint8] = 1
@@ -109,7 +127,7 @@ class BatteryState(Message, typename="sensor_msgs/msg/BatteryState"):
 
 
 class RegionOfInterest(Message, typename="sensor_msgs/msg/RegionOfInterest"):
-    """RegionOfInterest."""
+    """A rectangle of an image, in pixels; all zeros mean the whole image."""
 
     x_offset: uint32 = 0
     y_offset: uint32 = 0
@@ -119,7 +137,21 @@ class RegionOfInterest(Message, typename="sensor_msgs/msg/RegionOfInterest"):
 
 
 class CameraInfo(Message, typename="sensor_msgs/msg/CameraInfo"):
-    """CameraInfo."""
+    """How a camera maps space to its image; goes with each Image of the same stamp.
+
+    Attributes:
+        header: Time of the image, and the optical frame: x right, y down, z forward.
+        height: Of the image it was calibrated with, in pixels.
+        width: Of the image it was calibrated with, in pixels.
+        distortion_model: Such as ``plumb_bob``; says what `d` means.
+        d: Coefficients of the distortion.
+        k: Intrinsic matrix, 3 by 3 row by row; focal lengths and center in pixels.
+        r: Rotation that makes the images of a stereo pair parallel, 3 by 3.
+        p: Projection of a point to the rectified image, 3 by 4, in pixels.
+        binning_x: Pixels put together along x; 0 is as 1.
+        binning_y: Pixels put together along y; 0 is as 1.
+        roi: The part of the image that is sent; all zeros mean the whole.
+    """
 
     header: Header = DEFAULT
     height: uint32 = 0
@@ -135,14 +167,14 @@ class CameraInfo(Message, typename="sensor_msgs/msg/CameraInfo"):
 
 
 class ChannelFloat32(Message, typename="sensor_msgs/msg/ChannelFloat32"):
-    """ChannelFloat32."""
+    """One value for each point of a PointCloud, such as its intensity."""
 
     name: str = ""
     values: Annotated[Floats, Sequence[float32]] = DEFAULT
 
 
 class CompressedImage(Message, typename="sensor_msgs/msg/CompressedImage"):
-    """CompressedImage."""
+    """An image in a file format: `format` says which, such as ``jpeg`` or ``png``."""
 
     header: Header = DEFAULT
     format: str = ""
@@ -150,7 +182,7 @@ class CompressedImage(Message, typename="sensor_msgs/msg/CompressedImage"):
 
 
 class FluidPressure(Message, typename="sensor_msgs/msg/FluidPressure"):
-    """FluidPressure."""
+    """Pressure of air or water in Pa; `variance` in Pa², 0 if unknown."""
 
     header: Header = DEFAULT
     fluid_pressure: float64 = 0.0
@@ -158,7 +190,7 @@ class FluidPressure(Message, typename="sensor_msgs/msg/FluidPressure"):
 
 
 class Illuminance(Message, typename="sensor_msgs/msg/Illuminance"):
-    """Illuminance."""
+    """Brightness as people see it, in lux; `variance` in lux², 0 if unknown."""
 
     header: Header = DEFAULT
     illuminance: float64 = 0.0
@@ -166,7 +198,17 @@ class Illuminance(Message, typename="sensor_msgs/msg/Illuminance"):
 
 
 class Image(Message, typename="sensor_msgs/msg/Image"):
-    """Image."""
+    """An image without compression.
+
+    Attributes:
+        header: When it was exposed, and the optical frame of the camera.
+        height: Number of rows.
+        width: Number of pixels in a row.
+        encoding: What a pixel is, such as ``rgb8``, ``mono16`` or ``32FC1``.
+        is_bigendian: 1 if numbers of several bytes have the highest first.
+        step: Number of bytes in a row.
+        data: All rows, `step` times `height` bytes.
+    """
 
     header: Header = DEFAULT
     height: uint32 = 0
@@ -178,7 +220,19 @@ class Image(Message, typename="sensor_msgs/msg/Image"):
 
 
 class Imu(Message, typename="sensor_msgs/msg/Imu"):
-    """Imu."""
+    """What an inertial measurement unit measured.
+
+    A covariance of zeros is unknown; -1 as its first element says that the quantity is not measured.
+
+    Attributes:
+        header: When it was measured, and the frame of the unit.
+        orientation: Estimated rotation, as a unit quaternion.
+        orientation_covariance: 3 by 3 about x, y and z, in rad².
+        angular_velocity: In rad/s.
+        angular_velocity_covariance: 3 by 3, in (rad/s)².
+        linear_acceleration: In m/s², gravity included.
+        linear_acceleration_covariance: 3 by 3, in (m/s²)².
+    """
 
     header: Header = DEFAULT
     orientation: Quaternion = DEFAULT
@@ -190,7 +244,15 @@ class Imu(Message, typename="sensor_msgs/msg/Imu"):
 
 
 class JointState(Message, typename="sensor_msgs/msg/JointState"):
-    """JointState."""
+    """Where the joints of a robot are. The lists go together by index; one may be empty.
+
+    Attributes:
+        header: When it was measured.
+        name: Names of the joints.
+        position: In rad, or in m for a joint that slides.
+        velocity: In rad/s or m/s.
+        effort: In N·m or N.
+    """
 
     header: Header = DEFAULT
     name: Annotated[list[str], Sequence[str]] = DEFAULT
@@ -200,7 +262,7 @@ class JointState(Message, typename="sensor_msgs/msg/JointState"):
 
 
 class Joy(Message, typename="sensor_msgs/msg/Joy"):
-    """Joy."""
+    """The state of a joystick: each axis from -1 to 1, each button 1 while it is down."""
 
     header: Header = DEFAULT
     axes: Annotated[Floats, Sequence[float32]] = DEFAULT
@@ -208,7 +270,7 @@ class Joy(Message, typename="sensor_msgs/msg/Joy"):
 
 
 class JoyFeedback(Message, typename="sensor_msgs/msg/JoyFeedback"):
-    """JoyFeedback."""
+    """What a joystick shall let its user feel; `intensity` from 0 to 1, or in Hz for a buzzer."""
 
     TYPE_LED: ClassVar[uint8] = 0
     TYPE_RUMBLE: ClassVar[uint8] = 1
@@ -220,19 +282,32 @@ class JoyFeedback(Message, typename="sensor_msgs/msg/JoyFeedback"):
 
 
 class JoyFeedbackArray(Message, typename="sensor_msgs/msg/JoyFeedbackArray"):
-    """JoyFeedbackArray."""
+    """Several feedbacks for a joystick at once."""
 
     array: Annotated[list[JoyFeedback], Sequence[JoyFeedback]] = DEFAULT
 
 
 class LaserEcho(Message, typename="sensor_msgs/msg/LaserEcho"):
-    """LaserEcho."""
+    """All echoes of one ray, in m or as intensities."""
 
     echoes: Annotated[Floats, Sequence[float32]] = DEFAULT
 
 
 class LaserScan(Message, typename="sensor_msgs/msg/LaserScan"):
-    """LaserScan."""
+    """One turn of a laser scanner in a plane.
+
+    Attributes:
+        header: When the first ray was measured, and the frame whose z axis the scanner turns about.
+        angle_min: Angle of the first ray, in rad; 0 is along x.
+        angle_max: Angle of the last ray, in rad.
+        angle_increment: Angle from one ray to the next, in rad.
+        time_increment: Time from one ray to the next, in s.
+        scan_time: Time from one scan to the next, in s.
+        range_min: Shorter ranges are no measurement, in m.
+        range_max: Longer ranges are no measurement, in m.
+        ranges: Distance along each ray, in m; infinity or NaN where there is none.
+        intensities: Strength of each echo, in the device's own unit; may be empty.
+    """
 
     header: Header = DEFAULT
     angle_min: float32 = 0.0
@@ -247,7 +322,7 @@ class LaserScan(Message, typename="sensor_msgs/msg/LaserScan"):
 
 
 class MagneticField(Message, typename="sensor_msgs/msg/MagneticField"):
-    """MagneticField."""
+    """Strength and direction of the magnetic field, in T; covariance 3 by 3, in T²."""
 
     header: Header = DEFAULT
     magnetic_field: Vector3 = DEFAULT
@@ -255,7 +330,7 @@ class MagneticField(Message, typename="sensor_msgs/msg/MagneticField"):
 
 
 class MultiDOFJointState(Message, typename="sensor_msgs/msg/MultiDOFJointState"):
-    """MultiDOFJointState."""
+    """Where joints are that move along or about several axes; in m, rad, N and N·m."""
 
     header: Header = DEFAULT
     joint_names: Annotated[list[str], Sequence[str]] = DEFAULT
@@ -265,7 +340,20 @@ class MultiDOFJointState(Message, typename="sensor_msgs/msg/MultiDOFJointState")
 
 
 class MultiEchoLaserScan(Message, typename="sensor_msgs/msg/MultiEchoLaserScan"):
-    """MultiEchoLaserScan."""
+    """One turn of a laser scanner that gets several echoes of a ray.
+
+    Attributes:
+        header: When the first ray was measured, and the frame whose z axis the scanner turns about.
+        angle_min: Angle of the first ray, in rad; 0 is along x.
+        angle_max: Angle of the last ray, in rad.
+        angle_increment: Angle from one ray to the next, in rad.
+        time_increment: Time from one ray to the next, in s.
+        scan_time: Time from one scan to the next, in s.
+        range_min: Shorter ranges are no measurement, in m.
+        range_max: Longer ranges are no measurement, in m.
+        ranges: Distances along each ray, in m.
+        intensities: Strength of each echo, in the device's own unit; may be empty.
+    """
 
     header: Header = DEFAULT
     angle_min: float32 = 0.0
@@ -280,7 +368,9 @@ class MultiEchoLaserScan(Message, typename="sensor_msgs/msg/MultiEchoLaserScan")
 
 
 class NavSatStatus(Message, typename="sensor_msgs/msg/NavSatStatus"):
-    """NavSatStatus."""
+    """Whether there is a fix, and which satellite systems are used; `service` adds up the constants.
+
+    """
 
     STATUS_UNKNOWN: ClassVar[int8] = -2
     STATUS_NO_FIX: ClassVar[int8] = -1
@@ -298,7 +388,17 @@ class NavSatStatus(Message, typename="sensor_msgs/msg/NavSatStatus"):
 
 
 class NavSatFix(Message, typename="sensor_msgs/msg/NavSatFix"):
-    """NavSatFix."""
+    """A position on Earth by satellite, on the WGS 84 ellipsoid.
+
+    Attributes:
+        header: When it was measured, and the frame of the antenna.
+        status: Whether there is a fix, and by which satellites.
+        latitude: In degrees, north is positive.
+        longitude: In degrees, east is positive.
+        altitude: In m above the ellipsoid; NaN if unknown.
+        position_covariance: 3 by 3 over east, north and up, in m².
+        position_covariance_type: How it is known, one of the constants.
+    """
 
     COVARIANCE_TYPE_UNKNOWN: ClassVar[uint8] = 0
     COVARIANCE_TYPE_APPROXIMATED: ClassVar[uint8] = 1
@@ -315,7 +415,7 @@ class NavSatFix(Message, typename="sensor_msgs/msg/NavSatFix"):
 
 
 class PointCloud(Message, typename="sensor_msgs/msg/PointCloud"):
-    """PointCloud."""
+    """Points in space, in m, with further values each; new code has PointCloud2."""
 
     header: Header = DEFAULT
     points: Annotated[list[Point32], Sequence[Point32]] = DEFAULT
@@ -323,7 +423,14 @@ class PointCloud(Message, typename="sensor_msgs/msg/PointCloud"):
 
 
 class PointField(Message, typename="sensor_msgs/msg/PointField"):
-    """PointField."""
+    """One value of each point of a PointCloud2.
+
+    Attributes:
+        name: Such as ``x`` or ``intensity``.
+        offset: Where it begins in a point, in bytes.
+        datatype: Type of number, one of the constants.
+        count: How many numbers there are.
+    """
 
     INT8: ClassVar[uint8] = 1
     UINT8: ClassVar[uint8] = 2
@@ -341,7 +448,19 @@ class PointField(Message, typename="sensor_msgs/msg/PointField"):
 
 
 class PointCloud2(Message, typename="sensor_msgs/msg/PointCloud2"):
-    """PointCloud2."""
+    """Points in space with any values each, packed as the sensor sends them.
+
+    Attributes:
+        header: When they were measured, and their frame.
+        height: Number of rows; 1 if the points have no order.
+        width: Number of points in a row.
+        fields: What a point consists of; coordinates are called x, y and z, in m.
+        is_bigendian: Whether numbers have the highest byte first.
+        point_step: Number of bytes from one point to the next.
+        row_step: Number of bytes from one row to the next.
+        data: All points, `row_step` times `height` bytes.
+        is_dense: Whether every point is valid.
+    """
 
     header: Header = DEFAULT
     height: uint32 = 0
@@ -355,7 +474,17 @@ class PointCloud2(Message, typename="sensor_msgs/msg/PointCloud2"):
 
 
 class Range(Message, typename="sensor_msgs/msg/Range"):
-    """Range."""
+    """One distance, from an ultrasonic or infrared sensor.
+
+    Attributes:
+        header: When it was measured, and the frame whose x axis points forward.
+        radiation_type: One of the constants.
+        field_of_view: Angle of the cone in which things are seen, in rad.
+        min_range: Shorter ranges are no measurement, in m.
+        max_range: Longer ranges are no measurement, in m.
+        range: The distance, in m; plus or minus infinity is nothing seen, or something too close.
+        variance: In m², 0 if unknown. ROS 2 Humble does not have this field.
+    """
 
     ULTRASOUND: ClassVar[uint8] = 0
     INFRARED: ClassVar[uint8] = 1
@@ -370,7 +499,7 @@ class Range(Message, typename="sensor_msgs/msg/Range"):
 
 
 class RelativeHumidity(Message, typename="sensor_msgs/msg/RelativeHumidity"):
-    """RelativeHumidity."""
+    """Humidity of the air, from 0 to 1; `variance` is 0 if unknown."""
 
     header: Header = DEFAULT
     relative_humidity: float64 = 0.0
@@ -378,7 +507,7 @@ class RelativeHumidity(Message, typename="sensor_msgs/msg/RelativeHumidity"):
 
 
 class Temperature(Message, typename="sensor_msgs/msg/Temperature"):
-    """Temperature."""
+    """Temperature in °C; `variance` in °C², 0 if unknown."""
 
     header: Header = DEFAULT
     temperature: float64 = 0.0
@@ -386,7 +515,7 @@ class Temperature(Message, typename="sensor_msgs/msg/Temperature"):
 
 
 class TimeReference(Message, typename="sensor_msgs/msg/TimeReference"):
-    """TimeReference."""
+    """What another clock showed: `time_ref`, by `source`, at the time of the header."""
 
     header: Header = DEFAULT
     time_ref: Time = DEFAULT

@@ -10,15 +10,15 @@ __all__ = ["SetCameraInfo"]
 
 
 class SetCameraInfo(ServiceType, typename="sensor_msgs/srv/SetCameraInfo"):
-    """SetCameraInfo."""
+    """Have a camera keep its calibration."""
 
     class Request(Message):
-        """The request of SetCameraInfo."""
+        """The calibration."""
 
         camera_info: CameraInfo = DEFAULT
 
     class Response(Message):
-        """The response of SetCameraInfo."""
+        """Whether it was kept, or why not."""
 
         success: bool = False
         status_message: str = ""

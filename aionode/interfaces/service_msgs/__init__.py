@@ -1,1 +1,1 @@
-"""Interfaces of service_msgs."""
+"""Interfaces of service_msgs: service introspection."""

@@ -12,7 +12,14 @@ __all__ = ["ServiceEventInfo"]
 
 
 class ServiceEventInfo(Message, typename="service_msgs/msg/ServiceEventInfo"):
-    """ServiceEventInfo."""
+    """Which request or response of a service an event is about.
+
+    Attributes:
+        event_type: What happened, one of the constants.
+        stamp: When it happened.
+        client_gid: Id of the client.
+        sequence_number: Number of the request; with `client_gid` it is unique.
+    """
 
     REQUEST_SENT: ClassVar[uint8] = 0
     REQUEST_RECEIVED: ClassVar[uint8] = 1

@@ -1,1 +1,1 @@
-"""Interfaces of shape_msgs."""
+"""Interfaces of shape_msgs: solids, meshes and planes."""

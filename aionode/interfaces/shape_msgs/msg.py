@@ -12,26 +12,28 @@ __all__ = ["Mesh", "MeshTriangle", "Plane", "SolidPrimitive"]
 
 
 class MeshTriangle(Message, typename="shape_msgs/msg/MeshTriangle"):
-    """MeshTriangle."""
+    """A triangle, by the indices of its corners."""
 
     vertex_indices: Annotated[Ints, Array[uint32, 3]] = DEFAULT
 
 
 class Mesh(Message, typename="shape_msgs/msg/Mesh"):
-    """Mesh."""
+    """A surface of triangles; `vertices` in m."""
 
     triangles: Annotated[list[MeshTriangle], Sequence[MeshTriangle]] = DEFAULT
     vertices: Annotated[list[Point], Sequence[Point]] = DEFAULT
 
 
 class Plane(Message, typename="shape_msgs/msg/Plane"):
-    """Plane."""
+    """A plane as a, b, c and d of ax + by + cz + d = 0."""
 
     coef: Annotated[Floats, Array[float64, 4]] = DEFAULT
 
 
 class SolidPrimitive(Message, typename="shape_msgs/msg/SolidPrimitive"):
-    """SolidPrimitive."""
+    """A simple solid: `type` is one of the constants, `dimensions` in m in the order that others name.
+
+    """
 
     BOX: ClassVar[uint8] = 1
     SPHERE: ClassVar[uint8] = 2

@@ -1,1 +1,1 @@
-"""Interfaces of statistics_msgs."""
+"""Interfaces of statistics_msgs: statistics of topics."""

@@ -12,14 +12,23 @@ __all__ = ["MetricsMessage", "StatisticDataPoint", "StatisticDataType"]
 
 
 class StatisticDataPoint(Message, typename="statistics_msgs/msg/StatisticDataPoint"):
-    """StatisticDataPoint."""
+    """One number of a statistic; `data_type` is a constant of StatisticDataType."""
 
     data_type: uint8 = 0
     data: float64 = 0.0
 
 
 class MetricsMessage(Message, typename="statistics_msgs/msg/MetricsMessage"):
-    """MetricsMessage."""
+    """Statistics of one quantity over a span of time.
+
+    Attributes:
+        measurement_source_name: Which node measured.
+        metrics_source: What was measured, such as ``message_age``.
+        unit: Of the numbers, such as ``ms``.
+        window_start: When measuring began.
+        window_stop: When it ended.
+        statistics: The numbers.
+    """
 
     measurement_source_name: str = ""
     metrics_source: str = ""
@@ -30,7 +39,7 @@ class MetricsMessage(Message, typename="statistics_msgs/msg/MetricsMessage"):
 
 
 class StatisticDataType(Message, typename="statistics_msgs/msg/StatisticDataType"):
-    """StatisticDataType."""
+    """Kinds of numbers in a statistic, as constants."""
 
     STATISTICS_DATA_TYPE_UNINITIALIZED: ClassVar[uint8] = 0
     STATISTICS_DATA_TYPE_AVERAGE: ClassVar[uint8] = 1

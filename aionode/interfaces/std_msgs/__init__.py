@@ -1,1 +1,1 @@
-"""Interfaces of std_msgs."""
+"""Interfaces of std_msgs: single values, and the header."""

@@ -1,1 +1,1 @@
-"""Interfaces of std_srvs."""
+"""Interfaces of std_srvs: services without a type of their own."""

@@ -9,38 +9,38 @@ __all__ = ["Empty", "SetBool", "Trigger"]
 
 
 class Empty(ServiceType, typename="std_srvs/srv/Empty"):
-    """Empty."""
+    """Have something done, with nothing to say before or after."""
 
     class Request(Message):
-        """The request of Empty."""
+        """Nothing: the call is the request."""
 
     class Response(Message):
-        """The response of Empty."""
+        """Nothing: that it came says that it was done."""
 
 
 class SetBool(ServiceType, typename="std_srvs/srv/SetBool"):
-    """SetBool."""
+    """Switch something on or off."""
 
     class Request(Message):
-        """The request of SetBool."""
+        """True switches it on."""
 
         data: bool = False
 
     class Response(Message):
-        """The response of SetBool."""
+        """Whether that worked, and a word on why not."""
 
         success: bool = False
         message: str = ""
 
 
 class Trigger(ServiceType, typename="std_srvs/srv/Trigger"):
-    """Trigger."""
+    """Have something done that needs no arguments."""
 
     class Request(Message):
-        """The request of Trigger."""
+        """Nothing: the call is the request."""
 
     class Response(Message):
-        """The response of Trigger."""
+        """Whether it was done, and a word on how."""
 
         success: bool = False
         message: str = ""

@@ -1,1 +1,1 @@
-"""Interfaces of stereo_msgs."""
+"""Interfaces of stereo_msgs: stereo cameras."""

@@ -11,7 +11,18 @@ __all__ = ["DisparityImage"]
 
 
 class DisparityImage(Message, typename="stereo_msgs/msg/DisparityImage"):
-    """DisparityImage."""
+    """How far each pixel is shifted between two cameras; depth is `f` times `t` / shift.
+
+    Attributes:
+        header: Time and frame of the left camera.
+        image: The shifts, in pixels, as floats.
+        f: Focal length, in pixels.
+        t: Distance between the cameras, in m.
+        valid_window: The part of the image in which shifts can be found.
+        min_disparity: Smallest shift looked for, in pixels.
+        max_disparity: Largest shift looked for, in pixels.
+        delta_d: Smallest step between shifts, in pixels.
+    """
 
     header: Header = DEFAULT
     image: Image = DEFAULT

@@ -1,1 +1,1 @@
-"""Interfaces of test_msgs."""
+"""Interfaces of test_msgs: every kind of field, for tests."""

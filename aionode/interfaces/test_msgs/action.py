@@ -13,7 +13,7 @@ __all__ = ["Fibonacci", "NestedMessage"]
 
 
 class Fibonacci(ActionType, typename="test_msgs/action/Fibonacci"):
-    """Fibonacci."""
+    """For tests: an action as in the tutorials."""
 
     class Goal(Message):
         """The goal of Fibonacci."""
@@ -32,7 +32,7 @@ class Fibonacci(ActionType, typename="test_msgs/action/Fibonacci"):
 
 
 class NestedMessage(ActionType, typename="test_msgs/action/NestedMessage"):
-    """NestedMessage."""
+    """For tests: an action of nested messages."""
 
     class Goal(Message):
         """The goal of NestedMessage."""

@@ -49,14 +49,14 @@ __all__ = [
 
 
 class Builtins(Message, typename="test_msgs/msg/Builtins"):
-    """Builtins."""
+    """For tests: time and duration."""
 
     duration_value: Duration = DEFAULT
     time_value: Time = DEFAULT
 
 
 class BasicTypes(Message, typename="test_msgs/msg/BasicTypes"):
-    """BasicTypes."""
+    """For tests: every primitive kind of field."""
 
     bool_value: bool = False
     byte_value: byte = b"\x00"
@@ -74,7 +74,7 @@ class BasicTypes(Message, typename="test_msgs/msg/BasicTypes"):
 
 
 class Constants(Message, typename="test_msgs/msg/Constants"):
-    """Constants."""
+    """For tests: constants of every primitive kind."""
 
     BOOL_CONST: ClassVar[bool] = True
     BYTE_CONST: ClassVar[byte] = b"2"
@@ -92,7 +92,7 @@ class Constants(Message, typename="test_msgs/msg/Constants"):
 
 
 class Defaults(Message, typename="test_msgs/msg/Defaults"):
-    """Defaults."""
+    """For tests: fields of every primitive kind with defaults."""
 
     bool_value: bool = True
     byte_value: byte = b"2"
@@ -110,7 +110,7 @@ class Defaults(Message, typename="test_msgs/msg/Defaults"):
 
 
 class Arrays(Message, typename="test_msgs/msg/Arrays"):
-    """Arrays."""
+    """For tests: every kind of field in arrays of three."""
 
     bool_values: Annotated[Bools, Array[bool, 3]] = DEFAULT
     byte_values: Annotated[Bytes, Array[byte, 3]] = DEFAULT
@@ -147,7 +147,7 @@ class Arrays(Message, typename="test_msgs/msg/Arrays"):
 
 
 class BoundedPlainSequences(Message, typename="test_msgs/msg/BoundedPlainSequences"):
-    """BoundedPlainSequences."""
+    """For tests: every kind of field but strings in sequences of at most three."""
 
     bool_values: Annotated[Bools, Sequence[bool, 3]] = DEFAULT
     byte_values: Annotated[Bytes, Sequence[byte, 3]] = DEFAULT
@@ -182,7 +182,7 @@ class BoundedPlainSequences(Message, typename="test_msgs/msg/BoundedPlainSequenc
 
 
 class BoundedSequences(Message, typename="test_msgs/msg/BoundedSequences"):
-    """BoundedSequences."""
+    """For tests: every kind of field in sequences of at most three."""
 
     bool_values: Annotated[Bools, Sequence[bool, 3]] = DEFAULT
     byte_values: Annotated[Bytes, Sequence[byte, 3]] = DEFAULT
@@ -219,11 +219,11 @@ class BoundedSequences(Message, typename="test_msgs/msg/BoundedSequences"):
 
 
 class Empty(Message, typename="test_msgs/msg/Empty"):
-    """Empty."""
+    """For tests: no fields."""
 
 
 class UnboundedSequences(Message, typename="test_msgs/msg/UnboundedSequences"):
-    """UnboundedSequences."""
+    """For tests: every kind of field in sequences of any length."""
 
     bool_values: Annotated[Bools, Sequence[bool]] = DEFAULT
     byte_values: Annotated[Bytes, Sequence[byte]] = DEFAULT
@@ -260,7 +260,7 @@ class UnboundedSequences(Message, typename="test_msgs/msg/UnboundedSequences"):
 
 
 class MultiNested(Message, typename="test_msgs/msg/MultiNested"):
-    """MultiNested."""
+    """For tests: messages of arrays and sequences, in arrays and sequences."""
 
     array_of_arrays: Arrays = DEFAULT
     array_of_bounded_sequences: BoundedSequences = DEFAULT
@@ -282,13 +282,13 @@ class MultiNested(Message, typename="test_msgs/msg/MultiNested"):
 
 
 class Nested(Message, typename="test_msgs/msg/Nested"):
-    """Nested."""
+    """For tests: a message in a message."""
 
     basic_types_value: BasicTypes = DEFAULT
 
 
 class Strings(Message, typename="test_msgs/msg/Strings"):
-    """Strings."""
+    """For tests: strings with and without bounds, alone and in containers."""
 
     string_value: str = ""
     bounded_string_value: Bounded[str, 10] = ""
@@ -301,7 +301,7 @@ class Strings(Message, typename="test_msgs/msg/Strings"):
 
 
 class WStrings(Message, typename="test_msgs/msg/WStrings"):
-    """WStrings."""
+    """For tests: wide strings with and without bounds, alone and in containers."""
 
     wstring_value: wstring = ""
     bounded_wstring_value: Bounded[wstring, 10] = ""

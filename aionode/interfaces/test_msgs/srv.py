@@ -32,7 +32,7 @@ __all__ = ["Arrays", "BasicTypes", "Empty"]
 
 
 class Arrays(ServiceType, typename="test_msgs/srv/Arrays"):
-    """Arrays."""
+    """For tests: a service of arrays."""
 
     class Request(Message):
         """The request of Arrays."""
@@ -72,7 +72,7 @@ class Arrays(ServiceType, typename="test_msgs/srv/Arrays"):
 
 
 class BasicTypes(ServiceType, typename="test_msgs/srv/BasicTypes"):
-    """BasicTypes."""
+    """For tests: a service of every primitive kind of field."""
 
     class Request(Message):
         """The request of BasicTypes."""
@@ -112,7 +112,7 @@ class BasicTypes(ServiceType, typename="test_msgs/srv/BasicTypes"):
 
 
 class Empty(ServiceType, typename="test_msgs/srv/Empty"):
-    """Empty."""
+    """For tests: a service without fields."""
 
     class Request(Message):
         """The request of Empty."""

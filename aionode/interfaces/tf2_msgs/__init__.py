@@ -1,1 +1,1 @@
-"""Interfaces of tf2_msgs."""
+"""Interfaces of tf2_msgs: coordinate frames."""

@@ -12,10 +12,20 @@ __all__ = ["LookupTransform"]
 
 
 class LookupTransform(ActionType, typename="tf2_msgs/action/LookupTransform"):
-    """LookupTransform."""
+    """Ask a transform server for the transform between two frames."""
 
     class Goal(Message):
-        """The goal of LookupTransform."""
+        """Which transform to look up.
+
+        Attributes:
+            target_frame: The frame to express things in.
+            source_frame: The frame they are in.
+            source_time: When; all zeros mean the latest.
+            timeout: How long to wait for it.
+            target_time: When to look at the target frame; only if `advanced`.
+            fixed_frame: The frame that stands still between both times; only if `advanced`.
+            advanced: Whether the two frames are looked at at different times.
+        """
 
         target_frame: str = ""
         source_frame: str = ""
@@ -26,10 +36,10 @@ class LookupTransform(ActionType, typename="tf2_msgs/action/LookupTransform"):
         advanced: bool = False
 
     class Result(Message):
-        """The result of LookupTransform."""
+        """The transform, or why there is none."""
 
         transform: TransformStamped = DEFAULT
         error: TF2Error = DEFAULT
 
     class Feedback(Message):
-        """The feedback of LookupTransform."""
+        """Nothing: there is none."""

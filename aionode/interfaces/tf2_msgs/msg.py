@@ -12,7 +12,7 @@ __all__ = ["TF2Error", "TFMessage"]
 
 
 class TF2Error(Message, typename="tf2_msgs/msg/TF2Error"):
-    """TF2Error."""
+    """Why a transform was not found: one of the constants, and a text."""
 
     NO_ERROR: ClassVar[uint8] = 0
     LOOKUP_ERROR: ClassVar[uint8] = 1
@@ -27,6 +27,6 @@ class TF2Error(Message, typename="tf2_msgs/msg/TF2Error"):
 
 
 class TFMessage(Message, typename="tf2_msgs/msg/TFMessage"):
-    """TFMessage."""
+    """Transforms between coordinate frames, as ``/tf`` and ``/tf_static`` carry them."""
 
     transforms: Annotated[list[TransformStamped], Sequence[TransformStamped]] = DEFAULT

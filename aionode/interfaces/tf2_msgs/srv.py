@@ -9,12 +9,12 @@ __all__ = ["FrameGraph"]
 
 
 class FrameGraph(ServiceType, typename="tf2_msgs/srv/FrameGraph"):
-    """FrameGraph."""
+    """Ask for the tree of coordinate frames."""
 
     class Request(Message):
         """The request of FrameGraph."""
 
     class Response(Message):
-        """The response of FrameGraph."""
+        """The tree, as YAML."""
 
         frame_yaml: str = ""

@@ -1,1 +1,1 @@
-"""Interfaces of trajectory_msgs."""
+"""Interfaces of trajectory_msgs: movements of joints."""

@@ -19,7 +19,15 @@ __all__ = [
 
 
 class JointTrajectoryPoint(Message, typename="trajectory_msgs/msg/JointTrajectoryPoint"):
-    """JointTrajectoryPoint."""
+    """Where joints shall be at one time. The lists go together by index; one may be empty.
+
+    Attributes:
+        positions: In rad, or in m for a joint that slides.
+        velocities: In rad/s or m/s.
+        accelerations: In rad/s² or m/s².
+        effort: In N·m or N.
+        time_from_start: When, after the trajectory begins.
+    """
 
     positions: Annotated[Floats, Sequence[float64]] = DEFAULT
     velocities: Annotated[Floats, Sequence[float64]] = DEFAULT
@@ -29,7 +37,7 @@ class JointTrajectoryPoint(Message, typename="trajectory_msgs/msg/JointTrajector
 
 
 class JointTrajectory(Message, typename="trajectory_msgs/msg/JointTrajectory"):
-    """JointTrajectory."""
+    """How joints shall move: points in time for the joints of `joint_names`."""
 
     header: Header = DEFAULT
     joint_names: Annotated[list[str], Sequence[str]] = DEFAULT
@@ -39,7 +47,7 @@ class JointTrajectory(Message, typename="trajectory_msgs/msg/JointTrajectory"):
 class MultiDOFJointTrajectoryPoint(
     Message, typename="trajectory_msgs/msg/MultiDOFJointTrajectoryPoint"
 ):
-    """MultiDOFJointTrajectoryPoint."""
+    """Where such joints shall be at one time; in m, m/s, m/s² and rad."""
 
     transforms: Annotated[list[Transform], Sequence[Transform]] = DEFAULT
     velocities: Annotated[list[Twist], Sequence[Twist]] = DEFAULT
@@ -48,7 +56,7 @@ class MultiDOFJointTrajectoryPoint(
 
 
 class MultiDOFJointTrajectory(Message, typename="trajectory_msgs/msg/MultiDOFJointTrajectory"):
-    """MultiDOFJointTrajectory."""
+    """How joints that move along or about several axes shall move."""
 
     header: Header = DEFAULT
     joint_names: Annotated[list[str], Sequence[str]] = DEFAULT

@@ -1,1 +1,1 @@
-"""Interfaces of type_description_interfaces."""
+"""Interfaces of type_description_interfaces: descriptions of types."""

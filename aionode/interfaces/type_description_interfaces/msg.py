@@ -18,7 +18,14 @@ __all__ = [
 
 
 class FieldType(Message, typename="type_description_interfaces/msg/FieldType"):
-    """FieldType."""
+    """The type of a field.
+
+    Attributes:
+        type_id: One of the constants.
+        capacity: Size of an array, or bound of a sequence.
+        string_capacity: The longest string, in characters; 0 is no limit.
+        nested_type_name: ROS name of a message type.
+    """
 
     FIELD_TYPE_NOT_SET: ClassVar[uint8] = 0
     FIELD_TYPE_NESTED_TYPE: ClassVar[uint8] = 1
@@ -117,7 +124,7 @@ class FieldType(Message, typename="type_description_interfaces/msg/FieldType"):
 
 
 class Field(Message, typename="type_description_interfaces/msg/Field"):
-    """Field."""
+    """A field of a type: its name, type and default as text."""
 
     name: str = ""
     type: FieldType = DEFAULT
@@ -127,21 +134,21 @@ class Field(Message, typename="type_description_interfaces/msg/Field"):
 class IndividualTypeDescription(
     Message, typename="type_description_interfaces/msg/IndividualTypeDescription"
 ):
-    """IndividualTypeDescription."""
+    """A message type: its ROS name and fields."""
 
     type_name: Bounded[str, 255] = ""
     fields: Annotated[list[Field], Sequence[Field]] = DEFAULT
 
 
 class KeyValue(Message, typename="type_description_interfaces/msg/KeyValue"):
-    """KeyValue."""
+    """A value with what it is called, both as text."""
 
     key: str = ""
     value: str = ""
 
 
 class TypeDescription(Message, typename="type_description_interfaces/msg/TypeDescription"):
-    """TypeDescription."""
+    """A message type and all those it is made of: what its hash is computed from."""
 
     type_description: IndividualTypeDescription = DEFAULT
     referenced_type_descriptions: Annotated[
@@ -150,7 +157,9 @@ class TypeDescription(Message, typename="type_description_interfaces/msg/TypeDes
 
 
 class TypeSource(Message, typename="type_description_interfaces/msg/TypeSource"):
-    """TypeSource."""
+    """The text that a type was defined with; `encoding` is ``msg``, ``srv``, ``action`` or ``idl``.
+
+    """
 
     type_name: str = ""
     encoding: str = ""

@@ -14,17 +14,17 @@ __all__ = ["GetTypeDescription"]
 class GetTypeDescription(
     ServiceType, typename="type_description_interfaces/srv/GetTypeDescription"
 ):
-    """GetTypeDescription."""
+    """Ask a node how it defines a type."""
 
     class Request(Message):
-        """The request of GetTypeDescription."""
+        """ROS name and hash of the type, and whether the source text is wanted."""
 
         type_name: str = ""
         type_hash: str = ""
         include_type_sources: bool = False
 
     class Response(Message):
-        """The response of GetTypeDescription."""
+        """The description, or why there is none."""
 
         successful: bool = False
         failure_reason: str = ""

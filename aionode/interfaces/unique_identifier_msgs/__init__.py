@@ -1,1 +1,1 @@
-"""Interfaces of unique_identifier_msgs."""
+"""Interfaces of unique_identifier_msgs: unique ids."""

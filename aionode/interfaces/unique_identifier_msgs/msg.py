@@ -11,6 +11,6 @@ __all__ = ["UUID"]
 
 
 class UUID(Message, typename="unique_identifier_msgs/msg/UUID"):
-    """UUID."""
+    """A universally unique id, as 16 bytes; all zeros mean none."""
 
     uuid: Annotated[Ints, Array[uint8, 16]] = DEFAULT

@@ -1,1 +1,1 @@
-"""Interfaces of visualization_msgs."""
+"""Interfaces of visualization_msgs: things to draw in 3D views."""

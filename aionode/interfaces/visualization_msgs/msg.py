@@ -28,7 +28,7 @@ __all__ = [
 
 
 class ImageMarker(Message, typename="visualization_msgs/msg/ImageMarker"):
-    """ImageMarker."""
+    """Something to draw on an image: `type` and `action` are constants, lengths are in pixels."""
 
     CIRCLE: ClassVar[int32] = 0
     LINE_STRIP: ClassVar[int32] = 1
@@ -54,7 +54,7 @@ class ImageMarker(Message, typename="visualization_msgs/msg/ImageMarker"):
 
 
 class MenuEntry(Message, typename="visualization_msgs/msg/MenuEntry"):
-    """MenuEntry."""
+    """An entry of an interactive marker's menu; `parent_id` of 0 puts it at the top."""
 
     FEEDBACK: ClassVar[uint8] = 0
     ROSRUN: ClassVar[uint8] = 1
@@ -68,21 +68,43 @@ class MenuEntry(Message, typename="visualization_msgs/msg/MenuEntry"):
 
 
 class UVCoordinate(Message, typename="visualization_msgs/msg/UVCoordinate"):
-    """UVCoordinate."""
+    """A place on a texture, from 0 to 1."""
 
     u: float32 = 0.0
     v: float32 = 0.0
 
 
 class MeshFile(Message, typename="visualization_msgs/msg/MeshFile"):
-    """MeshFile."""
+    """A mesh: name and bytes of its file."""
 
     filename: str = ""
     data: Annotated[Bytes, Sequence[uint8]] = DEFAULT
 
 
 class Marker(Message, typename="visualization_msgs/msg/Marker"):
-    """Marker."""
+    """Something to draw in a 3D view.
+
+    Attributes:
+        header: Time, and the frame of `pose`.
+        ns: With `id` it tells this marker from others.
+        id: A marker with the same `ns` and `id` replaces it.
+        type: What to draw, one of the constants.
+        action: Draw it, or remove it or all: one of the constants.
+        pose: Where it is, in m.
+        scale: Its size along its axes, in m; meaning depends on `type`.
+        color: With opacity: `a` of 0 cannot be seen.
+        lifetime: How long to show it; 0 is for ever.
+        frame_locked: Whether it moves along with its frame.
+        points: For lines, lists and triangles, in m.
+        colors: One for each of `points`, or none.
+        texture_resource: Where its texture is, or its name in `texture`.
+        texture: An image for its surface.
+        uv_coordinates: Where on the texture each of `points` is.
+        text: For text.
+        mesh_resource: Where its mesh is, such as ``package://…``.
+        mesh_file: The mesh itself.
+        mesh_use_embedded_materials: Whether the mesh brings its colors.
+    """
 
     ARROW: ClassVar[int32] = 0
     CUBE: ClassVar[int32] = 1
@@ -124,7 +146,7 @@ class Marker(Message, typename="visualization_msgs/msg/Marker"):
 
 
 class InteractiveMarkerControl(Message, typename="visualization_msgs/msg/InteractiveMarkerControl"):
-    """InteractiveMarkerControl."""
+    """How a user can take hold of an interactive marker, and what that does."""
 
     INHERIT: ClassVar[uint8] = 0
     FIXED: ClassVar[uint8] = 1
@@ -151,7 +173,7 @@ class InteractiveMarkerControl(Message, typename="visualization_msgs/msg/Interac
 
 
 class InteractiveMarker(Message, typename="visualization_msgs/msg/InteractiveMarker"):
-    """InteractiveMarker."""
+    """A thing in a 3D view that a user can move and click; `scale` in m."""
 
     header: Header = DEFAULT
     pose: Pose = DEFAULT
@@ -167,7 +189,7 @@ class InteractiveMarker(Message, typename="visualization_msgs/msg/InteractiveMar
 class InteractiveMarkerFeedback(
     Message, typename="visualization_msgs/msg/InteractiveMarkerFeedback"
 ):
-    """InteractiveMarkerFeedback."""
+    """What a user did with an interactive marker."""
 
     KEEP_ALIVE: ClassVar[uint8] = 0
     POSE_UPDATE: ClassVar[uint8] = 1
@@ -188,7 +210,7 @@ class InteractiveMarkerFeedback(
 
 
 class InteractiveMarkerInit(Message, typename="visualization_msgs/msg/InteractiveMarkerInit"):
-    """InteractiveMarkerInit."""
+    """All interactive markers of a server, for viewers that come later."""
 
     server_id: str = ""
     seq_num: uint64 = 0
@@ -196,7 +218,7 @@ class InteractiveMarkerInit(Message, typename="visualization_msgs/msg/Interactiv
 
 
 class InteractiveMarkerPose(Message, typename="visualization_msgs/msg/InteractiveMarkerPose"):
-    """InteractiveMarkerPose."""
+    """Where an interactive marker is now."""
 
     header: Header = DEFAULT
     pose: Pose = DEFAULT
@@ -204,7 +226,7 @@ class InteractiveMarkerPose(Message, typename="visualization_msgs/msg/Interactiv
 
 
 class InteractiveMarkerUpdate(Message, typename="visualization_msgs/msg/InteractiveMarkerUpdate"):
-    """InteractiveMarkerUpdate."""
+    """Which interactive markers of a server are new, moved or gone."""
 
     KEEP_ALIVE: ClassVar[uint8] = 0
     UPDATE: ClassVar[uint8] = 1
@@ -218,6 +240,6 @@ class InteractiveMarkerUpdate(Message, typename="visualization_msgs/msg/Interact
 
 
 class MarkerArray(Message, typename="visualization_msgs/msg/MarkerArray"):
-    """MarkerArray."""
+    """Several things to draw in a 3D view."""
 
     markers: Annotated[list[Marker], Sequence[Marker]] = DEFAULT

@@ -12,13 +12,13 @@ __all__ = ["GetInteractiveMarkers"]
 
 
 class GetInteractiveMarkers(ServiceType, typename="visualization_msgs/srv/GetInteractiveMarkers"):
-    """GetInteractiveMarkers."""
+    """Ask a server for its interactive markers."""
 
     class Request(Message):
         """The request of GetInteractiveMarkers."""
 
     class Response(Message):
-        """The response of GetInteractiveMarkers."""
+        """All its markers, and the number of the last update they contain."""
 
         sequence_number: uint64 = 0
         markers: Annotated[list[InteractiveMarker], Sequence[InteractiveMarker]] = DEFAULT
