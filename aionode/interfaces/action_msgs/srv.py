@@ -17,8 +17,8 @@ class CancelGoal(ServiceType, typename="action_msgs/srv/CancelGoal"):
     class Request(Message):
         """Which goals to cancel.
 
-        An id and no stamp means that goal, a stamp and no id every goal accepted up to then, both mean
-        the one and the others, and neither means all goals. "None" is all zeros.
+        An id and no stamp means that goal, a stamp and no id every goal accepted up to then, both
+        mean the one and the others, and neither means all goals. All zeros are no id or stamp.
         """
 
         goal_info: GoalInfo = DEFAULT

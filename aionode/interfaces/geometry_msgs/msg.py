@@ -170,9 +170,7 @@ class Quaternion(Message, typename="geometry_msgs/msg/Quaternion"):
 
 
 class Pose(Message, typename="geometry_msgs/msg/Pose"):
-    """Where something is and how it is turned: `position` in m, `orientation` as a unit quaternion.
-
-    """
+    """Where something is, in m, and how it is turned, as a unit quaternion."""
 
     position: Point = DEFAULT
     orientation: Quaternion = DEFAULT
@@ -203,8 +201,7 @@ class PoseStamped(Message, typename="geometry_msgs/msg/PoseStamped"):
 class PoseWithCovariance(Message, typename="geometry_msgs/msg/PoseWithCovariance"):
     """A pose and how sure it is.
 
-    `covariance` is a 6 by 6 matrix in m² and rad², row by row over x, y, z and the rotations about x, y, z
-    (fixed axes).
+    `covariance` is 6 by 6 in m² and rad², row by row over x, y, z and the rotations about x, y, z.
     """
 
     pose: Pose = DEFAULT

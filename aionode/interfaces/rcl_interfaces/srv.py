@@ -88,8 +88,11 @@ class ListParameters(ServiceType, typename="rcl_interfaces/srv/ListParameters"):
     """Which parameters a node has."""
 
     class Request(Message):
-        """Which names to list: those with one of `prefixes`, or all, of at most `depth` parts; 0 means any number.
+        """Which names to list.
 
+        Attributes:
+            prefixes: List those that begin with one of these; all names if there are none.
+            depth: Of at most so many parts between dots; 0 means any number.
         """
 
         DEPTH_RECURSIVE: ClassVar[uint64] = 0

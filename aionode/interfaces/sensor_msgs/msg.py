@@ -222,7 +222,7 @@ class Image(Message, typename="sensor_msgs/msg/Image"):
 class Imu(Message, typename="sensor_msgs/msg/Imu"):
     """What an inertial measurement unit measured.
 
-    A covariance of zeros is unknown; -1 as its first element says that the quantity is not measured.
+    A covariance of zeros is unknown; -1 as its first element says that nothing was measured.
 
     Attributes:
         header: When it was measured, and the frame of the unit.
@@ -368,9 +368,7 @@ class MultiEchoLaserScan(Message, typename="sensor_msgs/msg/MultiEchoLaserScan")
 
 
 class NavSatStatus(Message, typename="sensor_msgs/msg/NavSatStatus"):
-    """Whether there is a fix, and which satellite systems are used; `service` adds up the constants.
-
-    """
+    """Whether there is a fix, and the sum of the satellite systems that are used."""
 
     STATUS_UNKNOWN: ClassVar[int8] = -2
     STATUS_NO_FIX: ClassVar[int8] = -1

@@ -31,9 +31,7 @@ class Plane(Message, typename="shape_msgs/msg/Plane"):
 
 
 class SolidPrimitive(Message, typename="shape_msgs/msg/SolidPrimitive"):
-    """A simple solid: `type` is one of the constants, `dimensions` in m in the order that others name.
-
-    """
+    """A simple solid; constants name its type, and which of `dimensions` (in m) is which."""
 
     BOX: ClassVar[uint8] = 1
     SPHERE: ClassVar[uint8] = 2

@@ -157,9 +157,7 @@ class TypeDescription(Message, typename="type_description_interfaces/msg/TypeDes
 
 
 class TypeSource(Message, typename="type_description_interfaces/msg/TypeSource"):
-    """The text that a type was defined with; `encoding` is ``msg``, ``srv``, ``action`` or ``idl``.
-
-    """
+    """The text that a type was defined with; `encoding` is ``msg``, ``srv``, ``action`` or ``idl``."""
 
     type_name: str = ""
     encoding: str = ""
