@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import asyncio
+import errno
+import gc
 import math
+import sys
 import time  # noqa: TID251  # clocks are compared with the machine's
 from collections.abc import Callable
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 import pytest
+import uvloop
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -27,6 +33,8 @@ from aionode.clock import (
     SteadyClock,
     Time,
     TimeJump,
+    base,
+    timerfd,
 )
 from aionode.clock.agenda import Agenda
 from aionode.errors import EntityDestroyedError, TimeSourceChangedError
@@ -428,6 +436,14 @@ async def test_sleeping_for_nothing_takes_one_turn(
     assert turns == [1]
 
 
+@pytest.fixture(params=["kernel", "loop"])
+def alarms(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the kernel's timers, and as on systems that have none."""
+    if request.param == "loop":
+        monkeypatch.setattr(base, "kernel_alarms", lambda _: None)
+
+
+@pytest.mark.usefixtures("alarms")
 @pytest.mark.parametrize("clock_type", REAL_TYPES)
 @pytest.mark.parametrize("duration_ns", [1, 300_000, 1_400_000, 1_600_000])
 async def test_a_sleep_is_never_too_short(clock_type: ClockType, duration_ns: int) -> None:
@@ -571,6 +587,7 @@ async def test_setting_the_system_clock_changes_no_sleep() -> None:
 # Alarms
 
 
+@pytest.mark.usefixtures("alarms")
 async def test_a_machine_alarm_rings_once_and_not_too_early() -> None:
     """Whatever the loop rounds."""
     machine = MachineTime()
@@ -594,6 +611,7 @@ async def test_an_alarm_in_the_past_rings_later_all_the_same(
     alarm.cancel()
 
 
+@pytest.mark.usefixtures("alarms")
 async def test_a_cancelled_alarm_does_not_ring() -> None:
     """Also when its time has come already but the loop has not got to it."""
     machine = MachineTime()
@@ -605,6 +623,96 @@ async def test_a_cancelled_alarm_does_not_ring() -> None:
     machine.call_at(machine.steady_ns() + 1_000_000, later.set)
     await later.wait()
     assert rung == []
+
+
+@pytest.mark.usefixtures("alarms")
+async def test_alarms_ring_in_the_order_of_their_times() -> None:
+    """Whatever the order in which they were set."""
+    machine = MachineTime()
+    rung: list[int] = []
+    done = asyncio.Event()
+    now_ns = machine.steady_ns()
+    machine.call_at(now_ns + 20_000_000, done.set)
+    for delay_ms in (3, 1, 9, 6, -5):
+        machine.call_at(now_ns + delay_ms * 1_000_000, partial(rung.append, delay_ms))
+    await done.wait()
+    assert rung == [-5, 1, 3, 6, 9]
+
+
+def open_files() -> int:
+    """Return how many files this process has open."""
+    return len(list(Path("/proc/self/fd").iterdir()))
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="Linux has timerfd")
+async def test_no_file_is_left_when_no_alarm_waits() -> None:
+    """Neither after one has rung, nor after the last was cancelled."""
+    before = open_files()
+    machine = MachineTime()
+    rung = asyncio.Event()
+    machine.call_at(machine.steady_ns() + 1_000_000, rung.set)
+    cancelled = machine.call_at(machine.steady_ns() + 10**15, rung.set)
+    assert open_files() == before + 1
+    await rung.wait()
+    await settle()
+    assert open_files() == before + 1
+    cancelled.cancel()
+    await settle()
+    assert open_files() == before
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="Linux has timerfd")
+@pytest.mark.parametrize("new_loop", [asyncio.new_event_loop, uvloop.new_event_loop])
+def test_no_file_is_left_by_a_loop_that_ends(
+    new_loop: Callable[[], asyncio.AbstractEventLoop],
+) -> None:
+    """Not even if it is closed while an alarm is waiting."""
+
+    async def main() -> None:
+        machine = MachineTime()
+        machine.call_at(machine.steady_ns() + 10**15, print)
+
+    gc.collect()
+    before = open_files()
+    loop = new_loop()
+    loop.run_until_complete(main())
+    loop.close()
+    del loop
+    gc.collect()
+    assert open_files() == before
+
+
+@pytest.mark.parametrize("broken", ["libc", "open_timer"])
+async def test_without_the_kernels_timers_the_loop_rings(
+    broken: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A system without them, or one that has no file to spare, is less exact, not broken."""
+
+    def fail() -> None:
+        raise OSError(errno.EMFILE, "too many")
+
+    machine = MachineTime()
+    monkeypatch.setattr(timerfd, broken, fail)
+    rung = asyncio.Event()
+    machine.call_at(machine.steady_ns() + 1_000_000, rung.set)
+    await rung.wait()
+
+
+async def test_a_failing_alarm_does_not_silence_the_others() -> None:
+    """Its error is reported by the loop; those due at the same time ring all the same."""
+
+    def fail() -> None:
+        raise ZeroDivisionError
+
+    reported: list[Any] = []
+    asyncio.get_running_loop().set_exception_handler(lambda _, context: reported.append(context))
+    machine = MachineTime()
+    rung = asyncio.Event()
+    when_ns = machine.steady_ns() + 1_000_000
+    machine.call_at(when_ns, fail)
+    machine.call_at(when_ns, rung.set)
+    await rung.wait()
+    assert isinstance(reported[0]["exception"], ZeroDivisionError)
 
 
 # The agenda

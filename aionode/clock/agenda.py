@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from heapq import heapify, heappop, heappush
 from itertools import count
 from typing import TYPE_CHECKING
@@ -61,9 +62,12 @@ class Agenda:
         return None
 
     def fire(self, now_ns: int) -> None:
-        """Call everything due at `now_ns`; what these callbacks add has to wait for the next."""
+        """Call everything due at `now_ns`; what these callbacks add has to wait for the next.
+
+        An exception of a callback comes out; the others are called the next time.
+        """
         heap = self._heap
-        due = []
+        due: deque[Entry] = deque()
         while heap and heap[0][0] <= now_ns:
             entry = heappop(heap)[2]
             entry.agenda = None
@@ -71,11 +75,17 @@ class Agenda:
                 self._cancelled -= 1
             else:
                 due.append(entry)
-        for entry in due:
-            callback = entry.callback
-            if callback is not None:  # an earlier one of this round may have cancelled it
-                entry.callback = None
-                callback()
+        try:
+            while due:
+                entry = due.popleft()
+                callback = entry.callback
+                if callback is not None:  # an earlier one of this round may have cancelled it
+                    entry.callback = None
+                    callback()
+        finally:
+            for entry in due:
+                entry.agenda = self
+                heappush(self._heap, (now_ns, next(self._order), entry))
 
     def note_cancelled(self) -> None:
         """Count one more dead entry, and sweep when most are dead."""
