@@ -13,8 +13,7 @@ from functools import cache
 from typing import Any, TypeAlias, TypeVar
 
 from aionode.errors import MessageError
-from aionode.message import Message, fields, type_name
-from aionode.message import snapshotter
+from aionode.message import Message, fields, snapshotter, type_name
 from aionode.wire.decoding import generate_decoder
 from aionode.wire.encoding import MISFITS, generate_encoder
 from aionode.wire.plain import decode_plainly
@@ -34,7 +33,11 @@ def encode(msg: Message) -> bytes:
         MessageError: A value does not fit its field.
         TypeError: `msg` is not a message.
     """
-    return ENCODERS[msg.__class__](msg)
+    try:
+        function = ENCODERS[msg.__class__]
+    except KeyError:
+        function = encoder(msg.__class__)
+    return function(msg)
 
 
 def decode(msg_type: type[MessageT], data: Data) -> MessageT:
@@ -47,8 +50,11 @@ def decode(msg_type: type[MessageT], data: Data) -> MessageT:
         DecodeError: `data` holds no such message: it is cut, corrupted, or of another type.
         TypeError: `msg_type` is not a message class, or `data` not bytes-like.
     """
-    message: MessageT = DECODERS[msg_type](data)
-    return message
+    try:
+        function = DECODERS[msg_type]
+    except KeyError:
+        function = decoder(msg_type)
+    return function(data)  # type: ignore[no-any-return] # of this type
 
 
 def encoder(cls: type[MessageT]) -> Callable[[MessageT], bytes]:
@@ -57,6 +63,8 @@ def encoder(cls: type[MessageT]) -> Callable[[MessageT], bytes]:
     Raises:
         TypeError: `cls` is not a message class.
     """
+    if cls not in ENCODERS:
+        ENCODERS[cls] = new_encoder(cls)
     return ENCODERS[cls]
 
 
@@ -66,53 +74,47 @@ def decoder(cls: type[MessageT]) -> Callable[[Data], MessageT]:
     Raises:
         TypeError: `cls` is not a message class.
     """
+    if cls not in DECODERS:
+        DECODERS[cls] = new_decoder(cls)
     return DECODERS[cls]
 
 
-class Encoders(dict[Any, Callable[[Any], bytes]]):
-    """The encoder of each class, made when it is first looked up."""
-
-    def __missing__(self, cls: Any) -> Callable[[Any], bytes]:
-        """Make the encoder of a class."""
-        name = type_name(cls)
-        fields(cls)  # tells a service from a message
-        take = snapshotter(cls)
-
-        def encode_unusual(msg: Any) -> bytes:
-            taken = take(msg)
-            try:
-                return function(taken, True)
-            except MISFITS:
-                pass
-            try:
-                # Arrays with gaps between their elements, which a snapshot may share.
-                return function(copy.deepcopy(taken), True)
-            except struct.error as error:
-                raise MessageError(name, f"does not fit into a message ({error})") from error
-
-        function = self[cls] = generate_encoder(cls, encode_unusual)
-        return function
+ENCODERS: dict[type[Message], Callable[[Any], bytes]] = {}
+DECODERS: dict[type[Message], Callable[[Any], Any]] = {}
 
 
-class Decoders(dict[Any, Callable[[Any], Any]]):
-    """The decoder of each class, made when it is first looked up."""
+def new_encoder(cls: type[Message]) -> Callable[[Any], bytes]:
+    """Return the encoder of a class, newly made."""
+    fields(cls)  # tells a service from a message
+    take = snapshotter(cls)
 
-    def __missing__(self, cls: Any) -> Callable[[Any], Any]:
-        """Make the decoder of a class."""
-        fields(cls)  # tells a service from a message
+    def encode_unusual(msg: Any) -> bytes:
+        taken = take(msg)
+        try:
+            return fast(taken, True)
+        except MISFITS:
+            pass
+        try:
+            # Arrays with gaps between their elements, which a snapshot may share.
+            return fast(copy.deepcopy(taken), True)
+        except struct.error as error:
+            raise MessageError(type_name(cls), f"too large to be sent ({error})") from error
 
-        def decode_carefully(data: bytes) -> Any:
-            return decode_plainly(cls, memoryview(data))
-
-        def decode_other(data: Any) -> Any:
-            return view_decoder(cls)(read_only(data))
-
-        function = self[cls] = generate_decoder(cls, decode_carefully, decode_other)
-        return function
+    fast = generate_encoder(cls, encode_unusual)
+    return fast
 
 
-ENCODERS = Encoders()
-DECODERS = Decoders()
+def new_decoder(cls: type[Message]) -> Callable[[Any], Any]:
+    """Return the decoder of a class, newly made."""
+    fields(cls)  # tells a service from a message
+
+    def decode_carefully(data: bytes) -> Any:
+        return decode_plainly(cls, memoryview(data))
+
+    def decode_other(data: Any) -> Any:
+        return view_decoder(cls)(read_only(data))
+
+    return generate_decoder(cls, decode_carefully, decode_other)
 
 
 @cache

@@ -8,6 +8,7 @@ it may be read after all.
 from __future__ import annotations
 
 import struct
+from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -20,11 +21,10 @@ from aionode.wire.layout import (
     PRIMITIVES,
     is_small,
     minimum_size,
-    padding,
     uniform_alignment,
 )
 from aionode.wire.source import Misfit, Source
-from aionode.wire.texts import TextList, read_wide_texts, wide_text
+from aionode.wire.texts import TextsReader, read_wide_texts, wide_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -39,12 +39,15 @@ MISFITS = (Misfit, struct.error, IndexError, ValueError)
 PLACES = 8
 """Places that differ in alignment."""
 
+LONGEST_KEPT = 256
+"""Bytes of a string that is kept, in case that the next message has the same."""
+
 MAGIC = int.from_bytes(HEADER[:2], "little")
 
 
 def bools(data: Any, count: int, pos: int) -> Any:
     """Return an array of bool over `data`; a copy if another byte than 0 and 1 means True."""
-    import numpy as np  # noqa: PLC0415 - only where a type needs it
+    import numpy as np
 
     numbers = np.frombuffer(data, np.uint8, count, pos)
     if count and numbers.max() > 1:
@@ -54,7 +57,7 @@ def bools(data: Any, count: int, pos: int) -> Any:
 
 
 def generate_decoder(
-    cls: type[Any],
+    cls: Any,
     plain: Callable[[Any], Any],
     other: Callable[[Any], Any] | None = None,
 ) -> Callable[[Any], Any]:
@@ -70,10 +73,20 @@ def generate_decoder(
 
 @cache
 def element_decoder(
-    cls: type[Any], *, of_bytes: bool
+    cls: Any, *, of_bytes: bool
 ) -> Callable[[Any, memoryview, int], tuple[Any, int]]:
     """Return the function that reads one message, and gives it and the new `pos`."""
     return Decoding(cls, of_bytes=of_bytes).element()
+
+
+@dataclass(frozen=True, slots=True)
+class RunArray:
+    """An array of fixed size in a run: where it goes, of what it is, and where it lies."""
+
+    target: str
+    kind: str
+    offset: int
+    count: int
 
 
 class Decoding:
@@ -84,13 +97,14 @@ class Decoding:
     modulo `_modulus`.
     """
 
-    def __init__(self, cls: type[Any], *, of_bytes: bool) -> None:
+    def __init__(self, cls: Any, *, of_bytes: bool) -> None:
         self._cls = cls
         self._of_bytes = of_bytes
         self._source = Source()
         self._layout = "<"
         self._targets: list[str] = []
-        self._afterwards: list[str] = []
+        self._arrays: list[RunArray] = []
+        self._magic = ""
         self._has_view = False
         self._offset: int | None = 0
         self._modulus, self._residue = PLACES, -len(HEADER) % PLACES
@@ -102,12 +116,12 @@ class Decoding:
         source = self._source
         fallback = source.constant("plain", plain)
         misfits = source.constant("misfits", MISFITS)
-        magic = source.local("magic")
         if other is not None:
-            source.line(f"if data.__class__ is not bytes: return {source.constant('other', other)}(data)")
+            name = source.constant("other", other)
+            source.line(f"if data.__class__ is not bytes: return {name}(data)")
         with source.block("try:"):
-            self._value("Hxx", 1, magic)
-            self._afterwards.append(f"if {magic} != {MAGIC}: raise Misfit")
+            self._magic = source.local("magic")
+            self._value("Hxx", 1, self._magic)
             result = self._message(self._cls)
             self._flush()
             source.line(f"return {result}")
@@ -121,18 +135,18 @@ class Decoding:
         self._unknown()
         result = self._message(self._cls)
         self._flush()
-        self._source.reads_position()
         self._source.line(f"return {result}, pos")
         return self._source.function("def read(data, view, pos):", type_name(self._cls))
 
     # What a message consists of.
 
-    def _message(self, cls: type[Any]) -> str:
+    def _message(self, cls: Any) -> str:
         """Read all fields; return the expression that makes the message of them."""
         described = fields(cls)
         if not described:
             self._value("x", 1)
-        values = [f"{field.name}={self._field(field.type, field.name)}" for field in described]
+        # By position, in the order of the fields: by name would cost twice as much.
+        values = [self._field(field.type, field.name) for field in described]
         return f"{self._source.constant(cls.__name__, cls)}({', '.join(values)})"
 
     def _field(self, kind: FieldType, name: str) -> str:
@@ -163,20 +177,36 @@ class Decoding:
             source.line(f"{local} = {source.constant('wide', wide_text)}(data[{start}:pos])")
         else:
             start = self._skip(size, 1)
+            self._narrow_text(local, start, size)
+        if kind.string_bound is not None:
+            source.require(f"len({local}) <= {kind.string_bound}")
+
+    def _narrow_text(self, local: str, start: str, size: str) -> None:
+        source = self._source
+        if not self._of_bytes or self._has_view:
             source.line("if data[pos - 1]: raise Misfit")
             text = f"data[{start}:pos - 1]"
             # The first form is faster, and slices of bytes only have it.
-            source.line(f"{local} = " + (f"{text}.decode()" if self._of_bytes else f"str({text}, 'utf-8')"))
-        source.reads_position()
-        if kind.string_bound is not None:
-            source.require(f"len({local}) <= {kind.string_bound}")
+            made = f"{text}.decode()" if self._of_bytes else f"str({text}, 'utf-8')"
+            source.line(f"{local} = {made}")
+            return
+        # Frame ids, encodings and the like are the same in every message of a stream. The length
+        # is compared with the text, so that data that ends early equals nothing known.
+        last = source.variable("last", (b"", ""))
+        raw, known = source.local("raw"), source.local("known")
+        source.line(f"{raw} = data[{start} - {COUNT_SIZE}:pos]")
+        source.line(f"{known}, {local} = {last}")
+        with source.block(f"if {raw} != {known}:"):
+            source.line(f"if len({raw}) != {size} + {COUNT_SIZE} or {raw}[-1]: raise Misfit")
+            source.line(f"{local} = {raw}[{COUNT_SIZE}:-1].decode()")
+            source.line(f"if {size} <= {LONGEST_KEPT}: {last} = {raw}, {local}")
 
     def _texts(self, kind: FieldType, local: str) -> None:
         source = self._source
         count = self._count(kind)
         self._align(COUNT_SIZE)
         wide = kind.kind == "wstring"
-        read = source.constant("texts", read_wide_texts if wide else TextList())
+        read = source.constant("texts", read_wide_texts if wide else TextsReader())
         source.line(f"{local}, pos = {read}(data, {self._place()}, {count})")
         self._unknown()
         if kind.string_bound is not None:
@@ -190,36 +220,55 @@ class Decoding:
         start = self._skip(count, 1)
         self._source.require("pos <= len(data)")
         self._source.line(f"{local} = {self._view()}[{start}:pos]")
-        self._source.reads_position()
 
     def _numbers(self, kind: FieldType, local: str) -> None:
-        import numpy as np  # noqa: PLC0415 - only where a type needs it
-
         source = self._source
         primitive = PRIMITIVES[kind.kind]
-        dtype = np.dtype(f"<{primitive.dtype}")
-        if kind.kind == "bool":
-            make = f"{source.constant('bools', bools)}(data"
-        else:
-            make = f"{source.constant('frombuffer', np.frombuffer)}(data"
-            make += f", {source.constant('dtype', dtype)}"
         if kind.container == "array":
-            place = self._value(f"{kind.size * primitive.size}x", primitive.size)
-            self._afterwards.append(f"{local} = {make}, {kind.size}, {place})")
+            offset = self._value(f"{kind.size * primitive.size}x", primitive.size)
+            self._arrays.append(RunArray(local, kind.kind, offset, kind.size))
             return
         count = self._count(kind)
         self._align_elements(primitive.size, count)
         empty = source.constant("empty", EMPTY[DTYPES[kind.kind]]())
-        source.reads_position()
-        source.line(f"{local} = {make}, {count}, pos) if {count} else {empty}")
+        source.line(f"{local} = {self._array(kind.kind, count, 'pos')} if {count} else {empty}")
         source.position(f"pos += {primitive.size} * {count}")
 
-    def _messages(self, kind: FieldType, cls: type[Any], local: str) -> None:
+    def _array(self, kind: str, count: str, place: str) -> str:
+        """Return the expression that makes an array over `data`."""
+        import numpy as np
+
+        if kind == "bool":
+            return f"{self._source.constant('bools', bools)}(data, {count}, {place})"
+        dtype = self._source.constant("dtype", np.dtype(f"<{PRIMITIVES[kind].dtype}"))
+        make = self._source.constant("frombuffer", np.frombuffer)
+        return f"{make}(data, {dtype}, {count}, {place})"
+
+    def _run_arrays(self) -> None:
+        """Make the arrays of the run: those of one kind as slices of one, which costs less."""
+        source = self._source
+        for kind in dict.fromkeys(array.kind for array in self._arrays):
+            arrays = [array for array in self._arrays if array.kind == kind]
+            first, last, size = arrays[0], arrays[-1], PRIMITIVES[kind].size
+            if len(arrays) == 1 or kind == "bool":
+                for array in arrays:
+                    made = self._array(kind, str(array.count), self._place(array.offset))
+                    source.line(f"{array.target} = {made}")
+                continue
+            count = (last.offset - first.offset) // size + last.count
+            all_ = source.local("all")
+            source.line(f"{all_} = {self._array(kind, str(count), self._place(first.offset))}")
+            for array in arrays:
+                start = (array.offset - first.offset) // size
+                part = source.constant("part", slice(start, start + array.count))
+                source.line(f"{array.target} = {all_}[{part}]")
+        self._arrays.clear()
+
+    def _messages(self, kind: FieldType, cls: Any, local: str) -> None:
         source = self._source
         count = self._count(kind)
         self._flush()
         if kind.container in ("bounded", "unbounded"):
-            source.reads_position()
             source.require(f"{minimum_size(cls)} * {count} <= len(data) - {self._place()}")
             if self._uniform_messages(cls, count, local):
                 return
@@ -229,7 +278,6 @@ class Decoding:
             source.line(f"pos = {self._offset}")
         self._unknown()
         if kind.container == "single":
-            source.reads_position()
             source.line(f"{local}, pos = {read}(data, {view}, pos)")
             return
         item = source.local("item")
@@ -238,7 +286,7 @@ class Decoding:
             source.line(f"{item}, pos = {read}(data, {view}, pos)")
             source.line(f"{local}.append({item})")
 
-    def _uniform_messages(self, cls: type[Any], count: str, local: str) -> bool:
+    def _uniform_messages(self, cls: Any, count: str, local: str) -> bool:
         """Read messages of scalars without padding by one Struct, if `cls` is so."""
         alignment = uniform_alignment(cls)
         if alignment is None or has_arrays(cls):
@@ -256,7 +304,6 @@ class Decoding:
         unpack = source.constant("unpack", element.iter_unpack)
         elements = f"{unpack}({self._view()}[{start}:pos])"
         source.line(f"{local} = [{result} for {', '.join(targets)}, in {elements}]")
-        source.reads_position()
         return True
 
     # How it is read.
@@ -274,17 +321,17 @@ class Decoding:
             self._source.require(f"{count} <= {kind.size}")
         return count
 
-    def _value(self, code: str, alignment: int, target: str = "") -> str:
-        """Read one value of fixed size into `target`; return the expression of its place."""
+    def _value(self, code: str, alignment: int, target: str = "") -> int:
+        """Read one value of fixed size into `target`; return its offset from the run's start."""
         if alignment > self._modulus:
             self._align(alignment)
         at = self._residue + struct.calcsize(self._layout)
         gap = -at % alignment
-        place = self._place(struct.calcsize(self._layout) + gap)
+        offset = struct.calcsize(self._layout) + gap
         self._layout += f"{gap}x{code}" if gap else code
         if target:
             self._targets.append(target)
-        return place
+        return offset
 
     def _flush(self) -> None:
         """Read the run collected so far."""
@@ -292,14 +339,14 @@ class Decoding:
         source = self._source
         if self._targets:
             unpack = source.constant("unpack", packed.unpack_from)
-            source.reads_position()
-            source.line(f"{', '.join(self._targets)}, = {unpack}(data, {self._place()})")
+            at = "" if self._offset == 0 else f", {self._place()}"
+            source.line(f"{', '.join(self._targets)}, = {unpack}(data{at})")
         elif packed.size:
-            source.reads_position()
             source.require(f"len(data) >= {self._place(packed.size)}")
-        for statement in self._afterwards:
-            source.line(statement)
-        self._layout, self._targets, self._afterwards = "<", [], []
+        self._run_arrays()
+        if self._magic:
+            source.require(f"{self._magic} == {MAGIC}")
+        self._layout, self._targets, self._magic = "<", [], ""
         self._advance(packed.size)
 
     def _place(self, further: int = 0) -> str:
@@ -322,7 +369,6 @@ class Decoding:
         if alignment <= self._modulus:
             self._advance(-self._residue % alignment)
             return
-        self._source.reads_position()
         self._source.line(f"pos = {aligned(alignment)}")
         self._modulus, self._residue = alignment, 0
 
@@ -332,7 +378,6 @@ class Decoding:
             self._source.line(f"pos = {self._offset}")
             self._offset = None
         if alignment > COUNT_SIZE and (self._modulus < alignment or self._residue):
-            self._source.reads_position()
             self._source.line(f"if {count}: pos = {aligned(alignment)}")
         self._unknown(self._kept(alignment))
 
@@ -349,7 +394,6 @@ class Decoding:
             source.line(f"pos = {start} + {size}")
         else:
             start = source.local("start")
-            source.reads_position()
             source.line(f"{start} = pos")
             source.line(f"pos += {size}")
         self._unknown(self._kept(alignment))
@@ -383,7 +427,7 @@ def aligned(alignment: int) -> str:
     return f"pos + {alignment - 1} & -{alignment}"
 
 
-def has_arrays(cls: type[Any]) -> bool:
+def has_arrays(cls: Any) -> bool:
     """Tell whether a message of fixed size holds arrays."""
     kinds = [field.type for field in fields(cls)]
     return any(

@@ -1,17 +1,17 @@
 """Writes, for one message type, the function that encodes its messages.
 
-Single nested messages are unfolded, so that runs of values of fixed size, across nesting, are packed
-by one `struct.Struct`. Where a run starts after something of variable length, there is one Struct
-for each of the eight places that `pos` can have, all made ahead. The function takes messages in
-their usual form (ndarrays of the field's dtype, lists of str); for anything else it leaves the
-work, and the verdict, to the plain codec.
+Single nested messages are unfolded, so that runs of values of fixed size, across nesting, are
+packed by one `struct.Struct`. Where a run starts after something of variable length, there is one
+Struct for each of the eight places, differing in alignment, that `pos` can have. The function takes
+messages in their usual form (ndarrays of the field's dtype, lists of str); all others it leaves to
+a slower one, which has the verdict too.
 """
 
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
 from functools import cache
+from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 from aionode.message import fields, type_name
@@ -24,8 +24,17 @@ from aionode.wire.layout import (
     padding,
     uniform_alignment,
 )
+from aionode.wire.packing import (
+    PHASES,
+    TEXT,
+    Item,
+    TextPacking,
+    lay_out,
+    modulus_of,
+    phase_structs,
+)
 from aionode.wire.source import Misfit, Source
-from aionode.wire.texts import padded_texts, wide_bytes, wide_texts
+from aionode.wire.texts import TextsWriter, wide_bytes, wide_texts
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -45,18 +54,6 @@ MISFITS = (
 )
 """What the generated function meets when a message is not of the usual form."""
 
-PHASES = 8
-"""Places that differ in alignment."""
-
-
-@dataclass(frozen=True, slots=True)
-class Item:
-    """One value of a run: its code for `struct`, and the expression that is packed, if any."""
-
-    code: str
-    alignment: int
-    value: str = ""
-
 
 def octets(value: object) -> Any:
     """Return `value` if its bytes are what is sent."""
@@ -67,16 +64,28 @@ def octets(value: object) -> Any:
     raise Misfit
 
 
-def base_array(value: object) -> Any:
-    """Return an object of a subclass of ndarray, such as a memmap, as an ndarray."""
-    import numpy as np  # noqa: PLC0415 - only where a type needs it
+def whole_numbers(*values: object) -> None:
+    """Raise where a value is a bool: struct takes it, and whatever else is no int it refuses."""
+    if any(isinstance(value, bool) for value in values):
+        raise Misfit
 
-    if not isinstance(value, np.ndarray):
+
+def real_numbers(*values: object) -> None:
+    """Raise where a value only behaves like a number, as a bool, a Decimal or an array do."""
+    if not all(isinstance(value, Real) and not isinstance(value, bool) for value in values):
+        raise Misfit
+
+
+def base_array(value: object, dtype: Any) -> Any:
+    """Return what is an ndarray of this dtype, but of a subclass such as memmap, as an ndarray."""
+    import numpy as np
+
+    if not isinstance(value, np.ndarray) or value.dtype != dtype:
         raise Misfit
     return value.view(np.ndarray)
 
 
-def generate_encoder(cls: type[Any], plain: Callable[[Any], bytes]) -> Callable[..., bytes]:
+def generate_encoder(cls: Any, plain: Callable[[Any], bytes]) -> Callable[..., bytes]:
     """Return the function that encodes messages of class `cls`.
 
     Args:
@@ -88,7 +97,7 @@ def generate_encoder(cls: type[Any], plain: Callable[[Any], bytes]) -> Callable[
 
 
 @cache
-def element_encoder(cls: type[Any]) -> Callable[[list[bytes], int, Any], int]:
+def element_encoder(cls: Any) -> Callable[[list[bytes], int, Any], int]:
     """Return the function that appends one message to a list of parts, and gives the new `pos`."""
     return Encoding(cls).element()
 
@@ -100,10 +109,13 @@ class Encoding:
     on the message; in any case that it is `_residue` modulo `_modulus`.
     """
 
-    def __init__(self, cls: type[Any]) -> None:
+    def __init__(self, cls: Any) -> None:
         self._cls = cls
         self._source = Source()
         self._run: list[Item] = []
+        self._ints: list[str] = []
+        self._floats: list[str] = []
+        self._text_size = ""
         self._parts: list[str] = []
         self._listed = False
         self._offset: int | None = 0
@@ -121,10 +133,11 @@ class Encoding:
             self._flush()
             if self._listed:
                 self._spill()
-                result = "out"
+                source.line(f"return {join}(out)")
+            elif len(self._parts) > 1:
+                source.line(f"return {join}(({', '.join(self._parts)}))")
             else:
-                result = f"({', '.join(self._parts)},)"
-            source.line(f"return {join}({result})")
+                source.line(f"return {self._parts[0]}")
         with source.block(f"except {misfits}:"):
             source.line("if again: raise")
         source.line(f"return {fallback}(msg)")
@@ -138,13 +151,12 @@ class Encoding:
         self._message(self._cls, "msg", after=1)
         self._flush()
         self._spill()
-        self._source.reads_position()
         self._source.line("return pos")
         return self._source.function("def write(out, pos, msg):", type_name(self._cls))
 
     # What a message consists of.
 
-    def _message(self, cls: type[Any], owner: str, after: int) -> None:
+    def _message(self, cls: Any, owner: str, after: int) -> None:
         """Write all fields; what follows them is aligned to `after`."""
         self._source.require(f"{owner}.__class__ is {self._source.constant('T', cls)}")
         described = fields(cls)
@@ -158,6 +170,7 @@ class Encoding:
                 f"{owner}.{field.name}",
                 first_alignment(following[0].type) if following else after,
             )
+        self._check_scalars()
 
     def _field(self, kind: FieldType, name: str, value: str, after: int) -> None:
         if kind.container == "single":
@@ -179,7 +192,7 @@ class Encoding:
         else:
             self._numbers(kind, local)
 
-    def _nested(self, cls: type[Any], name: str, value: str, after: int) -> None:
+    def _nested(self, cls: Any, name: str, value: str, after: int) -> None:
         local = self._source.local(name)
         self._source.line(f"{local} = {value}")
         if is_small(cls):
@@ -187,17 +200,33 @@ class Encoding:
         else:
             self._flush()
             self._spill()
+            self._forget_offset()
             self._element(cls, local)
 
     def _scalar(self, kind: str, name: str, value: str) -> None:
+        source = self._source
+        local = source.local(name)
+        source.line(f"{local} = {value}")
+        # What struct would take, though it does not fit: the truth of anything, and what has a
+        # number's methods. Ranges it knows.
         if kind == "bool":
-            # struct packs the truth of anything.
-            local = self._source.local(name)
-            self._source.line(f"{local} = {value}")
-            self._source.require(f"{local} is True or {local} is False")
-            value = local
+            source.require(f"{local} is True or {local} is False")
+        elif kind.startswith("float"):
+            self._floats.append(local)
+        elif kind != "byte":
+            self._ints.append(local)
         primitive = PRIMITIVES[kind]
-        self._run.append(Item(primitive.code, primitive.size, value))
+        self._run.append(Item(primitive.code, primitive.size, local))
+
+    def _check_scalars(self) -> None:
+        """Write one statement for all numbers so far: most are of Python's own classes."""
+        for name, look in (("int", whole_numbers), ("float", real_numbers)):
+            values = self._ints if name == "int" else self._floats
+            if values:
+                usual = " and ".join(f"{value}.__class__ is {name}" for value in values)
+                closer = self._source.constant("check", look)
+                self._source.line(f"if not ({usual}): {closer}({', '.join(values)})")
+                values.clear()
 
     def _text(self, kind: FieldType, name: str, value: str) -> None:
         source = self._source
@@ -215,7 +244,11 @@ class Encoding:
             source.line(f"{local} = {source.constant('utf8', str.encode)}({value})")
             source.line(f"{size} = len({local})")
             self._run.append(Item("I", COUNT_SIZE, f"{size} + 1"))
-            self._variable(local, size, 1)
+            if self._offset is not None and all(item.code != TEXT for item in self._run):
+                self._run.append(Item(TEXT, 1, local))
+                self._text_size = size
+            else:
+                self._variable(local, size, 1)
             # The NUL that ends a string opens the next run.
             self._run.append(Item("x", 1))
 
@@ -226,14 +259,10 @@ class Encoding:
         if kind.string_bound is not None:
             source.require(f"max(map(len, {local}), default=0) <= {kind.string_bound}")
         block = source.local("block")
-        if kind.kind == "wstring":
-            source.line(f"{block} = {source.constant('wide', wide_texts)}({local})")
-        else:
-            exact = after < COUNT_SIZE
-            function = source.constant("texts", padded_texts)
-            source.line(f"{block} = {function}({local}, {exact})")
-        exact_text = kind.kind == "string" and after < COUNT_SIZE
-        self._variable(block, f"len({block})", 1 if exact_text else COUNT_SIZE)
+        exact = kind.kind == "string" and after < COUNT_SIZE
+        write = wide_texts if kind.kind == "wstring" else TextsWriter(exact=exact)
+        source.line(f"{block} = {source.constant('texts', write)}({local})")
+        self._variable(block, f"len({block})", 1 if exact else COUNT_SIZE)
 
     def _octets(self, kind: FieldType, local: str) -> None:
         source = self._source
@@ -257,8 +286,9 @@ class Encoding:
         dtype = source.constant("dtype", np.dtype(f"<{primitive.dtype}"))
         array = source.constant("ndarray", np.ndarray)
         base = source.constant("base_array", base_array)
-        source.line(f"if {local}.__class__ is not {array}: {local} = {base}({local})")
-        source.require(f"{local}.dtype == {dtype} and {local}.ndim == 1")
+        unusual = f"{local}.__class__ is not {array} or {local}.dtype is not {dtype}"
+        source.line(f"if {unusual}: {local} = {base}({local}, {dtype})")
+        source.require(f"{local}.ndim == 1")
         if kind.container == "array":
             source.require(f"len({local}) == {kind.size}")
             size = kind.size * primitive.size
@@ -271,7 +301,7 @@ class Encoding:
         size_text = count if primitive.size == 1 else f"{primitive.size} * {count}"
         self._variable(local, size_text, primitive.size)
 
-    def _messages(self, kind: FieldType, cls: type[Any], local: str) -> None:
+    def _messages(self, kind: FieldType, cls: Any, local: str) -> None:
         source = self._source
         source.require(f"{local}.__class__ is list")
         count = source.local("n")
@@ -287,23 +317,27 @@ class Encoding:
             with source.loop(f"for {element} in {local}:"):
                 self._message(cls, element, after=1)
                 packed = struct.Struct(lay_out(self._run, len(HEADER)))
-                values = [item.value for item in self._run if item.value]
+                values = ", ".join(item.value for item in self._run if item.value)
                 source.line(f"out.append({self._packing(packed, values)})")
                 self._run.clear()
             self._move(f"{packed.size} * {count}", alignment)
         else:
+            self._forget_offset()
             with source.loop(f"for {element} in {local}:"):
                 self._element(cls, element)
 
-    def _element(self, cls: type[Any], local: str) -> None:
+    def _element(self, cls: Any, local: str) -> None:
         """Write one message by the function of its class."""
         source = self._source
-        source.reads_position()
-        pos = "pos" if self._offset is None else str(self._offset)
         write = source.constant("write", element_encoder(cls))
-        source.line(f"pos = {write}(out, {pos}, {local})")
-        self._offset = None
+        source.line(f"pos = {write}(out, pos, {local})")
         self._modulus, self._residue = 1, 0
+
+    def _forget_offset(self) -> None:
+        """Leave what is known of `pos` to the variable."""
+        if self._offset is not None:
+            self._source.line(f"pos = {self._offset}")
+            self._offset = None
 
     # How it goes out.
 
@@ -329,7 +363,6 @@ class Encoding:
                 return
             condition = count
         else:
-            source.reads_position()
             condition = f"{count} and not pos & {COUNT_SIZE}"
         pad = source.local("pad")
         source.line(f"{pad} = {gap} if {condition} else b''")
@@ -358,50 +391,64 @@ class Encoding:
         if not self._run:
             return
         run, self._run = self._run, []
-        phases = range(self._residue, PHASES, self._modulus)
-        layouts = {phase: lay_out(run, phase) for phase in phases}
-        sizes = {phase: struct.calcsize(layout) for phase, layout in layouts.items()}
-        values = [item.value for item in run if item.value]
-        if len(set(layouts.values())) == 1:
-            layout = layouts[self._residue]
-            size = sizes[self._residue]
-            if size:
-                packed = struct.Struct(layout)
-                self._parts.append(self._packing(packed, values))
+        values = ", ".join(item.value for item in run if item.value)
+        if any(item.code == TEXT for item in run):
+            self._pack_text(run, values)
+            return
+        structs = phase_structs(run, range(self._residue, PHASES, self._modulus))
+        one = structs[self._residue]
+        if len({each.format for each in structs.values()}) == 1:
+            if one.size:
+                self._parts.append(self._packing(one, values))
             if self._offset is not None:
-                self._offset += size
+                self._offset += one.size
             else:
-                self._source.position(f"pos += {size}")
+                self._source.position(f"pos += {one.size}")
         else:
-            self._flush_by_phase(layouts, sizes, values)
-        ends = {(phase + sizes[phase]) % PHASES for phase in phases}
-        self._modulus = PHASES
-        while len({end % self._modulus for end in ends}) > 1:
-            self._modulus //= 2
-        self._residue = ends.pop() % self._modulus
+            self._pack_by_phase(structs, values)
+        self._ends({phase + each.size for phase, each in structs.items()})
 
-    def _packing(self, packed: struct.Struct, values: list[str]) -> str:
+    def _ends(self, places: set[int]) -> None:
+        """Note where a run may have ended."""
+        self._modulus = modulus_of(places)
+        self._residue = places.pop() % self._modulus
+
+    def _packing(self, packed: struct.Struct, values: str) -> str:
+        """Return the expression of a run that is the same wherever it starts."""
         if not values:
             return self._source.constant("zeros", packed.pack())
-        return f"{self._source.constant('pack', packed.pack)}({', '.join(values)})"
+        return f"{self._source.constant('pack', packed.pack)}({values})"
 
-    def _flush_by_phase(
-        self, layouts: dict[int, str], sizes: dict[int, int], values: list[str]
-    ) -> None:
+    def _pack_by_phase(self, structs: dict[int, struct.Struct], values: str) -> None:
+        """Write a run whose padding depends on where it starts."""
         source = self._source
-        structs = [struct.Struct(layouts.get(phase, "<")) for phase in range(PHASES)]
-        steps = source.constant("sizes", tuple(sizes.get(phase, 0) for phase in range(PHASES)))
+        table = [structs.get(phase, struct.Struct("")) for phase in range(PHASES)]
+        steps = source.constant("sizes", tuple(each.size for each in table))
         part, phase = source.local("run"), source.local("phase")
-        source.reads_position()
         source.line(f"{phase} = pos & {PHASES - 1}")
         if values:
-            packs = source.constant("packs", tuple(one.pack for one in structs))
-            source.line(f"{part} = {packs}[{phase}]({', '.join(values)})")
+            packs = source.constant("packs", tuple(each.pack for each in table))
+            source.line(f"{part} = {packs}[{phase}]({values})")
         else:
-            zeros = source.constant("zeros", tuple(one.pack() for one in structs))
+            zeros = source.constant("zeros", tuple(bytes(each.size) for each in table))
             source.line(f"{part} = {zeros}[{phase}]")
         self._parts.append(part)
         source.position(f"pos += {steps}[{phase}]")
+
+    def _pack_text(self, run: list[Item], values: str) -> None:
+        """Write a run with a string in it."""
+        source = self._source
+        assert self._offset is not None  # noqa: S101 - else the string is a part of its own
+        packing = TextPacking(run, self._offset)
+        known = source.constant("known", packing.known)
+        more = source.constant("more", packing)
+        pack, part = source.local("pack"), source.local("run")
+        source.line(f"try: {pack}, pos = {known}[{self._text_size}]")
+        source.line(f"except KeyError: {pack}, pos = {more}({self._text_size})")
+        source.line(f"{part} = {pack}({values})")
+        self._parts.append(part)
+        self._ends({packing(size)[1] for size in range(PHASES)})
+        self._offset = None
 
     def _spill(self) -> None:
         """Move the parts named so far into the list `out`, before a loop adds to it."""
@@ -411,12 +458,3 @@ class Encoding:
         elif self._parts:
             self._source.line(f"out += ({', '.join(self._parts)},)")
         self._parts.clear()
-
-
-def lay_out(run: list[Item], phase: int) -> str:
-    """Return the Struct format of a run that starts at `phase`, padding written out."""
-    layout = "<"
-    for item in run:
-        gap = padding(phase + struct.calcsize(layout), item.alignment)
-        layout += f"{gap}x{item.code}" if gap else item.code
-    return layout

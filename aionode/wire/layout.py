@@ -86,7 +86,7 @@ def first_alignment(kind: FieldType) -> int:
     return primitive.size if primitive else COUNT_SIZE
 
 
-def minimum_size(cls: type[Any]) -> int:
+def minimum_size(cls: Any) -> int:
     """Return the fewest bytes that a message of this class takes, padding not counted.
 
     Never 0, so that a sequence that claims more elements than there are bytes is refused unread.
@@ -94,7 +94,7 @@ def minimum_size(cls: type[Any]) -> int:
     return totals(cls)[0]
 
 
-def is_small(cls: type[Any]) -> bool:
+def is_small(cls: Any) -> bool:
     """Tell whether code may be written out for the fields of a nested message.
 
     Larger ones get a function of their own, so that no definition makes code grow without bound.
@@ -104,7 +104,7 @@ def is_small(cls: type[Any]) -> bool:
 
 
 @cache
-def totals(cls: type[Any]) -> tuple[int, int, int]:
+def totals(cls: Any) -> tuple[int, int, int]:
     """Return the least size, the number of unfolded fields, and the depth of their nesting."""
     size = leaves = depth = 0
     for field in fields(cls):
@@ -114,7 +114,11 @@ def totals(cls: type[Any]) -> tuple[int, int, int]:
             inner_size, inner_leaves, inner_depth = totals(kind.nested)
         else:
             primitive = PRIMITIVES.get(kind.kind)
-            inner_size, inner_leaves, inner_depth = primitive.size if primitive else COUNT_SIZE, 1, 0
+            inner_size, inner_leaves, inner_depth = (
+                primitive.size if primitive else COUNT_SIZE,
+                1,
+                0,
+            )
         size += COUNT_SIZE if repeats is None else inner_size * repeats
         leaves += inner_leaves if kind.container == "single" else 1
         depth = max(depth, inner_depth)
@@ -123,7 +127,7 @@ def totals(cls: type[Any]) -> tuple[int, int, int]:
 
 
 @cache
-def uniform_alignment(cls: type[Any]) -> int | None:
+def uniform_alignment(cls: Any) -> int | None:
     """Return the one alignment of all values of a fixed-size message, None if there is no such one.
 
     Messages of such a class follow each other without padding, once the first is aligned.

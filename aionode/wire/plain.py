@@ -19,8 +19,7 @@ from aionode.wire.texts import wide_text
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from aionode.message import Message
-    from aionode.message import FieldType
+    from aionode.message import FieldType, Message
 
 __all__ = ["decode_plainly"]
 
@@ -81,11 +80,11 @@ class PlainReader:
             return self._array(kind, count)
         least = minimum_size(kind.nested) if kind.nested is not None else COUNT_SIZE
         self._need(count * least, f"{count} elements")
-        found = []
+        elements = []
         for index in range(count):
             with self._inside(f"[{index}]"):
-                found.append(self._element(kind))
-        return found
+                elements.append(self._element(kind))
+        return elements
 
     def _element(self, kind: FieldType) -> Any:
         if kind.nested is not None:
@@ -123,7 +122,7 @@ class PlainReader:
             self._fail(f"no characters of UTF-16 or UTF-32 ({error.reason})")
 
     def _array(self, kind: FieldType, count: int) -> Any:
-        import numpy as np  # noqa: PLC0415 - only where a type needs it
+        import numpy as np
 
         primitive = PRIMITIVES[kind.kind]
         if count:

@@ -6,6 +6,7 @@ Their text holds only numbers, names that this package made up, and names of fie
 
 from __future__ import annotations
 
+import re
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 __all__ = ["Misfit", "Source"]
+
+POSITION = re.compile(r"\bpos\b")
 
 
 class Misfit(ValueError):  # noqa: N818 - a signal inside this package, never seen by a caller
@@ -27,15 +30,23 @@ class Source:
         self._lines: list[str] = []
         self._indent = 1
         self._count = 0
-        self._unread: list[int] = []  # lines that set `pos`, and nothing read it since
+        self._kept: list[str] = []
+        self._loops = 0
+        self._positions: set[int] = set()
 
     def constant(self, hint: str, value: object) -> str:
         """Return the name under which the function finds `value`."""
         for name, known in self.namespace.items():
-            if known is value:
+            if known is value and name not in self._kept:
                 return name
         name = f"{hint}{len(self.namespace)}"
         self.namespace[name] = value
+        return name
+
+    def variable(self, hint: str, value: object) -> str:
+        """Return the name of a variable that the function keeps from call to call."""
+        name = self.constant(hint, value)
+        self._kept.append(name)
         return name
 
     def local(self, hint: str) -> str:
@@ -48,13 +59,10 @@ class Source:
         self._lines.append("    " * self._indent + text)
 
     def position(self, text: str) -> None:
-        """Add a statement that sets `pos`; it is left out if nothing reads `pos` any more."""
-        self._unread.append(len(self._lines))
+        """Add a statement that sets `pos`; it is left out if nothing reads `pos` after it."""
+        if not self._loops:
+            self._positions.add(len(self._lines))
         self.line(text)
-
-    def reads_position(self) -> None:
-        """Note that the next statement reads `pos`."""
-        self._unread.clear()
 
     def require(self, condition: str) -> None:
         """Leave the function where `condition` does not hold."""
@@ -70,16 +78,22 @@ class Source:
 
     @contextmanager
     def loop(self, head: str) -> Iterator[None]:
-        """Indent what follows under `head`; what is set at its end may be read at its start."""
-        self.reads_position()
+        """Indent what follows under `head`; what it sets may be read when it comes round."""
+        self._loops += 1
         with self.block(head):
             yield
-        self.reads_position()
+        self._loops -= 1
 
     def text(self, head: str) -> str:
         """Return the whole function."""
-        unread = set(self._unread)
-        kept = [text for number, text in enumerate(self._lines) if number not in unread]
+        kept: list[str] = []
+        is_read = False
+        for number, line in reversed(list(enumerate(self._lines))):
+            if number in self._positions and not is_read:
+                continue
+            is_read = is_read or POSITION.search(line) is not None
+            kept.insert(0, line)
+        kept[:0] = [f"    global {name}" for name in self._kept]
         return "\n".join((head, *kept, ""))
 
     def function(self, head: str, subject: str) -> Callable[..., Any]:

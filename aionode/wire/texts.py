@@ -5,60 +5,59 @@ from __future__ import annotations
 import struct
 from typing import Any
 
-from aionode.wire.layout import COUNT_SIZE, padding
+from aionode.wire.layout import COUNT_SIZE
 from aionode.wire.source import Misfit
 
-__all__ = ["TextList", "padded_texts", "read_wide_texts", "wide_bytes", "wide_text", "wide_texts"]
+__all__ = [
+    "TextsReader",
+    "TextsWriter",
+    "read_wide_texts",
+    "wide_bytes",
+    "wide_text",
+    "wide_texts",
+]
 
 COUNT = struct.Struct("<I")
 
 LARGEST_KEPT = 4096
 """Bytes of strings that are kept for the next message; longer ones do not repeat."""
 
-MOST_KEPT = 1024
+ENDS = (b"\0", b"\0\0\0\0", b"\0\0\0", b"\0\0")
+"""The NUL of a string and the padding after it, by the string's size modulo four, NUL included."""
 
 
-class EncodedTexts(dict[str, bytes]):
-    """Strings as they are written in a sequence: names of joints and parameters come again."""
+class TextsWriter:
+    """Writes the strings of one field. Those of the last message are known when they come again.
 
-    def __missing__(self, text: str) -> bytes:
-        data = str.encode(text)
-        block = COUNT.pack(len(data) + 1) + data + bytes(1 + gap_after(len(data) + 1))
-        if len(block) <= LARGEST_KEPT // 16:
-            if len(self) >= MOST_KEPT:
-                self.clear()
-            self[text] = block
+    A robot's joints keep their names, so one comparison mostly saves encoding all strings.
+    """
+
+    def __init__(self, *, exact: bool) -> None:
+        self._exact = exact
+        self._last: tuple[list[str], bytes] = ([], b"")
+
+    def __call__(self, texts: list[str]) -> bytes:
+        """Return the strings as they are from an aligned place, each padded for the next.
+
+        The last one has no padding if the writer is to be exact.
+        """
+        known, block = self._last
+        if texts == known:
+            return block
+        parts: list[bytes] = []
+        for data in map(str.encode, texts):
+            size = len(data) + 1
+            parts += (COUNT.pack(size), data, ENDS[size % COUNT_SIZE])
+        if self._exact and parts:
+            parts[-1] = ENDS[0]
+        block = b"".join(parts)
+        if len(block) <= LARGEST_KEPT:
+            self._last = texts.copy(), block
         return block
 
 
-ENCODED = EncodedTexts()
-
-
-def gap_after(size: int) -> int:
-    """Return the padding between a string of `size` bytes and the next one's length."""
-    return -size % COUNT_SIZE
-
-
-def padded_texts(texts: list[str], exact: bool) -> bytes:
-    """Return the strings of a sequence, from an aligned place, each padded for the next.
-
-    Args:
-        texts: The strings.
-        exact: Without the padding after the last one.
-    """
-    known = ENCODED
-    block = b"".join([known[text] for text in texts])
-    if exact and texts:
-        gap = gap_after(len(str.encode(texts[-1])) + 1)
-        return block[: len(block) - gap]
-    return block
-
-
-class TextList:
-    """Reads the strings of one field. Those of the last message are known when they come again.
-
-    A robot's joints keep their names, so one comparison mostly saves making all strings.
-    """
+class TextsReader:
+    """Reads the strings of one field; knows those of the last message, as `TextsWriter` does."""
 
     def __init__(self) -> None:
         self._last: tuple[int, bytes, list[str]] = (0, b"", [])
@@ -73,7 +72,7 @@ class TextList:
         texts = []
         end = pos
         for _ in range(count):
-            end += padding(end, COUNT_SIZE)
+            end += -end % COUNT_SIZE
             (size,) = COUNT.unpack_from(data, end)
             start = end + COUNT_SIZE
             end = start + size

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypedDict
 
-from aionode.message import ActionType, ServiceType, fields, type_name
-from aionode.message import FieldType
+from aionode.message import ActionType, FieldType, ServiceType, fields, type_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -97,7 +96,7 @@ def description_message(cls: type[Any]) -> TypeDescription:
         TypeError: `cls` is not a message, service or action class.
     """
     # Only a node that is asked needs these classes.
-    from aionode.interfaces.type_description_interfaces.msg import (  # noqa: PLC0415
+    from aionode.interfaces.type_description_interfaces.msg import (
         TypeDescription,
     )
 
@@ -109,7 +108,7 @@ def description_message(cls: type[Any]) -> TypeDescription:
 
 def individual_message(cls: type[Any]) -> IndividualTypeDescription:
     """Return the description of one type alone as a message, default values included."""
-    from aionode.interfaces.type_description_interfaces import msg  # noqa: PLC0415 - as above
+    from aionode.interfaces.type_description_interfaces import msg
 
     form = individual(cls)
     is_whole = issubclass(cls, ServiceType | ActionType)
