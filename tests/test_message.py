@@ -1,0 +1,372 @@
+"""Message, service and action classes: how they are written, described, compared and copied."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+import subprocess
+import sys
+from typing import ClassVar
+
+import numpy as np
+import pytest
+
+from aionode.errors import MessageError
+from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
+from aionode.interfaces.sensor_msgs.msg import Image, Imu, JointState
+from aionode.interfaces.std_msgs.msg import ByteMultiArray, String
+from aionode.message import (
+    DEFAULT,
+    ActionType,
+    Array,
+    Bounded,
+    Constant,
+    Field,
+    FieldType,
+    Message,
+    Sequence,
+    ServiceType,
+    byte,
+    constants,
+    fields,
+    float32,
+    float64,
+    int32,
+    type_name,
+    uint8,
+)
+
+
+class Inner(Message, typename="tutorial/msg/Inner"):
+    """A message to nest."""
+
+    number: int32 = 0
+
+
+class Words(Message, typename="tutorial/msg/Words"):
+    """Fields of many kinds, one after the other."""
+
+    LIMIT: ClassVar[uint8] = 7
+
+    text: str
+    short: Bounded[str, 3] = "abc"
+    flag: bool = True
+    level: byte = b"\x02"
+    inner: Inner = DEFAULT
+    matrix: Array[float64, 4] = DEFAULT
+    start: Array[float32, 2] = (1, 2)
+    scores: Sequence[float32] = DEFAULT
+    some: Sequence[Inner, 2] = DEFAULT
+    data: Sequence[uint8] = DEFAULT
+
+
+def test_every_field_has_a_default_without_being_told() -> None:
+    """ROS gives each field a zero; a class may name another value."""
+    words = Words()
+
+    assert (words.text, words.short, words.flag, words.level) == ("", "abc", True, b"\x02")
+    assert words.inner == Inner(number=0)
+    assert words.matrix.tolist() == [0.0] * 4
+    assert words.start.tolist() == [1.0, 2.0]
+    assert (words.scores.dtype, len(words.scores)) == (np.float32, 0)
+    assert (words.some, words.data) == ([], b"")
+
+
+def test_defaults_are_not_shared_between_messages() -> None:
+    """Changing one message leaves the next one as it is."""
+    Words().matrix[0] = 5
+    Words().some.append(Inner())
+    Words().inner.number = 3
+
+    assert Words() == Words()
+    assert Words().matrix[0] == 0
+
+
+def test_fields_describe_type_and_default_in_order() -> None:
+    """The codec, the hash and the CLI work from this description."""
+    described = {field.name: field for field in fields(Words)}
+
+    assert list(described)[:3] == ["text", "short", "flag"]
+    assert described["short"] == Field("short", FieldType("string", None, 3), "abc")
+    assert described["start"] == Field("start", FieldType("float32", None, None, "array", 2), (1, 2))
+    assert described["some"].type == FieldType("message", Inner, None, "bounded", 2)
+    assert described["data"].type == FieldType("uint8", None, None, "unbounded")
+
+
+def test_a_default_that_is_the_zero_is_none() -> None:
+    """So `x: float64 = 0.0` and a definition without a default are the same."""
+    assert all(field.default is None for field in fields(Vector3))
+    assert [field.default for field in fields(Quaternion)] == [None, None, None, 1.0]
+
+
+def test_constants_are_no_fields() -> None:
+    """They belong to the class."""
+    assert Words.LIMIT == 7
+    assert constants(Words) == (Constant("LIMIT", FieldType("uint8"), 7),)
+
+
+def test_type_names_of_halves_are_those_of_rosidl() -> None:
+    """Halves have names of their own in type descriptions."""
+    assert type_name(String) == "std_msgs/msg/String"
+    assert type_name(AddTwoInts) == "example_interfaces/srv/AddTwoInts"
+    assert type_name(AddTwoInts.Request) == "example_interfaces/srv/AddTwoInts_Request"
+    assert type_name(AddTwoInts.Event) == "example_interfaces/srv/AddTwoInts_Event"
+    assert type_name(Fibonacci.Goal) == "example_interfaces/action/Fibonacci_Goal"
+
+
+def test_an_action_has_the_hidden_types_of_rclpy() -> None:
+    """The action protocol is made of them; they are made when first asked for."""
+    impl = Fibonacci.Impl
+
+    assert impl is Fibonacci.Impl
+    assert type_name(impl.SendGoalService) == "example_interfaces/action/Fibonacci_SendGoal"
+    request = impl.SendGoalService.Request(goal=Fibonacci.Goal(order=3))
+    assert type_name(type(request)) == "example_interfaces/action/Fibonacci_SendGoal_Request"
+    assert [f.name for f in fields(impl.GetResultService.Response)] == ["status", "result"]
+    assert [f.name for f in fields(impl.FeedbackMessage)] == ["goal_id", "feedback"]
+    assert type_name(impl.CancelGoalService) == "action_msgs/srv/CancelGoal"
+    assert type_name(impl.GoalStatusMessage) == "action_msgs/msg/GoalStatusArray"
+
+
+def test_an_event_has_info_and_at_most_one_of_each_half() -> None:
+    """As ROS's service introspection sends it."""
+    info, request, response = fields(AddTwoInts.Event)
+
+    assert type_name(info.type.nested) == "service_msgs/msg/ServiceEventInfo"
+    assert request.type == FieldType("message", AddTwoInts.Request, None, "bounded", 1)
+    assert response.type.nested is AddTwoInts.Response
+
+
+@pytest.mark.parametrize(
+    ("message", "text"),
+    [
+        (String(data="hi"), "std_msgs.msg.String(data='hi')"),
+        (AddTwoInts.Request(a=42, b=58), "example_interfaces.srv.AddTwoInts_Request(a=42, b=58)"),
+        (
+            Twist(linear=Vector3(x=1.5)),
+            "geometry_msgs.msg.Twist(linear=geometry_msgs.msg.Vector3(x=1.5, y=0.0, z=0.0), "
+            "angular=geometry_msgs.msg.Vector3(x=0.0, y=0.0, z=0.0))",
+        ),
+        (
+            Fibonacci.Feedback(sequence=[0, 1]),
+            "example_interfaces.action.Fibonacci_Feedback(sequence=[0, 1])",
+        ),
+    ],
+)
+def test_a_repr_is_that_of_rclpy(message: Message, text: str) -> None:
+    """Logs and the CLI print messages like this."""
+    assert repr(message) == text
+
+
+def test_a_repr_shows_arrays_as_numpy_and_sequences_as_lists() -> None:
+    """As rclpy does; a long sequence is shortened, so that an image fits a line."""
+    assert "covariance=array([0., 0., 0., 0., 0., 0., 0., 0., 0.])" in repr(Imu())
+    assert "position=[1.0, 2.0]" in repr(JointState(position=np.array([1.0, 2.0])))
+    assert "data=[1, 2]" in repr(Image(data=b"\x01\x02"))
+    assert "data=[b'\\x01']" in repr(ByteMultiArray(data=b"\x01"))
+    assert "data=[1, 1, 1, ..., 1, 1, 1]" in repr(Image(data=b"\x01" * 5000))
+
+
+def test_equality_compares_values_arrays_included() -> None:
+    """Both == and != answer with a bool, in whatever form an array is held."""
+    one, other = Imu(orientation_covariance=[1] * 9), Imu(orientation_covariance=np.ones(9))
+
+    assert (one == other, one != other) == (True, False)
+    other.orientation_covariance[3] = 2
+    assert (one == other, one != other) == (False, True)
+    assert Image(data=b"ab") == Image(data=memoryview(b"ab"))
+    assert JointState(name=["a"]) != JointState(name=["a", "b"])
+    assert JointState(position=np.zeros(2)) != JointState(position=np.zeros(3))
+
+
+def test_messages_of_different_classes_are_never_equal() -> None:
+    """Even if their fields have the same names and values."""
+    assert Point() != Vector3()
+    assert Point() != 0
+
+
+def test_messages_have_no_hash() -> None:
+    """What can change cannot be a key."""
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(String())
+
+
+def test_deepcopy_shares_nothing_that_can_change() -> None:
+    """Arrays and nested messages are copied, views become bytes."""
+    data = bytearray(b"abc")
+    image = Image(data=memoryview(data))
+    words = Words(inner=Inner(number=1), matrix=np.ones(4))
+
+    copied, deep = copy.deepcopy(words), copy.deepcopy(image)
+    words.inner.number, words.matrix[0], data[0] = 2, 0, 0
+
+    assert (copied.inner.number, copied.matrix[0]) == (1, 1.0)
+    assert bytes(deep.data) == b"abc"
+
+
+def test_copy_is_shallow() -> None:
+    """As `copy.copy` promises."""
+    pose = Pose()
+
+    assert copy.copy(pose).position is pose.position
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        String(data="é"),
+        AddTwoInts.Request(a=1),
+        AddTwoInts.Event(request=[AddTwoInts.Request(a=1)]),
+        Fibonacci.Impl.SendGoalService.Request(goal=Fibonacci.Goal(order=4)),
+        Image(data=memoryview(b"ab")),
+        Imu(orientation_covariance=range(9)),
+    ],
+)
+def test_messages_can_be_pickled(message: Message) -> None:
+    """Process pools send them this way."""
+    assert pickle.loads(pickle.dumps(message)) == message  # noqa: S301 (made one line above)
+
+
+def test_a_wrong_field_name_is_a_type_error() -> None:
+    """At construction, and as an AttributeError when it is set."""
+    with pytest.raises(TypeError, match="dat"):
+        String(dat="hi")  # type: ignore[call-arg] # the point of the test
+    with pytest.raises(AttributeError):
+        String().dat = "hi"  # type: ignore[attr-defined] # the point of the test
+
+
+def test_construction_does_not_validate() -> None:
+    """That happens where it is published; a loop that fills fields pays nothing."""
+    assert String(data=5).data == 5  # type: ignore[arg-type] # the point of the test
+
+
+def test_fields_may_have_the_names_of_functions() -> None:
+    """Message classes keep all names free for fields."""
+
+    class Odd(Message, typename="tutorial/msg/Odd"):
+        type_hash: str = "a"
+        name: str = "b"
+        fields: int32 = 3
+        encode: bool = True
+        str_: ClassVar[int32] = 0
+
+    assert [field.name for field in fields(Odd)] == ["type_hash", "name", "fields", "encode"]
+    assert Odd(fields=4) != Odd()
+
+
+@pytest.mark.parametrize("name", ["_x", "Upper", "a__b", "end_", "from"])
+def test_a_field_name_that_ros_refuses_is_refused(name: str) -> None:
+    """No definition could be printed for it, and generated code is made of these names."""
+    with pytest.raises(TypeError, match=f"tutorial/msg/Odd.{name}: not the name of a ROS field"):
+        type(Message)(
+            "Odd", (Message,), {"__annotations__": {name: int32}}, typename="tutorial/msg/Odd"
+        )
+
+
+@pytest.mark.parametrize("name", ["Words", "tutorial/Words", "tutorial/msg/words", "A/msg/B"])
+def test_a_type_name_has_to_be_one(name: str) -> None:
+    """Keys, tokens and hashes are made of it."""
+    with pytest.raises(TypeError, match="not the name of a ROS type"):
+
+        class Bad(Message, typename=name):
+            pass
+
+
+def test_an_annotation_without_a_width_says_what_fits() -> None:
+    """`int` alone says nothing about the wire."""
+    with pytest.raises(TypeError, match="use int32 or int64"):
+
+        class Bad(Message, typename="tutorial/msg/Bad"):
+            number: int = 0
+
+
+def test_a_default_that_does_not_fit_is_refused_at_once() -> None:
+    """With the same error as a value."""
+    with pytest.raises(MessageError, match=r"tutorial/msg/Bad\.number: 300, uint8 holds 0 to 255"):
+
+        class Bad(Message, typename="tutorial/msg/Bad"):
+            number: uint8 = 300
+
+
+def test_arrays_of_arrays_are_refused() -> None:
+    """ROS has none."""
+    with pytest.raises(TypeError, match="no arrays of arrays"):
+        Array[Sequence[int32], 3]
+
+
+@pytest.mark.parametrize("size", [0, -1, "3"])
+def test_a_size_is_a_positive_int(size: object) -> None:
+    """A size of nothing is a mistake."""
+    with pytest.raises(TypeError, match="at least 1"):
+        Array[int32, size]  # type: ignore[valid-type] # the point of the test
+
+
+def test_a_service_needs_both_halves() -> None:
+    """A half without fields is written as a class without fields."""
+    with pytest.raises(TypeError, match=r"no nested class Response\(Message\)"):
+
+        class Bad(ServiceType, typename="tutorial/srv/Bad"):
+            class Request(Message):
+                pass
+
+
+def test_an_action_is_written_as_a_class() -> None:
+    """With three nested messages, which get their ROS names from it."""
+
+    class Walk(ActionType, typename="tutorial/action/Walk"):
+        class Goal(Message):
+            distance: float64 = 0.0
+
+        class Result(Message):
+            pass
+
+        class Feedback(Message):
+            done: float64 = 0.0
+
+    assert type_name(Walk.Feedback) == "tutorial/action/Walk_Feedback"
+    assert type_name(Walk.Impl.FeedbackMessage) == "tutorial/action/Walk_FeedbackMessage"
+
+
+def test_a_message_without_a_name_says_how_to_name_it() -> None:
+    """A half outside of a service, or a forgotten argument."""
+
+    class Nameless(Message):
+        pass
+
+    with pytest.raises(TypeError, match="give it typename="):
+        type_name(Nameless)
+
+
+def test_fields_of_something_else_is_a_type_error() -> None:
+    """A service is no message, and says which of its parts are."""
+    with pytest.raises(TypeError, match=r"such as \.Request"):
+        fields(AddTwoInts)  # type: ignore[arg-type] # the point of the test
+    with pytest.raises(TypeError, match="not a message"):
+        type_name(int)
+
+
+def test_a_subclass_keeps_the_fields_of_its_base() -> None:
+    """And has a name of its own if it is given one."""
+
+    class More(Inner, typename="tutorial/msg/More"):
+        extra: str = ""
+
+    assert [field.name for field in fields(More)] == ["number", "extra"]
+    assert (type_name(Inner), type_name(More)) == ("tutorial/msg/Inner", "tutorial/msg/More")
+
+
+def test_numpy_is_not_imported_before_an_array_is_made() -> None:
+    """A node that sends strings does not pay for it."""
+    program = (
+        "import sys\n"
+        "from aionode.interfaces.rcl_interfaces.srv import SetParameters\n"
+        "from aionode.interfaces.sensor_msgs.msg import Image\n"
+        "from aionode.interfaces.std_msgs.msg import String\n"
+        "from aionode.message import snapshot\n"
+        "snapshot(String(data='hi')), snapshot(Image(data=b'abc'))\n"
+        "assert 'numpy' not in sys.modules\n"
+        "assert 'yaml' not in sys.modules\n"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True)
