@@ -15,6 +15,7 @@ import uvicorn
 from fastapi import FastAPI, HTTPException
 from fastapi.responses import HTMLResponse, StreamingResponse
 
+import aionode
 from aionode import Context, Node
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
@@ -80,5 +81,11 @@ async def events(node: Node) -> AsyncIterator[str]:
         subscription.destroy()
 
 
+async def serve() -> None:
+    """Serve the application on port 8000."""
+    config = uvicorn.Config(make_app(), port=8000, timeout_graceful_shutdown=1)
+    await uvicorn.Server(config).serve()
+
+
 if __name__ == "__main__":
-    uvicorn.run(make_app(), host="127.0.0.1", port=8000, timeout_graceful_shutdown=1)
+    aionode.run(serve)

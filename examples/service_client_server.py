@@ -6,6 +6,8 @@ a second terminal a client with the same command and ``-p mode:=client -p a:=10 
 
 from __future__ import annotations
 
+import sys
+
 import aionode
 from aionode import Node
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
@@ -28,7 +30,7 @@ class ServiceClientServer(Node):
             self.client = self.create_client(AddTwoInts, "/add_two_ints")
             self.timer = self.create_timer(0.0, self.call_service)
         else:
-            raise ValueError(f"mode: {mode!r}; it is 'server' or 'client'")
+            sys.exit(f"mode: {mode!r}; it is 'server' or 'client'")
 
     def add_two_ints_callback(
         self, request: AddTwoInts.Request, response: AddTwoInts.Response

@@ -1,0 +1,309 @@
+"""Every program that a newcomer runs: its output, its end, and what Ctrl-C does to it."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import httpx
+import pytest
+import uvicorn
+
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.std_msgs.msg import String
+from examples.fastapi_app import make_app
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator, Callable, Iterator
+
+    from aionode import Context, Node
+
+ROOT = Path(__file__).parent.parent
+ENDING = ["pubsub", "service", "timers", "overload"]
+ENDLESS = sorted(
+    path.name
+    for path in (ROOT / "examples").glob("*.py")
+    if path.name not in {"call_service.py", "fastapi_app.py"}
+)
+STAMP = r"\[INFO\] \[\d+\.\d{9}\]"
+
+
+class Program:
+    """A program of this repository in a process of its own."""
+
+    def __init__(self, *arguments: str, env: dict[str, str]) -> None:
+        reading, writing = os.pipe()
+        self._running = os.fdopen(reading, "rb", buffering=0)
+        self.process = subprocess.Popen(
+            [sys.executable, "tests/announcing.py", str(writing), *arguments],
+            cwd=ROOT,
+            env=os.environ | {"PYTHONUNBUFFERED": "1"} | env,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            pass_fds=[writing],
+        )
+        os.close(writing)
+
+    def wait_until_running(self) -> None:
+        """Return when a node of the program runs."""
+        if not self._running.read(1):
+            pytest.fail(f"no node ran:\n{self.rest()}")
+
+    def line_with(self, pattern: str) -> str:
+        """Return the next line of output that matches; fail at the end of the output."""
+        assert self.process.stdout is not None
+        seen = []
+        for line in self.process.stdout:
+            if re.search(pattern, line):
+                return line.rstrip("\n")
+            seen.append(line)
+        pytest.fail(f"no line with {pattern!r} in:\n{''.join(seen)}")
+
+    def rest(self) -> str:
+        """Return what the program still prints until its end."""
+        return self.process.communicate(timeout=30)[0]
+
+    def end_with(self, number: signal.Signals) -> tuple[int, str]:
+        """Send a signal; return the exit status and what was printed since."""
+        self.process.send_signal(number)
+        text = self.rest()
+        return self.process.returncode, text
+
+    def close(self) -> None:
+        """End the program if it still runs."""
+        self.process.kill()
+        self.process.communicate()
+        self._running.close()
+
+
+@contextmanager
+def running(*arguments: str, domain: int | None = None) -> Iterator[Program]:
+    """Run a program; alone, or in a domain where it finds the others of the same test."""
+    if domain is None:
+        env = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}
+    else:
+        env = {"ROS_DOMAIN_ID": str(domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    program = Program(*arguments, env=env)
+    try:
+        yield program
+    finally:
+        program.close()
+
+
+@pytest.fixture
+def domain() -> int:
+    """A ROS domain that no other test on this machine is likely to use."""
+    return 1 + os.getpid() % 100
+
+
+def test_the_first_example_tells_its_story() -> None:
+    """Each message is published, then heard, and the end says how it went."""
+    with running("-m", "aionode.examples.pubsub") as program:
+        text = program.rest()
+
+    said = re.findall(r'Publishing: "(.*)"', text)
+    heard = re.findall(r'I heard: "(.*)"', text)
+    assert said == heard == [f"Hello {number}" for number in range(1, 6)]
+    assert program.process.returncode == 0
+    assert "5 messages heard, 0 dropped" in text
+
+
+def test_a_service_answers_together_what_is_asked_together() -> None:
+    """Ten calls at once, a refused one, and one without a server."""
+    with running("-m", "aionode.examples.service") as program:
+        text = program.rest()
+
+    assert "10 + 25 = 35" in text
+    assert str(list(range(0, 20, 2))) in text
+    assert "ValueError: only counts, please" in text
+    assert "no server is matched" in text
+    assert "Traceback" not in text
+    assert program.process.returncode == 0
+
+
+def test_timers_keep_their_grid() -> None:
+    """Every fast tick comes while the slow timer works."""
+    with running("-m", "aionode.examples.timers") as program:
+        text = program.rest()
+
+    assert "15 of 15 fast ticks came." in text
+    assert program.process.returncode == 0
+
+
+def test_overload_counts_every_message() -> None:
+    """What was sent is received, dropped or waiting."""
+    with running("-m", "aionode.examples.overload", "--seconds", "1") as program:
+        line = program.line_with("sent = ")
+        program.rest()
+
+    sent, received, dropped, waiting = (
+        int(number) for number in re.findall(r"(\d+) (?:sent|received|dropped|waiting)", line)
+    )
+    assert sent == received + dropped + waiting
+    assert dropped > 0
+    assert 0 <= waiting <= 10
+    assert program.process.returncode == 0
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        *[pytest.param(("-m", f"aionode.examples.{name}"), id=name) for name in ENDING],
+        *[pytest.param((f"examples/{name}",), id=name) for name in [*ENDLESS, "fastapi_app.py"]],
+    ],
+)
+def test_a_signal_ends_an_example_cleanly(
+    arguments: tuple[str, ...], number: signal.Signals
+) -> None:
+    """Ctrl-C and SIGTERM: no traceback, exit status 0."""
+    with running(*arguments) as program:
+        program.wait_until_running()
+        status, text = program.end_with(number)
+
+    assert status == 0, text
+    assert "Traceback" not in text
+    assert "Error" not in text
+
+
+def test_the_publisher_prints_what_the_tutorial_prints() -> None:
+    """Line for line: severity, time, name, text."""
+    with running("examples/simple_publisher.py") as program:
+        line = program.line_with("Publishing")
+
+    text = 'Publishing: "Hello from ROS 2! Message count: 0"'
+    assert re.fullmatch(rf"{STAMP} \[simple_publisher\]: {re.escape(text)}", line)
+
+
+def test_the_subscriber_hears_the_publisher_in_another_process(domain: int) -> None:
+    """Two terminals of one machine find each other without configuration."""
+    with (
+        running("examples/simple_subscriber.py", domain=domain) as subscriber,
+        running("examples/simple_publisher.py", domain=domain),
+    ):
+        line = subscriber.line_with("I heard")
+
+    text = r'I heard: "Hello from ROS 2! Message count: \d+"'
+    assert re.fullmatch(rf"{STAMP} \[simple_subscriber\]: {text}", line)
+
+
+def test_the_service_answers_a_client_in_another_process(domain: int) -> None:
+    """The tutorial's request and response, on both sides."""
+    program = "examples/service_client_server.py"
+    with running(program, "--ros-args", "-p", "mode:=server", domain=domain) as server:
+        server.wait_until_running()
+        asking = ["-p", "mode:=client", "-p", "a:=10", "-p", "b:=25"]
+        with running(program, "--ros-args", *asking, domain=domain) as client:
+            response = client.line_with("Response")
+            client.rest()
+        request = server.line_with("Request")
+
+    assert response.endswith(": Response: 10 + 25 = 35")
+    assert client.process.returncode == 0
+    assert request.endswith(": Request: a=10, b=25 -> sum=35")
+
+
+def test_any_async_program_can_ask_the_service(domain: int) -> None:
+    """The program of the README prints the sum."""
+    with running("examples/service_client_server.py", domain=domain) as server:
+        server.wait_until_running()
+        with running("examples/call_service.py", domain=domain) as client:
+            text = client.rest()
+
+    assert text.splitlines()[-1] == "35"
+
+
+def test_a_service_of_a_type_of_its_own_reverses_a_string(domain: int) -> None:
+    """A type written as a class works between processes."""
+    program = "examples/reverse_string_service.py"
+    with running(program, domain=domain) as server:
+        server.wait_until_running()
+        asking = ["-p", "mode:=client", "-p", "text:=robot"]
+        with running(program, "--ros-args", *asking, domain=domain) as client:
+            response = client.line_with("Response")
+
+    assert response.endswith(': Response: "tobor"')
+
+
+def test_the_word_counter_counts_what_the_publisher_says(domain: int) -> None:
+    """One topic in, another one out."""
+    with (
+        running("examples/word_counter.py", domain=domain) as counter,
+        running("examples/simple_publisher.py", domain=domain),
+    ):
+        line = counter.line_with("has")
+
+    assert line.endswith(" has 7 words")
+
+
+def test_a_wrong_mode_is_one_line_and_status_1() -> None:
+    """A typo in a parameter names what fits."""
+    with running("examples/service_client_server.py", "--ros-args", "-p", "mode:=sever") as program:
+        text = program.rest()
+
+    assert "mode: 'sever'; it is 'server' or 'client'" in text
+    assert program.process.returncode == 1
+
+
+@pytest.fixture
+async def web(aionode_context: Context) -> AsyncIterator[httpx.AsyncClient]:
+    """A browser, as it were, in front of the web application."""
+    listening = socket.create_server(("127.0.0.1", 0))
+    config = uvicorn.Config(make_app(aionode_context), log_level="warning", loop="none")
+    server = uvicorn.Server(config)
+    port = listening.getsockname()[1]
+    async with (
+        asyncio.TaskGroup() as tasks,
+        httpx.AsyncClient(base_url=f"http://127.0.0.1:{port}") as client,
+    ):
+        tasks.create_task(server.serve(sockets=[listening]))
+        yield client
+        server.should_exit = True
+    listening.close()
+
+
+async def test_the_web_application_awaits_a_service(
+    web: httpx.AsyncClient, node_factory: Callable[..., Node]
+) -> None:
+    """A web request becomes a service call, and the answer a web response."""
+
+    def add(request: AddTwoInts.Request) -> AddTwoInts.Response:
+        return AddTwoInts.Response(sum=request.a + request.b)
+
+    node_factory("adder").create_service(AddTwoInts, "/add_two_ints", add)
+
+    response = await web.get("/add", params={"a": 10, "b": 25})
+
+    assert response.json() == {"sum": 35}
+
+
+async def test_the_web_application_streams_a_topic(
+    web: httpx.AsyncClient, node_factory: Callable[..., Node]
+) -> None:
+    """Each message becomes an event in the browser."""
+    publisher = node_factory("robot").create_publisher(String, "/robot/message", 10)
+
+    async with web.stream("GET", "/messages") as response:
+        lines = response.aiter_lines()
+        assert await anext(lines) == ": listening"
+        publisher.publish(String(data="hello"))
+        events = [await anext(lines) for _ in range(2)]
+
+    assert events == ["", 'data: {"data":"hello"}']
+
+
+async def test_the_page_shows_the_stream(web: httpx.AsyncClient) -> None:
+    """The page that a browser opens reads the events."""
+    response = await web.get("/")
+
+    assert 'EventSource("/messages")' in response.text

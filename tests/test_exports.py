@@ -1,0 +1,129 @@
+"""What the public names are, that they are documented, and what importing them costs."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import pkgutil
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+
+import aionode
+from aionode import errors
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+MODULES = sorted(
+    module.name
+    for module in pkgutil.walk_packages(aionode.__path__, "aionode.")
+    if not module.name.startswith("aionode.interfaces.") and module.name != "aionode.__main__"
+)
+PROMISED = [
+    "ActionClient",
+    "ActionServer",
+    "Client",
+    "Clock",
+    "Context",
+    "Duration",
+    "DurabilityPolicy",
+    "HistoryPolicy",
+    "LivelinessPolicy",
+    "Node",
+    "Parameter",
+    "Publisher",
+    "QoSProfile",
+    "Rate",
+    "ReliabilityPolicy",
+    "Service",
+    "Subscription",
+    "Time",
+    "Timer",
+    "run",
+]
+PRESETS = [
+    "qos_profile_action_status_default",
+    "qos_profile_best_available",
+    "qos_profile_default",
+    "qos_profile_parameter_events",
+    "qos_profile_parameters",
+    "qos_profile_rosout_default",
+    "qos_profile_sensor_data",
+    "qos_profile_services_default",
+    "qos_profile_system_default",
+]
+
+
+@pytest.mark.parametrize("name", PROMISED)
+def test_aionode_has_the_promised_name(name: str) -> None:
+    """Programs import these from aionode itself."""
+    assert name in aionode.__all__
+    assert hasattr(aionode, name)
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_qos_has_the_presets_of_rclpy(name: str) -> None:
+    """Programs import these from aionode.qos, as they do from rclpy.qos."""
+    assert isinstance(getattr(aionode.qos, name), aionode.QoSProfile)
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_a_module_says_what_is_public(name: str) -> None:
+    """`__all__` is there, sorted, without doubles, and every name in it exists."""
+    module = importlib.import_module(name)
+
+    exported = list(module.__all__)
+
+    assert len(exported) == len(set(exported))
+    assert [each for each in exported if not hasattr(module, each)] == []
+
+
+@pytest.mark.parametrize("name", ["aionode", *MODULES])
+def test_what_is_public_is_documented(name: str) -> None:
+    """Every public class, function and method has a docstring."""
+    assert list(undocumented(importlib.import_module(name))) == []
+
+
+def undocumented(module: ModuleType) -> list[str]:
+    """Return the public names of a module that say nothing about themselves."""
+    silent = [] if module.__doc__ else [module.__name__]
+    for name in module.__all__:
+        member = getattr(module, name)
+        if inspect.isroutine(member) or inspect.isclass(member):
+            silent += [] if inspect.getdoc(member) else [name]
+        if inspect.isclass(member) and member.__module__.startswith("aionode"):
+            silent += [f"{name}.{each}" for each in silent_methods(member)]
+    return silent
+
+
+def silent_methods(owner: type) -> list[str]:
+    """Return the public methods and properties of a class without a docstring, inherited or not."""
+    return [
+        name
+        for name, member in vars(owner).items()
+        if not name.startswith("_")
+        and (inspect.isroutine(member) or isinstance(member, property))
+        and not inspect.getdoc(getattr(owner, name))
+    ]
+
+
+@pytest.mark.parametrize("name", sorted(set(errors.__all__) - {"AionodeError"}))
+def test_an_error_is_ours_and_a_builtin(name: str) -> None:
+    """Both `except AionodeError` and `except ValueError` work."""
+    error = getattr(errors, name)
+
+    builtins = [base for base in error.__mro__ if base.__module__ == "builtins"]
+
+    assert issubclass(error, errors.AionodeError)
+    assert builtins[0] is not Exception
+
+
+@pytest.mark.parametrize("heavy", ["numpy", "zenoh", "click", "rich", "yaml"])
+def test_importing_aionode_leaves_out_what_is_large(heavy: str) -> None:
+    """The first look at aionode is quick: large packages are imported by those who use them."""
+    code = f"import aionode, sys; sys.exit({heavy!r} in sys.modules)"
+
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
