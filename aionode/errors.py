@@ -9,6 +9,7 @@ name; new ones end in `Error`. They carry plain values, never live objects.
     AionodeError
     ├── CallbackCancelledError (RuntimeError)
     ├── CallbackSignatureError (TypeError, RuntimeError)
+    ├── CommandError (RuntimeError)
     ├── ConfigurationError (ValueError)
     ├── DecodeError (ValueError)
     ├── EntityDestroyedError (RuntimeError)
@@ -33,7 +34,7 @@ name; new ones end in `Error`. They carry plain values, never live objects.
     │   ├── ParameterImmutableException (RuntimeError)
     │   ├── ParameterNotDeclaredException (KeyError)
     │   └── ParameterUninitializedException (RuntimeError)
-    ├── ParameterFileError (ValueError)
+    ├── ParameterFileError (ValueError, RuntimeError)
     ├── NodeNameNonExistentError (LookupError, RuntimeError)
     ├── QueueFullError (RuntimeError)
     ├── ServiceError (RuntimeError)
@@ -49,6 +50,7 @@ __all__ = [
     "AionodeError",
     "CallbackCancelledError",
     "CallbackSignatureError",
+    "CommandError",
     "ConfigurationError",
     "DecodeError",
     "EntityDestroyedError",
@@ -396,7 +398,7 @@ class UnknownROSArgsError(InvalidROSArgsError):
         super().__init__(" ".join(unknown_ros_args), problem)
 
 
-class ParameterFileError(AionodeError, ValueError):
+class ParameterFileError(AionodeError, ValueError, RuntimeError):
     """A parameter file or a parameter value in YAML cannot be read.
 
     Attributes:
@@ -466,9 +468,10 @@ class InvalidParameterTypeException(ParameterException, TypeError):
         self.value = value
         self.type_name = type_name
         self.expected_type = expected_type
+        hint = f" (write {value}.0)" if (type_name, expected_type) == ("INTEGER", "DOUBLE") else ""
         super().__init__(
             f"Trying to set parameter '{name}' to '{value}' of type '{type_name}', "
-            f"expecting type '{expected_type}'",
+            f"expecting type '{expected_type}'{hint}",
             name,
         )
 
@@ -541,3 +544,15 @@ HOW_TO_FIND = (
     "names look like std_msgs/msg/String, `aionode interface list` shows those there are, and "
     "aionode.idl.load_interfaces() adds your own"
 )
+
+
+class CommandError(AionodeError, RuntimeError):
+    """A command of the command line cannot do what was asked.
+
+    Attributes:
+        status: The exit status of the command.
+    """
+
+    def __init__(self, text: str, status: int = 1) -> None:
+        self.status = status
+        super().__init__(text)

@@ -1,0 +1,41 @@
+"""Parameters: values, descriptors, the store of a node, and classes of parameters."""
+
+from aionode.parameter.services import ParameterService, parameter_services
+from aionode.parameter.store import (
+    OnSetCallback,
+    ParameterCallbacks,
+    ParameterStore,
+    PostSetCallback,
+    PreSetCallback,
+    validate_parameter_name,
+)
+from aionode.parameter.struct import ParameterOwner, declare_struct
+from aionode.parameter.value import (
+    PARAMETER_SEPARATOR_STRING,
+    AllowableParameterValue,
+    Parameter,
+    ParameterType,
+    get_parameter_value,
+    parameter_dict_from_yaml_file,
+    parameter_value_to_python,
+)
+
+__all__ = [
+    "PARAMETER_SEPARATOR_STRING",
+    "AllowableParameterValue",
+    "OnSetCallback",
+    "Parameter",
+    "ParameterCallbacks",
+    "ParameterOwner",
+    "ParameterService",
+    "ParameterStore",
+    "ParameterType",
+    "PostSetCallback",
+    "PreSetCallback",
+    "declare_struct",
+    "get_parameter_value",
+    "parameter_dict_from_yaml_file",
+    "parameter_services",
+    "parameter_value_to_python",
+    "validate_parameter_name",
+]
