@@ -90,7 +90,9 @@ def test_fields_describe_type_and_default_in_order() -> None:
 
     assert list(described)[:3] == ["text", "short", "flag"]
     assert described["short"] == Field("short", FieldType("string", None, 3), "abc")
-    assert described["start"] == Field("start", FieldType("float32", None, None, "array", 2), (1, 2))
+    assert described["start"] == Field(
+        "start", FieldType("float32", None, None, "array", 2), (1, 2)
+    )
     assert described["some"].type == FieldType("message", Inner, None, "bounded", 2)
     assert described["data"].type == FieldType("uint8", None, None, "unbounded")
 
