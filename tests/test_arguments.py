@@ -93,9 +93,10 @@ def test_a_bare_remap_rule_outside_is_read_with_a_warning() -> None:
 
     assert [str(rule) for rule in args.remap_rules] == ["a:=b"]
     assert args.non_ros_args == ("prog",)
-    assert args.warnings == (
+    (warning,) = args.warnings
+    assert warning == (
         "Found remap rule 'a:=b'. This syntax is deprecated. "
-        "Use '--ros-args --remap a:=b' instead.",
+        "Use '--ros-args --remap a:=b' instead."
     )
 
 
