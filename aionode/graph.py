@@ -208,6 +208,11 @@ class Graph:
         waiter.add_done_callback(self._forget)
         return waiter
 
+    async def until(self, condition: Callable[[], bool]) -> None:
+        """Wait until `condition()` is true; it is asked again at each change."""
+        while not condition():
+            await self.changed()
+
     def _forget(self, waiter: asyncio.Future[None]) -> None:
         self._waiters.pop(waiter, None)
 

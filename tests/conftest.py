@@ -1,4 +1,4 @@
-"""What every test of the project runs under: debug mode, and both event loops where it matters."""
+"""What every test of the project runs under: debug mode, and both event loops."""
 
 from __future__ import annotations
 
@@ -16,26 +16,19 @@ if TYPE_CHECKING:
     from aionode.context import Context
 
 
-class DebugPolicy(asyncio.DefaultEventLoopPolicy):
-    """asyncio's own loop, in debug mode: it reports forgotten coroutines and foreign threads."""
-
-    def new_event_loop(self) -> asyncio.AbstractEventLoop:
-        loop = super().new_event_loop()
-        loop.set_debug(True)
-        loop.slow_callback_duration = 60.0  # measuring is the business of benchmarks
-        return loop
+def debugging_loop() -> asyncio.AbstractEventLoop:
+    """Return asyncio's own loop, which reports forgotten coroutines and foreign threads."""
+    loop = asyncio.new_event_loop()
+    loop.set_debug(True)
+    loop.slow_callback_duration = 60.0  # measuring is the business of benchmarks
+    return loop
 
 
-@pytest.fixture(
-    params=[
-        pytest.param(DebugPolicy(), id="asyncio"),
-        pytest.param(uvloop.EventLoopPolicy(), id="uvloop"),
-    ]
-)
-def event_loop_policy(request: pytest.FixtureRequest) -> asyncio.AbstractEventLoopPolicy:
+def pytest_asyncio_loop_factories(
+    config: pytest.Config, item: pytest.Item
+) -> dict[str, Callable[[], asyncio.AbstractEventLoop]]:
     """Run each async test on asyncio and on uvloop."""
-    policy: asyncio.AbstractEventLoopPolicy = request.param
-    return policy
+    return {"asyncio": debugging_loop, "uvloop": uvloop.new_event_loop}
 
 
 @pytest.fixture

@@ -34,9 +34,9 @@ class Channel:
 
     def close(self) -> None:
         """Take the endpoint out of the graph, and cancel every `until`."""
-        self._graph.remove_endpoint(self.endpoint)
-        for wait in list(self._waits):
+        for wait in list(self._waits):  # first, as the change below would wake them
             wait.cancel(f"{self.endpoint.kind.value} of {self.endpoint.name}: destroyed")
+        self._graph.remove_endpoint(self.endpoint)
 
     def count_matched(self, kind: EndpointKind) -> int:
         """Return how many endpoints of the opposite `kind` this one reaches."""
