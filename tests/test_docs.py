@@ -1,0 +1,162 @@
+"""The documentation keeps its word: its code is run, its commands and links exist."""
+
+from __future__ import annotations
+
+import ast
+import asyncio
+import importlib.util
+import inspect
+import re
+import shlex
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+import pytest
+
+from aionode.cli.command import root
+from aionode.context import Context
+from docs.quotes import QUOTE, ROOT, pages, refreshed
+
+if TYPE_CHECKING:
+    from types import CodeType
+
+BLOCK = re.compile(
+    r"(?P<note><!-- [^>]*-->\n+)?^```(?P<language>\w+)[^\n]*\n(?P<code>.*?)^```$",
+    re.MULTILINE | re.DOTALL,
+)
+LINK = re.compile(r"\]\((?!https?:|#)(?P<target>[^)#\s]+)")
+PAGES = [str(page.relative_to(ROOT)) for page in pages()]
+
+
+@dataclass(frozen=True)
+class Block:
+    """A block of code in a page."""
+
+    page: str
+    line: int
+    language: str
+    note: str
+    code: str
+
+    @property
+    def is_quoted(self) -> bool:
+        """Whether it is checked against a file instead."""
+        return self.note.startswith("<!-- quote:")
+
+    @property
+    def is_shown_only(self) -> bool:
+        """Whether it says that it is not to be run: code for other frameworks."""
+        return self.note.startswith("<!-- not run")
+
+
+def blocks(page: str, *languages: str) -> list[Block]:
+    """Return the blocks of a page that are in one of the languages."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    found = []
+    for match in BLOCK.finditer(text):
+        line = text.count("\n", 0, match.start("code")) + 1
+        if match["language"] in languages:
+            found.append(Block(page, line, match["language"], match["note"] or "", match["code"]))
+    return found
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_quoted_code_is_the_code_that_is_run(page: str) -> None:
+    """`make quotes` brings a page up to date."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+
+    assert refreshed(text) == text
+    marks = re.findall(r"^<!-- quote:", text, re.MULTILINE)
+    assert len(marks) == len(QUOTE.findall(text)), "a quote without a block"
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "python")])
+def test_the_code_of_a_page_runs(page: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is not quoted is run, the blocks of a page one after the other."""
+    local = Context(transport="local")
+    monkeypatch.setattr(Context, "default", lambda: local)
+    names: dict[str, Any] = {"__name__": "documentation"}
+    with asyncio.Runner() as runner:
+        for block in blocks(page, "python"):
+            if not block.is_quoted and not block.is_shown_only:
+                runner.run(run_block(block, names))
+
+
+async def run_block(block: Block, names: dict[str, Any]) -> None:
+    """Run one block, which may use await."""
+    where = f"{block.page}, the block at line {block.line}"
+    code: CodeType = compile(block.code, where, "exec", ast.PyCF_ALLOW_TOP_LEVEL_AWAIT)
+    if code.co_flags & inspect.CO_COROUTINE:
+        await eval(code, names)  # noqa: S307 - the documentation's own code
+    else:
+        exec(code, names)  # noqa: S102 - the documentation's own code
+
+
+def commands() -> list[Any]:
+    """Return every command line of the documentation."""
+    return [
+        pytest.param(line.removeprefix("$ "), id=f"{page}:{line.removeprefix('$ ')}")
+        for page in PAGES
+        for block in blocks(page, "console")
+        for line in block.code.splitlines()
+        if line.startswith("$ ")
+    ]
+
+
+@pytest.mark.parametrize("command", commands())
+def test_a_command_of_the_documentation_exists(command: str) -> None:
+    """A newcomer types what the page shows, so it names what is there."""
+    words = shlex.split(command, comments=True)
+    match words:
+        case ["aionode", *arguments]:
+            assert command_exists(arguments), command
+        case ["python", "-m", module, *_]:
+            assert importlib.util.find_spec(module), command
+        case ["python", path, *_] if path.endswith(".py"):
+            assert (ROOT / path).exists(), command
+        case ["make", target, *_]:
+            assert f"\n{target}:" in (ROOT / "Makefile").read_text(encoding="utf-8"), command
+        case _:
+            assert words[0] in {".", "pip", "pytest", "curl", "ros2", "export", "python"}, command
+
+
+def command_exists(arguments: list[str]) -> bool:
+    """Whether the words name a command of aionode, with options that it knows."""
+    command: click.Command = root
+    context = click.Context(command)
+    words = list(arguments)
+    while isinstance(command, click.Group) and words and not words[0].startswith("-"):
+        found = command.get_command(context, words.pop(0))
+        if found is None:
+            return False
+        command = found
+    options = {name for option in command.params for name in [*option.opts, *option.secondary_opts]}
+    given = {word.partition("=")[0] for word in words if re.fullmatch(r"--?[a-z][a-z-]*.*", word)}
+    return given - {"--ros-args", "--help", "-p", "-r"} <= options
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_a_link_leads_somewhere(page: str) -> None:
+    """Links inside the repository name files that exist."""
+    folder = (ROOT / page).parent
+    text = (ROOT / page).read_text(encoding="utf-8")
+
+    dead = [link["target"] for link in LINK.finditer(text) if not exists(folder / link["target"])]
+
+    assert dead == []
+
+
+def exists(target: Path) -> bool:
+    """Whether a link's target is a file here."""
+    return target.resolve().exists()
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_a_page_has_one_sentence_for_each_line(page: str) -> None:
+    """A change to a sentence is then a change to a line."""
+    text = BLOCK.sub("", (ROOT / page).read_text(encoding="utf-8"))
+    prose = [line for line in text.splitlines() if not line.startswith(("|", "#", " ", "-", "1"))]
+
+    assert [line for line in prose if re.search(r"[a-z`)]\. [A-Z]", line)] == []
