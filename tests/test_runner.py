@@ -1,0 +1,258 @@
+"""The main program: signals, exit status, and what a failure prints."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+from typing import Any
+
+import pytest
+
+import aionode
+from aionode.errors import AionodeError
+from aionode.node import Node
+from aionode.runner import failure_text
+from aionode.testing import local_context
+
+PREAMBLE = """
+import asyncio, sys, time
+import aionode
+from aionode.testing import local_context
+from aionode.interfaces.std_msgs.msg import String
+context = local_context()
+"""
+
+
+class Program:
+    """A Python program in a process of its own, which says when it is ready."""
+
+    def __init__(self, body: str) -> None:
+        self.process = subprocess.Popen(  # noqa: S603  # the text is in this file
+            [sys.executable, "-c", PREAMBLE + textwrap.dedent(body)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    def __enter__(self) -> Program:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.process.kill()
+        self.process.communicate()
+
+    def wait_until_ready(self) -> None:
+        assert self.process.stdout is not None
+        assert self.process.stdout.readline() == "ready\n"
+
+    def end(self) -> tuple[int, str, str]:
+        out, err = self.process.communicate(timeout=20)
+        return self.process.returncode, out, err
+
+
+WAITS_FOR_EVER = """
+async def callback(msg):
+    try:
+        print("ready", flush=True)
+        await asyncio.Event().wait()
+    finally:
+        await asyncio.sleep(0)
+        print("cancelled", flush=True)
+
+def make():
+    node = aionode.Node("node", context=context)
+    node.create_subscription(String, "words", callback)
+    node.create_publisher(String, "words", 10).publish(String())
+    return node
+
+aionode.run(make, args=[])
+print("after run", flush=True)
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_the_program_cleanly(number: signal.Signals) -> None:
+    """Handlers are cancelled, no traceback is printed, and the status is 0."""
+    with Program(WAITS_FOR_EVER) as program:
+        program.wait_until_ready()
+        program.process.send_signal(number)
+        status, out, err = program.end()
+    assert (status, out, err) == (0, "cancelled\nafter run\n", "")
+
+
+def test_a_second_signal_ends_the_program_at_once() -> None:
+    """Also when a callback does not want to end."""
+    stubborn = """
+    async def callback():
+        try:
+            print("ready", flush=True)
+            await asyncio.Event().wait()
+        except asyncio.CancelledError:
+            print("no", flush=True)
+            await asyncio.Event().wait()
+
+    def make():
+        node = aionode.Node("node", context=context)
+        node.create_timer(0.0, callback)
+        return node
+
+    aionode.run(make, args=[])
+    """
+    with Program(stubborn) as program:
+        program.wait_until_ready()
+        assert program.process.stdout is not None
+        program.process.send_signal(signal.SIGINT)
+        assert program.process.stdout.readline() == "no\n"
+        program.process.send_signal(signal.SIGINT)
+        status, _, err = program.end()
+    assert status == -signal.SIGINT
+    assert "Traceback" not in err
+
+
+def test_the_second_signal_works_while_a_callback_blocks_the_loop() -> None:
+    """The handlers do not need the loop."""
+    blocked = """
+    def callback():
+        print("ready", flush=True)
+        while True:
+            time.sleep(1)
+
+    def make():
+        node = aionode.Node("node", context=context)
+        node.create_timer(0.0, callback)
+        return node
+
+    aionode.run(make, args=[])
+    """
+    with Program(blocked) as program:
+        program.wait_until_ready()
+        program.process.send_signal(signal.SIGINT)
+        # The same signal would be merged with one that is still pending, so the other one follows.
+        program.process.send_signal(signal.SIGTERM)
+        program.process.send_signal(signal.SIGTERM)
+        while program.process.poll() is None:
+            program.process.send_signal(signal.SIGTERM)
+        status, _, err = program.end()
+    assert status == -signal.SIGTERM
+    assert "Traceback" not in err
+
+
+def test_a_bug_in_a_callback_is_shown_with_its_traceback() -> None:
+    """And the shell is told by the status."""
+    body = """
+    def make():
+        node = aionode.Node("node", context=context)
+        node.create_timer(0.0, lambda: 1 / 0)
+        return node
+
+    aionode.run(make, args=[])
+    """
+    with Program(body) as program:
+        status, _, err = program.end()
+    assert status == 1
+    assert "ZeroDivisionError" in err
+    assert "Traceback" in err
+
+
+def test_an_error_of_aionode_is_one_line() -> None:
+    """A wrong name needs no traceback."""
+    body = 'aionode.run(lambda: aionode.Node("1node", context=context), args=[])'
+    with Program(body) as program:
+        status, _, err = program.end()
+    assert status == 1
+    assert err.startswith("error: ")
+    assert "Traceback" not in err
+
+
+def run_in_this_process(*nodes: Any) -> None:
+    aionode.run(*nodes, args=[], loop_factory=asyncio.new_event_loop)
+
+
+def test_run_returns_when_all_nodes_have_ended() -> None:
+    """A program may end by itself."""
+    context = local_context()
+    ended: list[str] = []
+
+    def ending(name: str) -> Node:
+        node = Node(name, context=context)
+
+        def end() -> None:
+            ended.append(name)
+            node.destroy_node()
+
+        node.create_timer(0.0, end)
+        return node
+
+    run_in_this_process(ending("one"), lambda: ending("two"))
+    assert sorted(ended) == ["one", "two"]
+
+
+def test_run_takes_coroutine_functions() -> None:
+    """An application beside its nodes, or alone."""
+    ran: list[bool] = []
+
+    async def main() -> None:
+        ran.append(True)
+
+    run_in_this_process(main)
+    assert ran == [True]
+
+
+def test_a_failing_node_ends_the_others() -> None:
+    """With the status 1."""
+    context = local_context()
+    other = Node("other", context=context)
+    failing = Node("failing", context=context)
+    failing.create_timer(0.0, lambda: 1 / 0)
+    with pytest.raises(SystemExit) as caught:
+        run_in_this_process(other, failing)
+    assert caught.value.code == 1
+    assert other.destroyed
+
+
+def test_run_works_outside_the_main_thread() -> None:
+    """Where signals do not arrive; then nothing is installed for them."""
+    ran: list[bool] = []
+
+    async def main() -> None:
+        ran.append(True)
+
+    thread = threading.Thread(target=run_in_this_process, args=(main,))
+    thread.start()
+    thread.join()
+    assert ran == [True]
+
+
+def test_signal_handlers_are_restored() -> None:
+    """The program around it has its own."""
+    before = signal.getsignal(signal.SIGINT)
+
+    async def main() -> None: ...
+
+    run_in_this_process(main)
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_running_nothing_is_a_mistake() -> None:
+    """It would end at once, and nobody would know why."""
+    with pytest.raises(TypeError, match="at least one node"):
+        aionode.run()
+
+
+def test_a_factory_that_makes_something_else_is_a_mistake(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """It names what was made."""
+    with pytest.raises(SystemExit):
+        run_in_this_process(lambda: "node")
+    assert "neither a node nor a coroutine" in capsys.readouterr().err
+
+
+def test_failures_in_groups_are_told_one_by_one() -> None:
+    """One line each for errors of aionode."""
+    group = ExceptionGroup("g", [AionodeError("one"), ExceptionGroup("h", [AionodeError("two")])])
+    assert failure_text(group) == "error: one\nerror: two\n"
