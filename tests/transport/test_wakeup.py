@@ -1,0 +1,167 @@
+"""From foreign threads to the loop."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import threading
+from collections.abc import AsyncIterator, Iterator
+
+import pytest
+
+from aionode.settle import one_turn
+from aionode.transport import wakeup
+from aionode.transport.wakeup import Lane, Wakeup
+
+
+@pytest.fixture(params=["eventfd", "socketpair"])
+async def woken(
+    request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+) -> AsyncIterator[Wakeup]:
+    """A wake-up for the running loop, by each of its two means."""
+    if request.param == "socketpair":
+        monkeypatch.delattr(os, "eventfd", raising=False)
+    elif not hasattr(os, "eventfd"):
+        pytest.skip("only Linux has eventfd")
+    woken = Wakeup()
+    woken.open(asyncio.get_running_loop())
+    yield woken
+    woken.close()
+
+
+def in_thread(*calls: object) -> None:
+    """Make calls in another thread, and wait for them."""
+
+    def run() -> None:
+        for call in calls:
+            assert callable(call)
+            call()
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    thread.join()
+
+
+async def test_what_a_thread_puts_is_handled_on_the_loop_in_order(woken: Wakeup) -> None:
+    """Order is what a topic promises, and the loop's thread is where callbacks may run."""
+    taken: list[tuple[int, int]] = []
+    done = asyncio.Event()
+
+    def take(item: int) -> None:
+        taken.append((item, threading.get_ident()))
+        if item == 999:
+            done.set()
+
+    lane = Lane(woken, take)
+    in_thread(lambda: [lane.put(n) for n in range(1000)])
+    await done.wait()
+
+    assert taken == [(n, threading.get_ident()) for n in range(1000)]
+
+
+async def test_a_burst_wakes_the_loop_once(woken: Wakeup, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A system call for each message would cost more than the message."""
+    wakes = 0
+    wake = woken._wake
+    taken: list[int] = []
+    lane = Lane(woken, taken.append)
+
+    def count() -> None:
+        nonlocal wakes
+        wakes += 1
+        wake()
+
+    await drained(woken)
+    monkeypatch.setattr(woken, "_wake", count)
+    in_thread(lambda: [lane.put(n) for n in range(500)])
+    await drained(woken)
+
+    assert wakes == 1
+    assert len(taken) == 500
+
+
+async def test_other_callbacks_run_in_between(
+    woken: Wakeup, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """However much comes, a timer still fires."""
+    clock: Iterator[int] = iter(range(0, 10**12, wakeup.SLICE_NS))
+    monkeypatch.setattr(wakeup, "perf_ns", lambda: next(clock))  # each look is a slice later
+    order: list[str] = []
+
+    def take(item: int) -> None:
+        order.append(str(item))
+        if item == 0:
+            asyncio.get_running_loop().call_soon(order.append, "other")
+
+    lane = Lane(woken, take)
+    for n in range(3 * wakeup.SLICE_ITEMS):
+        lane.put(n)
+    await drained(woken)
+
+    assert order.index("other") == wakeup.SLICE_ITEMS
+
+
+async def test_a_busy_lane_lets_the_others_have_their_turn(woken: Wakeup) -> None:
+    """A flood on one topic does not hold up another."""
+    order: list[str] = []
+    busy = Lane(woken, lambda _: order.append("busy"))
+    calm = Lane(woken, lambda _: order.append("calm"))
+    for _ in range(10 * wakeup.SLICE_ITEMS):
+        busy.put(None)
+    calm.put(None)
+    await drained(woken)
+
+    assert order.index("calm") == wakeup.SLICE_ITEMS
+
+
+async def test_a_full_lane_drops_its_oldest(woken: Wakeup) -> None:
+    """Nothing grows without limit while the loop is busy."""
+    taken: list[int] = []
+    lane = Lane(woken, taken.append, limit=3)
+    in_thread(lambda: [lane.put(n) for n in range(10)])
+    await drained(woken)
+
+    assert taken == [7, 8, 9]
+
+
+async def test_what_arrives_while_closed_waits_for_the_next_opening(woken: Wakeup) -> None:
+    """A context may be opened again, and nothing is written to a closed descriptor meanwhile."""
+    taken: list[int] = []
+    lane = Lane(woken, taken.append)
+    woken.close()
+    in_thread(lambda: lane.put(1))
+    await one_turn()
+    assert taken == []
+
+    woken.open(asyncio.get_running_loop())
+    await drained(woken)
+    assert taken == [1]
+
+
+async def test_a_handler_that_fails_does_not_stop_the_rest(woken: Wakeup) -> None:
+    """A bug in one place is reported by the loop, and the others go on."""
+    reported: list[object] = []
+    taken: list[int] = []
+    asyncio.get_running_loop().set_exception_handler(lambda _, what: reported.append(what))
+
+    def take(item: int) -> None:
+        if item == 1:
+            raise ValueError(item)
+        taken.append(item)
+
+    lane = Lane(woken, take)
+    in_thread(lambda: [lane.put(n) for n in range(4)])
+    await drained(woken)
+    await drained(woken)
+
+    assert taken == [0, 2, 3]
+    assert len(reported) == 1
+
+
+async def drained(woken: Wakeup) -> None:
+    """Wait until everything put before has been handled."""
+    last = asyncio.Event()
+    Lane[None](woken, lambda _: last.set()).put(None)
+    await last.wait()
+    while woken._ready:
+        await one_turn()

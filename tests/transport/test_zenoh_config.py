@@ -1,0 +1,212 @@
+"""Who a context talks to: environment and arguments to a Zenoh configuration."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+import zenoh  # noqa: TID251  # asks Zenoh whether it knows the settings
+
+from aionode.errors import ConfigurationError
+from aionode.transport.zenoh_config import (
+    MEETING_PORTS,
+    ROUTER_PORT,
+    DiscoveryRange,
+    Network,
+    network_from,
+    probed_ports,
+    router_settings,
+    session_settings,
+)
+
+H1, H2, H3 = MEETING_PORTS
+
+
+def test_nothing_set_means_this_machine_and_domain_0() -> None:
+    """Two terminals find each other without configuration."""
+    assert network_from({}) == Network(
+        domain_id=0,
+        discovery_range=DiscoveryRange.LOCALHOST,
+        override_source="ZENOH_CONFIG_OVERRIDE",
+    )
+
+
+@pytest.mark.parametrize("text", ["", "0", "00", " 0 "])
+def test_an_empty_variable_is_none(text: str) -> None:
+    """Shells set variables to nothing to unset them."""
+    assert network_from({"ROS_DOMAIN_ID": text}).domain_id == 0
+
+
+def test_arguments_win_over_the_environment() -> None:
+    """A program knows better than the shell that it was started in."""
+    environ = {
+        "ROS_DOMAIN_ID": "1",
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF",
+        "ROS_STATIC_PEERS": "a",
+        "ZENOH_SESSION_CONFIG_URI": "/a.json5",
+    }
+    network = network_from(
+        environ,
+        domain_id=2,
+        discovery_range="subnet",
+        static_peers=["tcp/b:1"],
+        config="/b.json5",
+    )
+
+    assert network.domain_id == 2
+    assert network.discovery_range is DiscoveryRange.SUBNET
+    assert network.static_peers == ("tcp/b:1",)
+    assert network.config_file == "/b.json5"
+
+
+@pytest.mark.parametrize(
+    ("environ", "named"),
+    [
+        ({"ROS_DOMAIN_ID": "abc"}, r"ROS_DOMAIN_ID: 'abc' given; a whole number from 0 to"),
+        ({"ROS_DOMAIN_ID": "-1"}, "ROS_DOMAIN_ID: '-1' given"),
+        ({"ROS_DOMAIN_ID": "1_0"}, "ROS_DOMAIN_ID: '1_0' given"),
+        ({"ROS_DOMAIN_ID": "4294967296"}, "ROS_DOMAIN_ID: '4294967296' given"),
+        (
+            {"ROS_AUTOMATIC_DISCOVERY_RANGE": "WORLD"},
+            "ROS_AUTOMATIC_DISCOVERY_RANGE: 'WORLD' given; one of OFF, LOCALHOST, SUBNET",
+        ),
+        ({"ROS_STATIC_PEERS": "a;b:c"}, "ROS_STATIC_PEERS: 'c' given; a TCP port"),
+        ({"ROS_STATIC_PEERS": "a b"}, "ROS_STATIC_PEERS: 'a b' given; a host, host:port or"),
+        ({"ROS_STATIC_PEERS": "tcp/"}, "ROS_STATIC_PEERS: 'tcp/' given"),
+        ({"ZENOH_CONFIG_OVERRIDE": "mode"}, "ZENOH_CONFIG_OVERRIDE: 'mode' given; settings such"),
+        ({"AIONODE_MEETING_PORTS": "1,x"}, "AIONODE_MEETING_PORTS: 'x' given; a TCP port"),
+        ({"AIONODE_ROUTER_PORT": "0"}, "AIONODE_ROUTER_PORT: '0' given; a TCP port"),
+    ],
+)
+def test_an_error_names_the_variable_what_it_says_and_what_fits(
+    environ: dict[str, str], named: str
+) -> None:
+    """The one who set it reads it, far from the code."""
+    with pytest.raises(ConfigurationError, match=named):
+        network_from(environ)
+
+
+def test_an_error_names_the_argument() -> None:
+    """The same check, another source."""
+    with pytest.raises(ConfigurationError, match="domain_id: '-1' given"):
+        network_from({}, domain_id=-1)
+    with pytest.raises(TypeError, match="domain_id: '5' given; a whole number"):
+        network_from({}, domain_id="5")  # type: ignore[arg-type]  # the error is the point
+    with pytest.raises(ConfigurationError, match="discovery_range: 'WORLD' given"):
+        network_from({}, discovery_range="WORLD")
+    with pytest.raises(ConfigurationError, match="static_peers: 'a b' given"):
+        network_from({}, static_peers=["a b"])
+
+
+@pytest.mark.parametrize(
+    ("peer", "endpoints"),
+    [
+        ("10.0.0.7", [f"tcp/10.0.0.7:{p}" for p in (ROUTER_PORT, H1, H2, H3)]),
+        ("robot:7000", ["tcp/robot:7000"]),
+        ("tls/robot:7000", ["tls/robot:7000"]),
+        ("[fe80::1]:7000", ["tcp/[fe80::1]:7000"]),
+        ("fe80::1", [f"tcp/[fe80::1]:{p}" for p in (ROUTER_PORT, H1, H2, H3)]),
+    ],
+)
+def test_a_peer_is_a_host_a_port_or_an_endpoint(peer: str, endpoints: list[str]) -> None:
+    """Without a port, wherever a router or an aionode process could listen."""
+    assert list(network_from({"ROS_STATIC_PEERS": f"; {peer};"}).static_peers) == endpoints
+
+
+def settings(network: Network, *answering: int) -> dict[str, Any]:
+    """Return the settings when somebody listens on these ports."""
+    return session_settings(network, answering)
+
+
+def test_the_first_process_takes_the_first_meeting_port_and_dials_the_others() -> None:
+    """Whoever comes later finds it there; the port of a ROS router is never taken."""
+    found = settings(Network())
+
+    assert found["listen/endpoints"] == [f"tcp/127.0.0.1:{H1}", "tcp/127.0.0.1:0"]
+    assert found["connect/endpoints"] == [f"tcp/127.0.0.1:{p}" for p in (H2, H3, ROUTER_PORT)]
+
+
+def test_a_free_meeting_port_is_taken_over() -> None:
+    """When the process that held it has gone, newcomers still meet."""
+    found = settings(Network(), H1, H3)
+
+    assert found["listen/endpoints"][0] == f"tcp/127.0.0.1:{H2}"
+    assert f"tcp/127.0.0.1:{H2}" not in found["connect/endpoints"]
+
+
+def test_without_a_free_meeting_port_all_are_dialled() -> None:
+    """The fourth process and all after it."""
+    found = settings(Network(), H1, H2, H3)
+
+    assert found["listen/endpoints"] == ["tcp/127.0.0.1:0"]
+    assert len(found["connect/endpoints"]) == 4
+
+
+@pytest.mark.parametrize("discovery_range", DiscoveryRange)
+def test_only_subnet_listens_beyond_loopback(discovery_range: DiscoveryRange) -> None:
+    """Nobody else can reach a node unless its user asks for it."""
+    found = settings(Network(discovery_range=discovery_range))
+    beyond = [e for e in found["listen/endpoints"] if "127.0.0.1" not in e]
+
+    assert bool(beyond) == (discovery_range is DiscoveryRange.SUBNET)
+    assert found["scouting/multicast/enabled"] == bool(beyond)
+
+
+def test_off_neither_listens_nor_dials() -> None:
+    """Static peers included: off is off."""
+    network = Network(discovery_range=DiscoveryRange.OFF, static_peers=("tcp/a:1",))
+
+    assert probed_ports(network) == ()
+    assert settings(network)["listen/endpoints"] == []
+    assert settings(network)["connect/endpoints"] == []
+
+
+def test_the_system_default_is_that_of_rmw_zenoh() -> None:
+    """Only a router on this machine introduces anybody."""
+    network = Network(discovery_range=DiscoveryRange.SYSTEM_DEFAULT)
+
+    assert probed_ports(network) == (ROUTER_PORT,)
+    assert settings(network)["connect/endpoints"] == [f"tcp/127.0.0.1:{ROUTER_PORT}"]
+
+
+def test_static_peers_are_dialled_besides() -> None:
+    """The machine's own processes are found as always."""
+    found = settings(Network(static_peers=("tls/robot:7447",)))
+
+    assert found["connect/endpoints"][-1] == "tls/robot:7447"
+    assert found["listen/endpoints"][0] == f"tcp/127.0.0.1:{H1}"
+
+
+def test_a_file_takes_the_place_of_all_settings() -> None:
+    """Its author decides; only overrides are put on top."""
+    network = network_from(
+        {"ZENOH_SESSION_CONFIG_URI": "/a.json5", "ZENOH_CONFIG_OVERRIDE": "mode='client';x/y=[1]"}
+    )
+
+    assert probed_ports(network) == ()
+    assert session_settings(network, ()) == {}
+    assert network.overrides == (("mode", "'client'"), ("x/y", "[1]"))
+
+
+def test_single_settings_win_over_the_environment() -> None:
+    """They come last, as JSON."""
+    network = network_from(
+        {"ZENOH_CONFIG_OVERRIDE": "a=1"}, config={"transport/shared_memory/enabled": False}
+    )
+
+    assert network.overrides == (("a", "1"), ("transport/shared_memory/enabled", "false"))
+
+
+@pytest.mark.parametrize(
+    "found",
+    [
+        *(settings(Network(discovery_range=r)) for r in DiscoveryRange),
+        router_settings(["tcp/127.0.0.1:0"]),
+    ],
+)
+def test_zenoh_knows_every_setting(found: dict[str, Any]) -> None:
+    """A key path that a release of Zenoh renames would fail at the first start."""
+    config = zenoh.Config()
+    for key, value in found.items():
+        config.insert_json5(key, json.dumps(value))
