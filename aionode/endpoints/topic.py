@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from aionode.clock import TimeBase
     from aionode.endpoints.channel import Channel
     from aionode.endpoints.dispatch import OnError
+    from aionode.errors import DecodeError
     from aionode.qos import QoSProfile
     from aionode.transport.base import Announcement, Writer
 
@@ -289,6 +290,10 @@ class Subscription(Entity, Generic[ItemT]):
         if origin.remote:
             self._count_lost(origin)
         self._inbox.put((msg, self._info(origin)) if self._wants_info else msg)
+
+    def reject(self, error: DecodeError) -> None:  # noqa: ARG002  # the transport has logged it
+        """Count something that is no message of this type."""
+        self.stats.errors += 1
 
     def has_room(self) -> bool:
         """Whether a message can be taken without losing one that should be kept."""

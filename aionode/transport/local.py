@@ -130,8 +130,7 @@ class LocalReader(Announcement):
         self._topic = topic
         qos = endpoint.qos
         self.bounded = (
-            qos.history is HistoryPolicy.KEEP_ALL
-            and qos.reliability is ReliabilityPolicy.RELIABLE
+            qos.history is HistoryPolicy.KEEP_ALL and qos.reliability is ReliabilityPolicy.RELIABLE
         )
 
     def delivery_from(self, msg_type: type[Any]) -> Callable[[Any, Origin], None]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import asyncio
 import os
 import threading
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator
+from functools import partial
 
 import pytest
 
@@ -29,12 +30,11 @@ async def woken(
     woken.close()
 
 
-def in_thread(*calls: object) -> None:
+def in_thread(*calls: Callable[[], None]) -> None:
     """Make calls in another thread, and wait for them."""
 
     def run() -> None:
         for call in calls:
-            assert callable(call)
             call()
 
     thread = threading.Thread(target=run)
@@ -53,7 +53,7 @@ async def test_what_a_thread_puts_is_handled_on_the_loop_in_order(woken: Wakeup)
             done.set()
 
     lane = Lane(woken, take)
-    in_thread(lambda: [lane.put(n) for n in range(1000)])
+    in_thread(*(partial(lane.put, n) for n in range(1000)))
     await done.wait()
 
     assert taken == [(n, threading.get_ident()) for n in range(1000)]
@@ -73,7 +73,7 @@ async def test_a_burst_wakes_the_loop_once(woken: Wakeup, monkeypatch: pytest.Mo
 
     await drained(woken)
     monkeypatch.setattr(woken, "_wake", count)
-    in_thread(lambda: [lane.put(n) for n in range(500)])
+    in_thread(*(partial(lane.put, n) for n in range(500)))
     await drained(woken)
 
     assert wakes == 1
@@ -104,8 +104,8 @@ async def test_other_callbacks_run_in_between(
 async def test_a_busy_lane_lets_the_others_have_their_turn(woken: Wakeup) -> None:
     """A flood on one topic does not hold up another."""
     order: list[str] = []
-    busy = Lane(woken, lambda _: order.append("busy"))
-    calm = Lane(woken, lambda _: order.append("calm"))
+    busy = Lane[None](woken, lambda _: order.append("busy"))
+    calm = Lane[None](woken, lambda _: order.append("calm"))
     for _ in range(10 * wakeup.SLICE_ITEMS):
         busy.put(None)
     calm.put(None)
@@ -118,7 +118,7 @@ async def test_a_full_lane_drops_its_oldest(woken: Wakeup) -> None:
     """Nothing grows without limit while the loop is busy."""
     taken: list[int] = []
     lane = Lane(woken, taken.append, limit=3)
-    in_thread(lambda: [lane.put(n) for n in range(10)])
+    in_thread(*(partial(lane.put, n) for n in range(10)))
     await drained(woken)
 
     assert taken == [7, 8, 9]
@@ -129,7 +129,7 @@ async def test_what_arrives_while_closed_waits_for_the_next_opening(woken: Wakeu
     taken: list[int] = []
     lane = Lane(woken, taken.append)
     woken.close()
-    in_thread(lambda: lane.put(1))
+    in_thread(partial(lane.put, 1))
     await one_turn()
     assert taken == []
 
@@ -150,7 +150,7 @@ async def test_a_handler_that_fails_does_not_stop_the_rest(woken: Wakeup) -> Non
         taken.append(item)
 
     lane = Lane(woken, take)
-    in_thread(lambda: [lane.put(n) for n in range(4)])
+    in_thread(*(partial(lane.put, n) for n in range(4)))
     await drained(woken)
     await drained(woken)
 
