@@ -6,12 +6,14 @@ import asyncio
 import errno
 import gc
 import math
+import operator
 import sys
 import time  # noqa: TID251  # clocks are compared with the machine's
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import pytest
 import uvloop
@@ -170,6 +172,17 @@ def test_durations_are_ordered_and_hashed_by_their_nanoseconds(a_ns: int, b_ns: 
     assert (a < b, a <= b, a > b, a >= b) == (a_ns < b_ns, a_ns <= b_ns, a_ns > b_ns, a_ns >= b_ns)
     assert (a == b) is (a_ns == b_ns)
     assert hash(a) == hash(Duration(nanoseconds=a_ns))
+
+
+def test_nothing_else_is_compared_with_or_added_to_a_time() -> None:
+    """Both operands get their chance, then it is a TypeError."""
+    for value in (Time(nanoseconds=1), Duration(nanoseconds=1)):
+        for operation in (operator.add, operator.sub, operator.lt, operator.le, operator.gt):
+            with pytest.raises(TypeError):
+                operation(value, 1)
+    assert repr(TimeJump(ClockChange.ROS_TIME_ACTIVATED, Duration())) == (
+        "TimeJump(clock_change=ROS_TIME_ACTIVATED, delta=Duration(nanoseconds=0))"
+    )
 
 
 def test_a_duration_is_stretched_by_numbers() -> None:
@@ -682,6 +695,55 @@ def test_no_file_is_left_by_a_loop_that_ends(
     assert open_files() == before
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="Linux has timerfd")
+def test_an_alarm_cancelled_after_its_loop_lets_go_of_the_file() -> None:
+    """What a program does after its loop was closed must not fail."""
+
+    async def main() -> Alarm:
+        machine = MachineTime()
+        return machine.call_at(machine.steady_ns() + 10**15, print)
+
+    before = open_files()
+    loop = asyncio.new_event_loop()
+    alarm = loop.run_until_complete(main())
+    loop.close()
+    alarm.cancel()
+    assert open_files() == before
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="Linux has timerfd")
+async def test_a_loop_that_cannot_wait_for_files_rings_all_the_same(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """With its own timers, and without leaving the file open."""
+
+    def refuse(*_: object) -> None:
+        raise NotImplementedError
+
+    before = open_files()
+    alarms = timerfd.KernelAlarms
+    loop = mock.Mock(wraps=asyncio.get_running_loop(), add_reader=refuse)
+    monkeypatch.setattr(base, "KernelAlarms", lambda _: alarms(loop))
+    machine = MachineTime()
+    rung = asyncio.Event()
+    machine.call_at(machine.steady_ns() + 1_000_000, rung.set)
+    await rung.wait()
+    assert open_files() == before
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="Linux has timerfd")
+async def test_a_false_alarm_calls_nothing() -> None:
+    """The file may be reported readable, and set to another time before it is read."""
+    rung = asyncio.Event()
+    alarms = timerfd.KernelAlarms(asyncio.get_running_loop())
+    alarm = alarms.add(10**18, rung.set)
+    alarms._ring()
+    assert not rung.is_set()
+    assert len(alarms) == 1
+    alarm.cancel()
+    await settle()
+
+
 @pytest.mark.parametrize("broken", ["libc", "open_timer"])
 async def test_without_the_kernels_timers_the_loop_rings(
     broken: str, monkeypatch: pytest.MonkeyPatch
@@ -782,7 +844,7 @@ async def test_manual_time_stands_still() -> None:
     assert manual.now() == ros(6.5)
     await manual.jump(0.5)
     assert manual.now() == ros(7)
-    assert repr(manual) == "ManualTime(now=7.000000000, waiting=0)"
+    assert repr(manual) == "<ManualClock now=7.000000000 waiting=0>"
 
 
 @pytest.mark.parametrize("move", [ManualTime.advance, ManualTime.jump])

@@ -33,9 +33,8 @@ class ManualTime(TimeBase):
         self._overdue = Agenda()
 
     def __repr__(self) -> str:
-        return (
-            f"{type(self).__name__}(now={self._now_ns / S_TO_NS:.9f}, waiting={len(self._agenda)})"
-        )
+        # the name that users know it by, in aionode.testing
+        return f"<ManualClock now={self._now_ns / S_TO_NS:.9f} waiting={len(self._agenda)}>"
 
     def now(self) -> Time:
         """Return the current time, of type ROS_TIME."""

@@ -511,6 +511,7 @@ def test_what_is_no_period_is_refused(seconds: Any, error: type[Exception]) -> N
 # Endurance
 
 
+@pytest.mark.timeout(300)  # 7 to 10 s, but many times that where each line is traced
 @pytest.mark.asyncio(loop_factories=["asyncio"])
 async def test_a_million_ticks_on_the_manual_clock() -> None:
     """No drift, each at its own time, with a stall near the end that costs one call."""
