@@ -25,6 +25,7 @@ from aionode.endpoints.service import Client, Service
 from aionode.endpoints.timer import Timer, TimerInfo
 from aionode.endpoints.topic import MessageInfo, Publisher, Subscription
 from aionode.node import Node
+from aionode.parameter import Parameter
 from aionode.qos import (
     DurabilityPolicy,
     HistoryPolicy,
@@ -46,6 +47,7 @@ __all__ = [
     "LivelinessPolicy",
     "MessageInfo",
     "Node",
+    "Parameter",
     "Publisher",
     "QoSProfile",
     "Rate",

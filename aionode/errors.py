@@ -17,6 +17,7 @@ name; new ones end in `Error`. They carry plain values, never live objects.
     ├── InterfaceNotFoundError (LookupError)
     ├── InvalidLogLevelError (ValueError, RuntimeError)
     ├── InvalidQoSProfileException (ValueError)
+    ├── InvalidQosOverridesError (ValueError, RuntimeError)
     ├── InvalidROSArgsError (ValueError)
     │   └── UnknownROSArgsError
     ├── InvalidRemapRuleError (ValueError)
@@ -63,6 +64,7 @@ __all__ = [
     "InvalidParameterTypeException",
     "InvalidParameterValueException",
     "InvalidQoSProfileException",
+    "InvalidQosOverridesError",
     "InvalidROSArgsError",
     "InvalidRemapRuleError",
     "InvalidServiceNameException",
@@ -370,6 +372,20 @@ class InvalidQoSProfileException(AionodeError, ValueError):
     def __init__(self, problem: str) -> None:
         self.problem = problem
         super().__init__(f"Invalid QoSProfile: {problem}")
+
+
+class InvalidQosOverridesError(AionodeError, ValueError, RuntimeError):
+    """Parameters ask for a QoS that an endpoint cannot have; a RuntimeError as in rclpy.
+
+    Attributes:
+        subject: The endpoint, or the parameter at fault.
+        problem: What is wrong.
+    """
+
+    def __init__(self, subject: str, problem: str) -> None:
+        self.subject = subject
+        self.problem = problem
+        super().__init__(f"{subject}: QoS overrides are not valid: {problem}")
 
 
 class InvalidROSArgsError(AionodeError, ValueError):

@@ -327,12 +327,13 @@ class RemapKind(Enum):
 
 
 WORD = "[A-Za-z_][A-Za-z0-9_]*"
-RULE = re.compile(
-    rf"(?:(?P<node>{WORD}):(?!//|=))?(?P<url>rostopic://|rosservice://)?(?P<match>.*?):=(?P<new>.*)",
-    re.DOTALL,
+# Texts, compiled (and kept by `re`) on first use: most programs have no rules, and import fast.
+RULE = (
+    rf"(?s)(?:(?P<node>{WORD}):(?!//|=))?(?P<url>rostopic://|rosservice://)?"
+    r"(?P<match>.*?):=(?P<new>.*)"
 )
-MATCH = re.compile(rf"(?:~/|/)?(?:{WORD}|\*\*?)(?:/(?:{WORD}|\*\*?))*")
-REPLACEMENT = re.compile(rf"(?:~/|/)?(?:{WORD}|\\[1-9])(?:/(?:{WORD}|\\[1-9]))*")
+MATCH = rf"(?:~/|/)?(?:{WORD}|\*\*?)(?:/(?:{WORD}|\*\*?))*"
+REPLACEMENT = rf"(?:~/|/)?(?:{WORD}|\\[1-9])(?:/(?:{WORD}|\\[1-9]))*"
 KINDS = {
     "__node": RemapKind.NODE_NAME,
     "__name": RemapKind.NODE_NAME,
@@ -378,7 +379,7 @@ class RemapRule:
         Raises:
             InvalidRemapRuleError: It stands for none; the error says what is wrong with it.
         """
-        parts = RULE.fullmatch(text)
+        parts = re.fullmatch(RULE, text)
         if parts is None:
             raise InvalidRemapRuleError(text, "no ':='; a rule is 'from:=to'")
         node, url, match, new = parts.group("node", "url", "match", "new")
@@ -450,10 +451,10 @@ def check_special(text: str, kind: RemapKind, new: str) -> None:
 def check_sides(text: str, match: str, new: str) -> None:
     """Raise InvalidRemapRuleError if one side of a rule for names cannot be read."""
     names = "names are tokens of letters, digits and '_' with '/' between them, after '/' or '~/'"
-    if not MATCH.fullmatch(match):
+    if not re.fullmatch(MATCH, match):
         problem = f"'{match}' cannot be matched; {names}, and a whole token may be '*' or '**'"
         raise InvalidRemapRuleError(text, problem)
-    if not REPLACEMENT.fullmatch(new):
+    if not re.fullmatch(REPLACEMENT, new):
         problem = f"'{new}' is no name; {names}, and a whole token may be '\\1' to '\\9'"
         raise InvalidRemapRuleError(text, problem)
     wildcards = sum(token in {"*", "**"} for token in match.split("/"))

@@ -95,8 +95,7 @@ def test_a_bare_remap_rule_outside_is_read_with_a_warning() -> None:
     assert args.non_ros_args == ("prog",)
     (warning,) = args.warnings
     assert warning == (
-        "Found remap rule 'a:=b'. This syntax is deprecated. "
-        "Use '--ros-args --remap a:=b' instead."
+        "Found remap rule 'a:=b'. This syntax is deprecated. Use '--ros-args --remap a:=b' instead."
     )
 
 
@@ -147,6 +146,21 @@ def test_logs_are_switched_on_and_off() -> None:
     )
 
     assert (args.stdout_logs, args.rosout_logs, args.external_lib_logs) == (False, True, False)
+
+
+@pytest.mark.parametrize(
+    ("flags", "prefix"),
+    [
+        ("", None),
+        ("--log-file-name robot", "robot"),
+        ("--enable-external-lib-logs", "prog.py"),
+        ("--enable-external-lib-logs --log-file-name robot", "robot"),
+        ("--log-file-name robot --disable-external-lib-logs", None),
+    ],
+)
+def test_a_log_file_is_written_only_when_asked_for(flags: str, prefix: str | None) -> None:
+    """ROS writes one always; a robot's disk is small."""
+    assert parse(f"/bin/prog.py --ros-args {flags}").log_file_prefix() == prefix
 
 
 # Errors

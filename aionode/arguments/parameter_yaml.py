@@ -49,16 +49,14 @@ NOT_A_NUMBER = {".nan", ".NaN", ".NAN"}
 
 # What C's strtoll with base 0 and strtod take, which is what rcl calls.
 LONGEST_INTEGER = 100  # digits; far more than 64 bits have, far less than Python refuses
-INTEGER = re.compile(r"[+-]?(?:0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
-DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
-HEXADECIMAL = re.compile(
-    r"[+-]?0[xX](?:[0-9a-fA-F]+\.?[0-9a-fA-F]*|\.[0-9a-fA-F]+)(?:[pP][+-]?[0-9]+)?"
-)
-WORDS = re.compile(r"[+-]?(?:inf|infinity|nan)", re.IGNORECASE)
+INTEGER = r"[+-]?(?:0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)"
+DECIMAL = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+HEXADECIMAL = r"[+-]?0[xX](?:[0-9a-fA-F]+\.?[0-9a-fA-F]*|\.[0-9a-fA-F]+)(?:[pP][+-]?[0-9]+)?"
+WORDS = r"(?ai)[+-]?(?:inf|infinity|nan)"
 
 DEEPEST = 100  # mappings; no name has so many parts, and Python's stack must hold them
 
-NODE_TOKEN = re.compile(r"\*\*?|[A-Za-z_][A-Za-z0-9_]*")
+NODE_TOKEN = r"\*\*?|[A-Za-z_][A-Za-z0-9_]*"
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +100,7 @@ def parse_scalar(text: str) -> bool | int | float | str:
     """Return the value that rcl sees in a scalar without quotes."""
     if text in TRUE or text in FALSE:
         return text in TRUE
-    if INTEGER.fullmatch(text) and len(text) < LONGEST_INTEGER:
+    if re.fullmatch(INTEGER, text) and len(text) < LONGEST_INTEGER:
         number = int(text, 0) if "x" in text.lower() else int(text, 8 if is_octal(text) else 10)
         if -(2**63) <= number < 2**63:
             return number
@@ -120,12 +118,12 @@ def is_octal(text: str) -> bool:
 
 def parse_double(text: str) -> float | str:
     """Return the number that strtod sees, or the text itself if it sees none, or one too large."""
-    if WORDS.fullmatch(text):
+    if re.fullmatch(WORDS, text):
         return float(text)
     number = None
-    if DECIMAL.fullmatch(text):
+    if re.fullmatch(DECIMAL, text):
         number = float(text)
-    elif HEXADECIMAL.fullmatch(text):
+    elif HEXAre.fullmatch(DECIMAL, text):
         try:
             number = float.fromhex(text)
         except OverflowError:
@@ -287,7 +285,7 @@ def node_name(events: Events, parts: tuple[str, ...]) -> str:
     for token in full[1:].split("/"):
         if not token:
             events.fail(f"'{full}' contains repeated forward slashes or ends with one")
-        if not NODE_TOKEN.fullmatch(token):
+        if not re.fullmatch(NODE_TOKEN, token):
             events.fail(
                 f"'{token}' in '{full}' is no token of a node's name: letters, digits and '_', "
                 "or a whole '*' or '**'"

@@ -13,6 +13,7 @@ import difflib
 import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
+from pathlib import PurePath
 
 from aionode.arguments.parameter_yaml import (
     ParameterRule,
@@ -54,7 +55,7 @@ class Arguments:
         enclave: The security enclave.
         stdout_logs: Whether to log to the console.
         rosout_logs: Whether to log to `/rosout`.
-        external_lib_logs: Whether to log to a file.
+        external_lib_logs: Whether to log to a file; None if nothing was said.
         unparsed_ros_args: Words between ``--ros-args`` and ``--`` that are no flags of ROS.
         non_ros_args: All words outside; the program's own.
         warnings: What the user should be told.
@@ -70,7 +71,7 @@ class Arguments:
     enclave: str | None = None
     stdout_logs: bool = True
     rosout_logs: bool = True
-    external_lib_logs: bool = True
+    external_lib_logs: bool | None = None
     unparsed_ros_args: tuple[str, ...] = ()
     non_ros_args: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
@@ -78,6 +79,19 @@ class Arguments:
     def parameters_for(self, node_name: str) -> dict[str, ParameterValueType]:
         """Return the parameters for the node with this full name, remapping done."""
         return matching_parameters(self.parameter_rules, node_name)
+
+    def log_file_prefix(self) -> str | None:
+        """Return how the name of the log file is to begin, or None if there is to be none.
+
+        A file is written only when asked for: by ``--log-file-name``, or by
+        ``--enable-external-lib-logs``, which gives it the name of the program.
+        """
+        if self.external_lib_logs is None:
+            return self.log_file_name
+        if not self.external_lib_logs:
+            return None
+        program = PurePath(self.non_ros_args[0]).name if self.non_ros_args else "python"
+        return self.log_file_name or program
 
     def refuse_unknown(self) -> None:
         """Raise if a word between ``--ros-args`` and ``--`` is no flag of ROS.
@@ -203,7 +217,7 @@ class Parser:
             enclave=self.settings.get("enclave"),
             stdout_logs=self.switches.get("stdout_logs", True),
             rosout_logs=self.switches.get("rosout_logs", True),
-            external_lib_logs=self.switches.get("external_lib_logs", True),
+            external_lib_logs=self.switches.get("external_lib_logs"),
             unparsed_ros_args=tuple(self.unparsed),
             non_ros_args=tuple(self.own),
             warnings=tuple(self.warnings),
@@ -217,9 +231,9 @@ class MalformedError(ValueError):
     """A value is not of its flag's form. Becomes an InvalidROSArgsError with the flag."""
 
 
-PARAMETER = re.compile(
-    r"(?:(?P<node>/?[A-Za-z_]\w*(?:/[A-Za-z_]\w*)*):(?!=))?(?P<name>[^:=\s]+):=(?P<value>.*)",
-    re.DOTALL | re.ASCII,
+PARAMETER = (
+    r"(?sa)(?:(?P<node>/?[A-Za-z_]\w*(?:/[A-Za-z_]\w*)*):(?!=))?"
+    r"(?P<name>[^:=\s]+):=(?P<value>.*)"
 )
 
 
@@ -230,7 +244,7 @@ def add_remap(parser: Parser, text: str) -> None:
 
 def add_parameter(parser: Parser, text: str) -> None:
     """Take the value of ``--param``."""
-    parts = PARAMETER.fullmatch(text)
+    parts = re.fullmatch(PARAMETER, text)
     if parts is None:
         message = "a parameter is 'name:=value' or 'node:name:=value'"
         raise MalformedError(message)

@@ -1,5 +1,6 @@
 """Parameters: values, descriptors, the store of a node, and classes of parameters."""
 
+from aionode.parameter.qos_overrides import QoSOverridingOptions, declare_qos_overrides
 from aionode.parameter.services import ParameterService, parameter_services
 from aionode.parameter.store import (
     OnSetCallback,
@@ -32,6 +33,8 @@ __all__ = [
     "ParameterType",
     "PostSetCallback",
     "PreSetCallback",
+    "QoSOverridingOptions",
+    "declare_qos_overrides",
     "declare_struct",
     "get_parameter_value",
     "parameter_dict_from_yaml_file",
