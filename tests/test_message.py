@@ -6,7 +6,8 @@ import copy
 import pickle
 import subprocess
 import sys
-from typing import ClassVar
+from types import new_class
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -62,9 +63,12 @@ class Words(Message, typename="tutorial/msg/Words"):
     data: Sequence[uint8] = DEFAULT
 
 
+make_words: Any = Words  # to type checkers, a field without a default has to be given
+
+
 def test_every_field_has_a_default_without_being_told() -> None:
     """ROS gives each field a zero; a class may name another value."""
-    words = Words()
+    words = make_words()
 
     assert (words.text, words.short, words.flag, words.level) == ("", "abc", True, b"\x02")
     assert words.inner == Inner(number=0)
@@ -76,12 +80,12 @@ def test_every_field_has_a_default_without_being_told() -> None:
 
 def test_defaults_are_not_shared_between_messages() -> None:
     """Changing one message leaves the next one as it is."""
-    Words().matrix[0] = 5
-    Words().some.append(Inner())
-    Words().inner.number = 3
+    make_words().matrix[0] = 5
+    make_words().some.append(Inner())
+    make_words().inner.number = 3
 
-    assert Words() == Words()
-    assert Words().matrix[0] == 0
+    assert make_words() == make_words()
+    assert make_words().matrix[0] == 0
 
 
 def test_fields_describe_type_and_default_in_order() -> None:
@@ -148,8 +152,10 @@ def test_an_event_has_info_and_at_most_one_of_each_half() -> None:
         (AddTwoInts.Request(a=42, b=58), "example_interfaces.srv.AddTwoInts_Request(a=42, b=58)"),
         (
             Twist(linear=Vector3(x=1.5)),
-            "geometry_msgs.msg.Twist(linear=geometry_msgs.msg.Vector3(x=1.5, y=0.0, z=0.0), "
-            "angular=geometry_msgs.msg.Vector3(x=0.0, y=0.0, z=0.0))",
+            (
+                "geometry_msgs.msg.Twist(linear=geometry_msgs.msg.Vector3(x=1.5, y=0.0, z=0.0), "
+                "angular=geometry_msgs.msg.Vector3(x=0.0, y=0.0, z=0.0))"
+            ),
         ),
         (
             Fibonacci.Feedback(sequence=[0, 1]),
@@ -199,7 +205,7 @@ def test_deepcopy_shares_nothing_that_can_change() -> None:
     """Arrays and nested messages are copied, views become bytes."""
     data = bytearray(b"abc")
     image = Image(data=memoryview(data))
-    words = Words(inner=Inner(number=1), matrix=np.ones(4))
+    words = make_words(inner=Inner(number=1), matrix=np.ones(4))
 
     copied, deep = copy.deepcopy(words), copy.deepcopy(image)
     words.inner.number, words.matrix[0], data[0] = 2, 0, 0
@@ -241,7 +247,9 @@ def test_a_wrong_field_name_is_a_type_error() -> None:
 
 def test_construction_does_not_validate() -> None:
     """That happens where it is published; a loop that fills fields pays nothing."""
-    assert String(data=5).data == 5  # type: ignore[arg-type] # the point of the test
+    wrong: Any = 5
+
+    assert String(data=wrong).data == wrong
 
 
 def test_fields_may_have_the_names_of_functions() -> None:
@@ -258,13 +266,19 @@ def test_fields_may_have_the_names_of_functions() -> None:
     assert Odd(fields=4) != Odd()
 
 
+def message(field: str) -> type:
+    """Return a message class with one field."""
+    body = {"__annotations__": {field: int32}}
+    return new_class(
+        "Odd", (Message,), {"typename": "tutorial/msg/Odd"}, lambda ns: ns.update(body)
+    )
+
+
 @pytest.mark.parametrize("name", ["_x", "Upper", "a__b", "end_", "from"])
 def test_a_field_name_that_ros_refuses_is_refused(name: str) -> None:
     """No definition could be printed for it, and generated code is made of these names."""
     with pytest.raises(TypeError, match=f"tutorial/msg/Odd.{name}: not the name of a ROS field"):
-        type(Message)(
-            "Odd", (Message,), {"__annotations__": {name: int32}}, typename="tutorial/msg/Odd"
-        )
+        message(name)
 
 
 @pytest.mark.parametrize("name", ["Words", "tutorial/Words", "tutorial/msg/words", "A/msg/B"])
@@ -302,7 +316,7 @@ def test_arrays_of_arrays_are_refused() -> None:
 def test_a_size_is_a_positive_int(size: object) -> None:
     """A size of nothing is a mistake."""
     with pytest.raises(TypeError, match="at least 1"):
-        Array[int32, size]  # type: ignore[valid-type] # the point of the test
+        Array[int32, size]
 
 
 def test_a_service_needs_both_halves() -> None:

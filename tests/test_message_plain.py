@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 import yaml
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, settings
 
 from aionode.errors import MessageError
 from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -127,8 +128,10 @@ def test_the_arrays_of_a_new_message_can_be_changed() -> None:
         (
             String,
             "dat: hi",
-            "std_msgs/msg/String.dat: no such field; did you mean 'data'?; std_msgs/msg/String "
-            "has data",
+            (
+                "std_msgs/msg/String.dat: no such field; did you mean 'data'?; std_msgs/msg/String "
+                "has data"
+            ),
         ),
         (
             Empty,
@@ -138,8 +141,10 @@ def test_the_arrays_of_a_new_message_can_be_changed() -> None:
         (
             Twist,
             "linear: {q: 1}",
-            "geometry_msgs/msg/Twist.linear.q: no such field; geometry_msgs/msg/Vector3 has x, "
-            "y, z",
+            (
+                "geometry_msgs/msg/Twist.linear.q: no such field; geometry_msgs/msg/Vector3 has x, "
+                "y, z"
+            ),
         ),
         (Int8, "data: 300", "std_msgs/msg/Int8.data: 300, int8 holds -128 to 127"),
         (String, "data: 5", "std_msgs/msg/String.data: 5 (int), needs a str"),
@@ -151,8 +156,10 @@ def test_the_arrays_of_a_new_message_can_be_changed() -> None:
         (
             Polygon,
             "points: [{x: 1}, 5]",
-            "geometry_msgs/msg/Polygon.points[1]: 5 (int), needs a mapping from field names to "
-            "values",
+            (
+                "geometry_msgs/msg/Polygon.points[1]: 5 (int), needs a mapping from field names to "
+                "values"
+            ),
         ),
         (
             Polygon,
@@ -179,13 +186,14 @@ def test_the_arrays_of_a_new_message_can_be_changed() -> None:
 def test_a_misfit_names_its_path(cls: type[Message], text: str, error: str) -> None:
     """From plain values, YAML and JSON alike."""
     data = yaml.safe_load(text)
-    for read in (
-        lambda: from_yaml(cls, text),
-        lambda: from_builtins(cls, data),
-        lambda: from_json(cls, json.dumps(data)),
-    ):
+    readers: list[tuple[Callable[..., Message], object]] = [
+        (from_yaml, text),
+        (from_builtins, data),
+        (from_json, json.dumps(data)),
+    ]
+    for read, source in readers:
         with pytest.raises(MessageError) as caught:
-            read()
+            read(cls, source)
         assert str(caught.value) == error
 
 

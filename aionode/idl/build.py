@@ -34,7 +34,7 @@ BASES: dict[str, type[Interface]] = {"msg": Message, "srv": ServiceType, "action
 
 def define(
     typename: str, text: str, *, types: Mapping[str, type[Interface]] | None = None
-) -> type[Interface]:
+) -> type[Any]:
     r"""Return the class that the text of a definition makes.
 
     ::

@@ -7,13 +7,13 @@ import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import aionode.interfaces
 from aionode.errors import IdlError
 from aionode.idl.build import Builder
 from aionode.idl.definition import HALVES, InterfaceText, split_type_name
 from aionode.idl.parser import parse
-from aionode.message import Interface
 
 __all__ = ["Interfaces", "load_interfaces", "read_folder"]
 
@@ -21,10 +21,10 @@ PACKAGE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 TYPE_NAME = re.compile(r"[A-Z][A-Za-z0-9]*")
 
 
-class Interfaces(Mapping[str, type[Interface]]):
+class Interfaces(Mapping[str, type[Any]]):
     """Interfaces by their ROS name, and as attributes: ``loaded.my_msgs.msg.Words``."""
 
-    def __init__(self, types: Mapping[str, type[Interface]]) -> None:
+    def __init__(self, types: Mapping[str, type[Any]]) -> None:
         self._types = dict(sorted(types.items()))
         self._packages: dict[str, ModuleType] = {}
         for typename, cls in self._types.items():
@@ -34,7 +34,7 @@ class Interfaces(Mapping[str, type[Interface]]):
                 setattr(outer, kind, ModuleType(f"{package}.{kind}"))
             setattr(getattr(outer, kind), name, cls)
 
-    def __getitem__(self, typename: str) -> type[Interface]:
+    def __getitem__(self, typename: str) -> type[Any]:
         return self._types[typename]
 
     def __iter__(self) -> Iterator[str]:

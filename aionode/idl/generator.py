@@ -13,6 +13,7 @@ import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+import aionode.message
 from aionode.idl.build import Builder
 from aionode.idl.definition import HALVES, InterfaceText, split_type_name
 from aionode.idl.folder import read_folder
@@ -236,7 +237,7 @@ class Module:
         if (package, kind) == (self.package, self.kind):
             return name
         if typename not in self.classes:
-            used = self.taken | set(self.classes.values())
+            used = {*self.taken, *self.classes.values(), *aionode.message.__all__}
             module = f"{self.home.get(package, f'aionode.interfaces.{package}')}.{kind}"
             prefix = package.title().replace("_", "")
             self.classes[typename] = f"{prefix}{name}" if name in used else name
@@ -263,13 +264,18 @@ class Module:
 
     def import_lines(self) -> Iterator[str]:
         """Yield the import statements, the standard library's first."""
-        standard = [module for module in self.imports if module in {"builtins", "typing"}]
-        for module in sorted(standard):
-            yield from import_lines(module, self.imports[module])
-        if standard:
-            yield ""
-        for module in sorted(self.imports.keys() - set(standard)):
-            yield from import_lines(module, self.imports[module])
+        sections: dict[str, list[str]] = {"standard": [], "aionode": [], "own": []}
+        for module in sorted(self.imports):
+            standard = module in {"builtins", "typing"}
+            section = "standard" if standard else "aionode" if is_aionode(module) else "own"
+            sections[section].extend(import_lines(module, self.imports[module]))
+        filled = [lines for lines in sections.values() if lines]
+        yield "\n\n".join("\n".join(lines) for lines in filled)
+
+
+def is_aionode(module: str) -> bool:
+    """Return whether a module is of this library."""
+    return module.partition(".")[0] == "aionode"
 
 
 def messages_of(cls: type[Interface], kind: str) -> list[type[Message]]:

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from aionode.errors import InterfaceNotFoundError
-from aionode.message import ActionType, Interface, Message, ServiceType
+from aionode.message import ActionType, Message, ServiceType
 
 __all__ = [
     "get_action",
@@ -31,8 +31,10 @@ CLOSE = 0.85
 """How like a name has to be to be suggested, from 0 to 1."""
 
 
-def get_interface(name: str) -> type[Interface]:
+def get_interface(name: str) -> type[Any]:
     """Return the class of a message, service or action type.
+
+    Type checkers know nothing of a class that is found by name, so it is of `Any` to them.
 
     Args:
         name: Its ROS name, such as ``std_msgs/msg/String``; ``std_msgs/String`` is understood if
@@ -51,25 +53,22 @@ def get_interface(name: str) -> type[Interface]:
     raise not_found(name, parts)
 
 
-def get_message(name: str) -> type[Message]:
+def get_message(name: str) -> type[Any]:
     """Return the class of a message type; see `get_interface`."""
-    found: type[Message] = of_kind(name, Message, "a message")
-    return found
+    return of_kind(name, Message, "a message")
 
 
-def get_service(name: str) -> type[ServiceType]:
+def get_service(name: str) -> type[Any]:
     """Return the class of a service type; see `get_interface`."""
-    found: type[ServiceType] = of_kind(name, ServiceType, "a service")
-    return found
+    return of_kind(name, ServiceType, "a service")
 
 
-def get_action(name: str) -> type[ActionType]:
+def get_action(name: str) -> type[Any]:
     """Return the class of an action type; see `get_interface`."""
-    found: type[ActionType] = of_kind(name, ActionType, "an action")
-    return found
+    return of_kind(name, ActionType, "an action")
 
 
-def of_kind(name: str, base: type[Any], what: str) -> Any:
+def of_kind(name: str, base: type[Any], what: str) -> type[Any]:
     """Return the class of a type that has to be of one kind."""
     found = get_interface(name)
     if not issubclass(found, base):
@@ -108,7 +107,7 @@ def loaded_packages() -> frozenset[str]:
     )
 
 
-def types_of(package: str, kind: str) -> dict[str, type[Interface]]:
+def types_of(package: str, kind: str) -> dict[str, type[Any]]:
     """Return the types of one kind in a package, by name; none if there is no such package."""
     if not package.isidentifier() or kind not in KINDS:
         return {}

@@ -34,7 +34,6 @@ TYPE_NAME = re.compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Z][A-Za-z0-9_]*")
 FIELD_NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 
 
-@dataclass_transform(kw_only_default=True, field_specifiers=(msgspec.field,))
 class MessageMeta(msgspec.StructMeta):
     """Turns annotations into the description of a message, and gives every field a default."""
 
@@ -106,7 +105,8 @@ def checked_field_name(owner: str, name: str) -> None:
         raise TypeError(msg)
 
 
-class Message(msgspec.Struct, metaclass=MessageMeta):
+@dataclass_transform(kw_only_default=True, field_specifiers=(msgspec.field,))
+class Message(msgspec.Struct, metaclass=MessageMeta):  # noqa: PLW1641 (mutable: no hash)
     """Base of all messages.
 
     Write a message as a class with annotations from `aionode.message`::
