@@ -56,7 +56,7 @@ WORDS = r"(?ai)[+-]?(?:inf|infinity|nan)"
 
 DEEPEST = 100  # mappings; no name has so many parts, and Python's stack must hold them
 
-NODE_TOKEN = r"\*\*?|[A-Za-z_][A-Za-z0-9_]*"
+NODE_PART = r"\*\*?|[A-Za-z_][A-Za-z0-9_]*"
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +123,7 @@ def parse_double(text: str) -> float | str:
     number = None
     if re.fullmatch(DECIMAL, text):
         number = float(text)
-    elif HEXAre.fullmatch(DECIMAL, text):
+    elif re.fullmatch(HEXADECIMAL, text):
         try:
             number = float.fromhex(text)
         except OverflowError:
@@ -285,7 +285,7 @@ def node_name(events: Events, parts: tuple[str, ...]) -> str:
     for token in full[1:].split("/"):
         if not token:
             events.fail(f"'{full}' contains repeated forward slashes or ends with one")
-        if not re.fullmatch(NODE_TOKEN, token):
+        if not re.fullmatch(NODE_PART, token):
             events.fail(
                 f"'{token}' in '{full}' is no token of a node's name: letters, digits and '_', "
                 "or a whole '*' or '**'"
