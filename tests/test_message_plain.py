@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 import yaml
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, given, settings
 
 from aionode.errors import MessageError
 from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue

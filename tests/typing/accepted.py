@@ -1,0 +1,175 @@
+"""Code as users write it, which mypy --strict and pyright accept."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, TypeVar, assert_type
+
+import numpy as np
+import numpy.typing as npt
+
+from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.geometry_msgs.msg import Point, PoseStamped, Twist, Vector3
+from aionode.interfaces.sensor_msgs.msg import Image, Imu, JointState, LaserScan
+from aionode.interfaces.std_msgs.msg import ByteMultiArray, Header, String
+from aionode.message import (
+    DEFAULT,
+    ActionClass,
+    ActionType,
+    Array,
+    Bounded,
+    Message,
+    Sequence,
+    ServiceClass,
+    ServiceType,
+    byte,
+    fields,
+    float32,
+    float64,
+    from_json,
+    int32,
+    snapshot,
+    snapshotter,
+    to_json,
+    type_name,
+    uint8,
+)
+
+RequestT = TypeVar("RequestT", bound=Message)
+ResponseT = TypeVar("ResponseT", bound=Message)
+GoalT = TypeVar("GoalT", bound=Message)
+ResultT = TypeVar("ResultT", bound=Message)
+FeedbackT = TypeVar("FeedbackT", bound=Message)
+
+
+class Words(Message, typename="tutorial/msg/Words"):
+    """A message written by hand."""
+
+    LIMIT: ClassVar[uint8] = 7
+
+    text: str = ""
+    short: Bounded[str, 3] = "abc"
+    level: byte = b"\x00"
+    count: int32 = 0
+    where: Point = DEFAULT
+    matrix: Array[float64, 4] = DEFAULT
+    scores: Sequence[float32] = DEFAULT
+    few: Sequence[Point, 3] = DEFAULT
+
+
+class Say(ServiceType, typename="tutorial/srv/Say"):
+    """A service written by hand."""
+
+    class Request(Message):
+        """What to say."""
+
+        words: Words = DEFAULT
+
+    class Response(Message):
+        """Whether it was said."""
+
+        done: bool = False
+
+
+class Walk(ActionType, typename="tutorial/action/Walk"):
+    """An action written by hand."""
+
+    class Goal(Message):
+        """How far."""
+
+        distance: float64 = 0.0
+
+    class Result(Message):
+        """How long it took."""
+
+        seconds: float64 = 0.0
+
+    class Feedback(Message):
+        """How far so far."""
+
+        distance: float64 = 0.0
+
+
+def request_and_response(
+    service: ServiceClass[RequestT, ResponseT],
+) -> tuple[RequestT, ResponseT]:
+    """Take a service type as create_client does."""
+    return service.Request(), service.Response()
+
+
+def goal_and_result(
+    action: ActionClass[GoalT, ResultT, FeedbackT],
+) -> tuple[GoalT, ResultT, FeedbackT]:
+    """Take an action type as ActionClient does."""
+    return action.Goal(), action.Result(), action.Feedback()
+
+
+def written_by_hand() -> None:
+    """Fields are what their annotations say."""
+    words = Words(text="hi", matrix=np.zeros(4), scores=[1.0], few=[Point()])
+    assert_type(words.text, str)
+    assert_type(words.short, str)
+    assert_type(words.level, bytes)
+    assert_type(words.count, int)
+    assert_type(words.where, Point)
+    assert_type(Words.LIMIT, int)
+    words.matrix = [1, 2, 3, 4]
+    words.count += 1
+
+
+def single_values() -> None:
+    """An int fits a float, as everywhere in Python."""
+    twist = Twist(linear=Vector3(x=1, y=0.5))
+    twist.angular.z = 0.3
+    assert_type(twist.linear.x, float)
+    pose = PoseStamped(header=Header(frame_id="map"))
+    pose.header.stamp.sec = 3
+    assert_type(String().data, str)
+
+
+def arrays() -> None:
+    """They take lists, tuples and arrays, and read as arrays."""
+    imu = Imu(orientation_covariance=[0.0] * 9)
+    imu.angular_velocity_covariance = np.zeros(9)
+    imu.linear_acceleration_covariance = (0,) * 9
+    imu.orientation_covariance[0] = -1
+    covariance: npt.NDArray[np.floating[Any]] = imu.orientation_covariance
+    scan = LaserScan(ranges=covariance.astype(np.float32))
+    nearest = float(scan.ranges.min())
+    joints = JointState(name=["a", "b"], position=[0.0, nearest])
+    joints.name.append("c")
+    assert_type(joints.name, list[str])
+
+
+def bytes_like() -> None:
+    """Images take what holds bytes."""
+    image = Image(data=b"abc")
+    image.data = bytearray(b"abc")
+    image.data = memoryview(b"abc")
+    image.data = np.zeros(3, np.uint8)
+    image.data = [1, 2, 3]
+    length: int = len(image.data)
+    pixels = np.frombuffer(image.data, np.uint8).reshape(1, length)
+    assert pixels.shape == (1, 3)
+    ByteMultiArray(data=[b"a", b"b"])
+
+
+def services_and_actions() -> None:
+    """A client knows what it sends and gets."""
+    assert_type(request_and_response(AddTwoInts), tuple[AddTwoInts.Request, AddTwoInts.Response])
+    assert_type(request_and_response(Say), tuple[Say.Request, Say.Response])
+    assert_type(goal_and_result(Walk), tuple[Walk.Goal, Walk.Result, Walk.Feedback])
+    result = Fibonacci.Result(sequence=[0, 1, 1])
+    last = int(result.sequence[-1])
+    assert last == 1
+    AddTwoInts.Event(request=[AddTwoInts.Request(a=1)])
+    Fibonacci.Impl.SendGoalService.Request()
+
+
+def functions() -> None:
+    """What describes and copies keeps the type."""
+    assert_type(snapshot(String(data="hi")), String)
+    assert_type(snapshotter(Twist)(Twist()), Twist)
+    assert_type(from_json(Twist, to_json(Twist())), Twist)
+    assert_type(type_name(AddTwoInts), str)
+    assert_type(fields(Words)[0].name, str)
