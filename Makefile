@@ -36,13 +36,13 @@ check: .venv/installed-dev
 	$(BIN)/lint-imports --no-logo
 	$(BIN)/python docs/quotes.py --check
 	$(BIN)/python -m pytest -q tests/test_docs.py
-	$(BIN)/mkdocs build --strict --quiet
+	$(BIN)/sphinx-build -q -W --keep-going -b html docs site
 
 bench: .venv/installed-dev
 	for program in benchmarks/*.py; do $(BIN)/python $$program || exit 1; done
 
 docs: .venv/installed-dev
-	$(BIN)/mkdocs build --strict
+	$(BIN)/sphinx-build -q -W --keep-going -b html docs site
 	@echo "Open site/index.html"
 
 fuzz: .venv/installed-dev
