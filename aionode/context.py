@@ -6,8 +6,9 @@ import asyncio
 import dataclasses
 import os
 import secrets
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+from aionode.arguments import Arguments
 from aionode.clock import MachineTime
 from aionode.endpoints.mismatch import MismatchReport
 from aionode.errors import EntityDestroyedError
@@ -53,6 +54,7 @@ class Context:
         network: Domain, discovery and peers, from the arguments and the environment.
         graph: The nodes and endpoints known now.
         time_base: Where the time comes from.
+        arguments: What the command line says; it holds for nodes made from now on.
         participant: Id of this context in the graph, in hexadecimal.
 
     Raises:
@@ -86,6 +88,7 @@ class Context:
             config=config,
         )
         self._transports = self._make_transports(transport)
+        self.arguments = Arguments()
         self._nodes: dict[Node, None] = {}
         self._ids = 0
         self._users = 0
@@ -108,7 +111,7 @@ class Context:
             return (LocalTransport(),)
         if transport == "zenoh":
             # Imported here, because it is large and a context without network does not need it.
-            from aionode.transport.zenoh import ZenohTransport  # noqa: PLC0415
+            from aionode.transport.zenoh import ZenohTransport
 
             return (LocalTransport(), ZenohTransport(self.participant, self.network))
         raise ValueError(f'Context: transport={transport!r} is unknown; use "zenoh" or "local"')
@@ -131,7 +134,7 @@ class Context:
         """Whether the context can be used: `shutdown` was not called."""
         return not self._shut_down
 
-    async def __aenter__(self) -> Context:
+    async def __aenter__(self) -> Self:
         """Open the context: connect its transports, and return when others are known."""
         self._refuse_if_shut_down()
         await self.acquire()
@@ -226,7 +229,7 @@ class Context:
         return NodeInfo(self.participant, self.new_id(), name, namespace, enclave)
 
     def describe_endpoint(
-        self, kind: EndpointKind, node: NodeInfo, name: str, ros_type: type[Any], qos: QoSProfile
+        self, kind: EndpointKind, node: NodeInfo, name: str, ros_type: Any, qos: QoSProfile
     ) -> EndpointInfo:
         """Return a new endpoint's entry in the graph."""
         endpoint = EndpointInfo(

@@ -10,7 +10,7 @@ import asyncio
 import enum
 from collections import defaultdict
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from aionode import names, qos
 
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from aionode.qos import QoSProfile
 
 __all__ = ["EndpointInfo", "EndpointKind", "Graph", "NodeInfo"]
+
+K = TypeVar("K")
 
 
 class EndpointKind(enum.Enum):
@@ -109,9 +111,7 @@ class EndpointInfo:
         if self.type_name != other.type_name:
             return f"type: {self.type_name} here, {other.type_name} there"
         if self.type_hash != other.type_hash:
-            return (
-                f"definition of {self.type_name}: {self.type_hash} here, {other.type_hash} there"
-            )
+            return f"definition of {self.type_name}: {self.type_hash} here, {other.type_hash} there"
         if self.node.participant == other.node.participant:
             return self.qos_mismatch(other)
         return None
@@ -177,14 +177,8 @@ class Graph:
         if endpoint not in self._endpoints:
             return
         del self._endpoints[endpoint]
-        for index, key in (
-            (self._by_name, (endpoint.kind, endpoint.name)),
-            (self._by_node, endpoint.node),
-        ):
-            group = index[key]  # type: ignore[index]  # the two indices differ in their keys
-            del group[endpoint]
-            if not group:
-                del index[key]  # type: ignore[attr-defined]  # as above
+        _take_out(self._by_name, (endpoint.kind, endpoint.name), endpoint)
+        _take_out(self._by_node, endpoint.node, endpoint)
         self._wake()
 
     def remove_participant(self, participant: str) -> None:
@@ -257,3 +251,10 @@ class Graph:
     def find_nodes(self, fully_qualified_name: str) -> Iterator[NodeInfo]:
         """Yield every node of this full name; names need not be unique."""
         return (n for n in self._nodes if n.fully_qualified_name == fully_qualified_name)
+
+
+def _take_out(index: dict[K, dict[EndpointInfo, None]], key: K, endpoint: EndpointInfo) -> None:
+    """Remove `endpoint` from its group, and the group when it was the last."""
+    del index[key][endpoint]
+    if not index[key]:
+        del index[key]

@@ -3,23 +3,29 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
+import threading
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar, overload
 
-from aionode import names, qos
-from aionode.clock import ClockType, ROSClock
+from aionode import names, node_services, qos
+from aionode.arguments import Arguments, parse_arguments
+from aionode.clock import ROSClock
 from aionode.context import Context
 from aionode.endpoints.channel import Channel
 from aionode.endpoints.dispatch import Callbacks
-from aionode.endpoints.service import Client, Service
 from aionode.endpoints.rate import Rate
+from aionode.endpoints.service import Client, Service
 from aionode.endpoints.timer import Timer, to_period_ns
 from aionode.endpoints.topic import Publisher, Subscription
 from aionode.errors import EntityDestroyedError
 from aionode.graph import EndpointKind
+from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.logging import get_logger
 from aionode.message import Message, ServiceType
 from aionode.node_graph import NodeGraphMethods
+from aionode.node_parameters import NodeParameterMethods
+from aionode.parameter import ParameterStore, declare_qos_overrides
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -34,6 +40,7 @@ if TYPE_CHECKING:
     from aionode.graph import Graph
     from aionode.logging import RcutilsLogger
     from aionode.message import ServiceClass
+    from aionode.parameter import Parameter, QoSOverridingOptions
     from aionode.qos import QoSProfile
 
 __all__ = ["Node"]
@@ -44,7 +51,7 @@ ResponseT = TypeVar("ResponseT", bound=Message)
 EntityT = TypeVar("EntityT", bound="Entity")
 
 
-class Node(NodeGraphMethods):
+class Node(NodeGraphMethods, NodeParameterMethods):
     """A participant in the system, with publishers, subscriptions, services, clients and timers.
 
     A node is made at any time, with or without a running event loop, and so are its entities. Its
@@ -62,6 +69,7 @@ class Node(NodeGraphMethods):
         cli_args: Arguments for this node alone, as on a command line.
         use_global_arguments: Whether the arguments given to `aionode.run` hold for it too.
         enable_rosout: Whether its log goes to ``/rosout`` as well.
+        rosout_qos_profile: The profile of that publisher.
         start_parameter_services: Whether others can read and set its parameters.
         parameter_overrides: Values that win over those of `declare_parameter`.
         allow_undeclared_parameters: Whether parameters can be set without being declared.
@@ -85,8 +93,9 @@ class Node(NodeGraphMethods):
         cli_args: Sequence[str] | None = None,
         use_global_arguments: bool = True,
         enable_rosout: bool = True,
+        rosout_qos_profile: QoSProfile | int = qos.qos_profile_rosout_default,
         start_parameter_services: bool = True,
-        parameter_overrides: Sequence[Any] | None = None,
+        parameter_overrides: Sequence[Parameter] | None = None,
         allow_undeclared_parameters: bool = False,
         automatically_declare_parameters_from_overrides: bool = False,
         enable_logger_service: bool = False,
@@ -95,22 +104,58 @@ class Node(NodeGraphMethods):
         names.validate_node_name(node_name)
         namespace = names.normalize_namespace(namespace)
         self.context = Context.default() if context is None else context
-        self._rules: tuple[names.RemapRule, ...] = ()
+        # Where two arguments say something of the same, the node's own win: they come first among
+        # the rules, of which the first that matches counts, and last among the parameters.
+        own = parse_arguments(cli_args or ())
+        own.refuse_unknown()
+        shared = self.context.arguments if use_global_arguments else Arguments()
+        self._rules = own.remap_rules + shared.remap_rules
+        node_name = names.remap_node_name(self._rules, node_name)
+        namespace = names.remap_namespace(self._rules, node_name, namespace)
         self._entities: dict[Entity, None] = {}
         self._tasks: asyncio.TaskGroup | None = None
         self._running = False
         self._destroyed = asyncio.Event()
         self._clock = ROSClock(time_base=self.context.time_base)
-        self._logger = get_logger(names.logger_name(namespace, node_name))
+        self._logger = get_logger(
+            names.logger_name(namespace, node_name), now_ns=self.context.time_base.system_ns
+        )
         self._callbacks = Callbacks(
             node=names.fully_qualified_name(namespace, node_name),
             logger=self._logger,
             budget_ns=round(callback_budget_ms * 1e6),
         )
         self.context.add_node(self)
-        self._info = self.context.describe_node(node_name, namespace, enclave="/")
+        self._info = self.context.describe_node(
+            node_name, namespace, enclave=own.enclave or shared.enclave or "/"
+        )
         self._announcements = [t.create_node(self._info) for t in self.context.transports]
         self.context.graph.add_node(self._info)
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._thread = 0
+        self._unlog: Callable[[], None] | None = None
+        if enable_rosout and shared.rosout_logs and own.rosout_logs:
+            self._unlog = node_services.publish_log(self, rosout_qos_profile)
+        full_name = self.get_fully_qualified_name()
+        self._parameters = ParameterStore(
+            full_name,
+            overrides={
+                **shared.parameters_for(full_name),
+                **own.parameters_for(full_name),
+                **{parameter.name: parameter for parameter in parameter_overrides or ()},
+            },
+            allow_undeclared=allow_undeclared_parameters,
+            publish=node_services.publish_parameter_events(self),
+        )
+        if automatically_declare_parameters_from_overrides:
+            for name in self._parameters.overrides:
+                self.declare_parameter(name, descriptor=ParameterDescriptor(dynamic_typing=True))
+        node_services.TimeSource(self, self._clock)
+        if start_parameter_services:
+            node_services.serve_parameters(self, self._parameters)
+        node_services.serve_type_descriptions(self)
+        if enable_logger_service:
+            node_services.serve_logger_levels(self)
 
     def __repr__(self) -> str:
         state = "destroyed" if self.destroyed else "running" if self._running else "not running"
@@ -135,6 +180,8 @@ class Node(NodeGraphMethods):
         except BaseException:
             self._running = False
             raise
+        self._loop = asyncio.get_running_loop()
+        self._thread = threading.get_ident()
         self._tasks = await asyncio.TaskGroup().__aenter__()
         for entity in list(self._entities):
             entity.start(self._tasks)
@@ -191,6 +238,8 @@ class Node(NodeGraphMethods):
         if self.destroyed:
             return
         self._destroyed.set()
+        if self._unlog is not None:
+            self._unlog()
         for entity in reversed(list(self._entities)):
             entity.destroy()
         self._clock.destroy()
@@ -198,6 +247,14 @@ class Node(NodeGraphMethods):
             announcement.close()
         self.context.graph.remove_node(self._info)
         self.context.remove_node(self)
+
+    def call_in_loop(self, action: Callable[[], None]) -> None:
+        """Do `action` in the thread of the node's loop: at once if this is it, or none runs."""
+        if self._loop is None or threading.get_ident() == self._thread:
+            action()
+        else:
+            with contextlib.suppress(RuntimeError):  # the loop was closed, and with it the node
+                self._loop.call_soon_threadsafe(action)
 
     # What it is
 
@@ -281,7 +338,12 @@ class Node(NodeGraphMethods):
     # Entities
 
     def create_publisher(
-        self, msg_type: type[MsgT], topic: str, qos_profile: QoSProfile | int
+        self,
+        msg_type: type[MsgT],
+        topic: str,
+        qos_profile: QoSProfile | int,
+        *,
+        qos_overriding_options: QoSOverridingOptions | None = None,
     ) -> Publisher[MsgT]:
         """Return a publisher of `msg_type`.
 
@@ -289,6 +351,7 @@ class Node(NodeGraphMethods):
             msg_type: A message class.
             topic: Name of the topic; a relative one gets the node's namespace.
             qos_profile: A profile, or the number of messages to keep.
+            qos_overriding_options: Which policies parameters may set.
 
         Raises:
             TypeError: `msg_type` is no message class, or `qos_profile` neither profile nor number.
@@ -298,14 +361,14 @@ class Node(NodeGraphMethods):
         """
         self._refuse_if_destroyed("publisher")
         expect_message_type(msg_type, f"publisher of {topic}")
-        channel = self._channel(EndpointKind.PUBLISHER, topic, msg_type, qos_profile)
+        channel = self._channel(
+            EndpointKind.PUBLISHER, topic, msg_type, qos_profile, qos_overriding_options
+        )
         writers = [
             transport.create_writer(channel.endpoint, msg_type)
             for transport in self.context.transports
         ]
-        return self._add(
-            Publisher(channel, msg_type, writers, self.context.time_base), channel
-        )
+        return self._add(Publisher(channel, msg_type, writers, self.context.time_base), channel)
 
     @overload
     def create_subscription(
@@ -319,6 +382,7 @@ class Node(NodeGraphMethods):
         raw: Literal[True],
         on_error: OnError = "raise",
         offload: bool = False,
+        qos_overriding_options: QoSOverridingOptions | None = None,
     ) -> Subscription[bytes]: ...
 
     @overload
@@ -333,6 +397,7 @@ class Node(NodeGraphMethods):
         raw: Literal[False] = False,
         on_error: OnError = "raise",
         offload: bool = False,
+        qos_overriding_options: QoSOverridingOptions | None = None,
     ) -> Subscription[MsgT]: ...
 
     def create_subscription(
@@ -346,6 +411,7 @@ class Node(NodeGraphMethods):
         raw: bool = False,
         on_error: OnError = "raise",
         offload: bool = False,
+        qos_overriding_options: QoSOverridingOptions | None = None,
     ) -> Subscription[Any]:
         """Return a subscription to `topic`.
 
@@ -361,6 +427,7 @@ class Node(NodeGraphMethods):
             on_error: What becomes of an exception in the callback: ``"raise"`` ends the node,
                 ``"log"`` logs and counts it, a function gets (exception, CallbackContext).
             offload: Whether to run a sync callback in a thread.
+            qos_overriding_options: Which policies parameters may set.
 
         Raises:
             TypeError: an argument is of a wrong kind, or the callback takes other arguments.
@@ -370,7 +437,9 @@ class Node(NodeGraphMethods):
         """
         self._refuse_if_destroyed("subscription")
         expect_message_type(msg_type, f"subscription of {topic}")
-        channel = self._channel(EndpointKind.SUBSCRIPTION, topic, msg_type, qos_profile)
+        channel = self._channel(
+            EndpointKind.SUBSCRIPTION, topic, msg_type, qos_profile, qos_overriding_options
+        )
         subscription: Subscription[Any] = Subscription(
             channel,
             msg_type,
@@ -472,7 +541,7 @@ class Node(NodeGraphMethods):
         timer_period_sec: float,
         callback: TimerCallback,
         clock: Clock | None = None,
-        autostart: bool = True,  # noqa: FBT001, FBT002  # rclpy's signature
+        autostart: bool = True,  # rclpy's signature
         *,
         on_error: OnError = "raise",
         offload: bool = False,
@@ -553,12 +622,22 @@ class Node(NodeGraphMethods):
         return True
 
     def _channel(
-        self, kind: EndpointKind, name: str, ros_type: type[Any], qos_profile: QoSProfile | int
+        self,
+        kind: EndpointKind,
+        name: str,
+        ros_type: Any,
+        qos_profile: QoSProfile | int,
+        overriding: QoSOverridingOptions | None = None,
     ) -> Channel:
         """Return the entry of a new endpoint; it is entered into the graph by `_add`."""
         is_service = kind in {EndpointKind.SERVER, EndpointKind.CLIENT}
         full_name = self._resolve(name, is_service=is_service)
         profile = qos.as_profile(qos_profile)
+        if overriding is not None:
+            entity: Literal["publisher", "subscription"] = (
+                "publisher" if kind is EndpointKind.PUBLISHER else "subscription"
+            )
+            profile = declare_qos_overrides(self, full_name, entity, profile, overriding)
         others = [e.qos for e in self.graph.endpoints(kind.opposite, name=full_name)]
         if kind is EndpointKind.PUBLISHER:
             profile = qos.best_available_for_publisher(profile, others)

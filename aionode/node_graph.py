@@ -105,7 +105,7 @@ class NodeGraphMethods:
 
     # Topics and services by name
 
-    def get_topic_names_and_types(self, no_demangle: bool = False) -> NamesAndTypes:  # noqa: ARG002, FBT001, FBT002  # rclpy's signature
+    def get_topic_names_and_types(self, no_demangle: bool = False) -> NamesAndTypes:  # noqa: ARG002  # rclpy's signature
         """Return every topic with its types; `no_demangle` makes no difference here."""
         return self.graph.names_and_types(*TOPIC_KINDS)
 
@@ -136,7 +136,7 @@ class NodeGraphMethods:
     def get_publishers_info_by_topic(
         self,
         topic_name: str,
-        no_mangle: bool = False,  # noqa: ARG002, FBT001, FBT002  # rclpy's signature
+        no_mangle: bool = False,  # noqa: ARG002  # rclpy's signature
     ) -> list[TopicEndpointInfo]:
         """Return every publisher of a topic; `no_mangle` makes no difference here."""
         return self._topic_endpoints(EndpointKind.PUBLISHER, topic_name)
@@ -144,7 +144,7 @@ class NodeGraphMethods:
     def get_subscriptions_info_by_topic(
         self,
         topic_name: str,
-        no_mangle: bool = False,  # noqa: ARG002, FBT001, FBT002  # rclpy's signature
+        no_mangle: bool = False,  # noqa: ARG002  # rclpy's signature
     ) -> list[TopicEndpointInfo]:
         """Return every subscription of a topic; `no_mangle` makes no difference here."""
         return self._topic_endpoints(EndpointKind.SUBSCRIPTION, topic_name)
@@ -159,7 +159,7 @@ class NodeGraphMethods:
         self,
         node_name: str,
         node_namespace: str,
-        no_demangle: bool = False,  # noqa: ARG002, FBT001, FBT002  # rclpy's signature
+        no_demangle: bool = False,  # noqa: ARG002  # rclpy's signature
     ) -> NamesAndTypes:
         """Return what a node publishes.
 
@@ -172,7 +172,7 @@ class NodeGraphMethods:
         self,
         node_name: str,
         node_namespace: str,
-        no_demangle: bool = False,  # noqa: ARG002, FBT001, FBT002  # rclpy's signature
+        no_demangle: bool = False,  # noqa: ARG002  # rclpy's signature
     ) -> NamesAndTypes:
         """Return what a node subscribes to.
 

@@ -24,7 +24,7 @@ __all__ = ["aionode_context", "manual_clock", "node_factory"]
 @pytest.fixture
 def manual_clock() -> ManualClock:
     """A clock that stands still until the test moves it; `aionode_context` follows it."""
-    from aionode.testing import ManualClock  # noqa: PLC0415  # only tests that use it pay for it
+    from aionode.testing import ManualClock  # only tests that use it pay for it
 
     return ManualClock()
 
@@ -32,7 +32,7 @@ def manual_clock() -> ManualClock:
 @pytest_asyncio.fixture
 async def aionode_context(request: pytest.FixtureRequest) -> AsyncIterator[Context]:
     """An open context without network; its time is `manual_clock` if the test asks for that."""
-    from aionode.testing import local_context  # noqa: PLC0415  # as above
+    from aionode.testing import local_context  # as above
 
     clock = (
         request.getfixturevalue("manual_clock") if "manual_clock" in request.fixturenames else None
@@ -47,7 +47,7 @@ async def node_factory(aionode_context: Context) -> AsyncIterator[Callable[..., 
 
     Takes what `Node` takes. A callback that failed makes the test fail at its end.
     """
-    from aionode.node import Node  # noqa: PLC0415  # as above
+    from aionode.node import Node  # as above
 
     nodes: list[Node] = []
     runs: list[asyncio.Task[None]] = []

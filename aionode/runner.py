@@ -13,7 +13,10 @@ import traceback
 from collections.abc import Callable, Coroutine, Iterator, Sequence
 from typing import Any
 
+from aionode.arguments import parse_arguments
+from aionode.context import Context
 from aionode.errors import AionodeError
+from aionode.logging import configure, get_logger
 from aionode.node import Node
 
 __all__ = ["Runnable", "run"]
@@ -47,17 +50,39 @@ def run(
     if not nodes:
         raise TypeError("run: give at least one node, or a function that makes one")
     try:
+        set_up(sys.argv if args is None else [sys.argv[0], *args])
         with asyncio.Runner(loop_factory=loop_factory or best_loop_factory()) as runner:
             runner.run(_until_stopped(nodes))
-    except Exception as error:  # noqa: BLE001  # told to the user, as the exit status is to the shell
+    except Exception as error:  # told to the user, as the exit status is to the shell
         sys.stderr.write(failure_text(error))
         raise SystemExit(1) from error
+
+
+def set_up(words: Sequence[str]) -> None:
+    """Make the arguments hold for the default context and for logging.
+
+    Raises:
+        InvalidROSArgsError: an argument of ROS cannot be read (a ValueError).
+        UnknownROSArgsError: an argument of ROS is unknown (a ValueError).
+    """
+    arguments = parse_arguments(words)
+    arguments.refuse_unknown()
+    configure(
+        level=arguments.log_level,
+        levels=arguments.log_levels,
+        console=arguments.stdout_logs,
+        file_name=arguments.log_file_prefix(),
+        whole_process=True,
+    )
+    for warning in arguments.warnings:
+        get_logger("aionode").warning(warning)
+    Context.default().arguments = arguments
 
 
 def best_loop_factory() -> LoopFactory | None:
     """Return what makes uvloop's loop where that is installed; None stands for asyncio's own."""
     try:
-        import uvloop  # noqa: PLC0415  # an optional extra
+        import uvloop  # an optional extra
     except ImportError:
         return None
     factory: LoopFactory = uvloop.new_event_loop

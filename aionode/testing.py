@@ -16,8 +16,8 @@ from __future__ import annotations
 import random
 from typing import TYPE_CHECKING, Any
 
-from aionode.clock import ManualTime as ManualClock
 from aionode.clock import MachineTime
+from aionode.clock import ManualTime as ManualClock
 from aionode.context import Context
 from aionode.message import snapshot
 from aionode.settle import settle
@@ -122,12 +122,12 @@ class FaultyTransport(Transport):
         return self.inner.create_reader(endpoint, msg_type, reader)
 
     def create_server(
-        self, endpoint: EndpointInfo, srv_type: type[Any], serve: Callable[[Request], None]
+        self, endpoint: EndpointInfo, srv_type: Any, serve: Callable[[Request], None]
     ) -> Announcement:
         """Announce a server, without faults of its own."""
         return self.inner.create_server(endpoint, srv_type, serve)
 
-    def create_requester(self, endpoint: EndpointInfo, srv_type: type[Any]) -> Requester:
+    def create_requester(self, endpoint: EndpointInfo, srv_type: Any) -> Requester:
         """Announce a client, whose requests and replies suffer."""
         return _FaultyRequester(self, self.inner.create_requester(endpoint, srv_type))
 

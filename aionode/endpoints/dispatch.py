@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from aionode.clock import perf_ns
 from aionode.errors import CallbackCancelledError, CallbackSignatureError
-from aionode.settle import off_loop
+from aionode.settle import off_loop, one_turn
 
 if TYPE_CHECKING:
     from aionode.endpoints.entity import Entity
@@ -271,11 +271,7 @@ class _Measured:
                 step_ns = perf_ns()
                 try:
                     # asyncio only ever sends None into a coroutine, or throws into it.
-                    if thrown is None:
-                        waits_for = next(steps)
-                    else:
-                        # A generator and a coroutine's wrapper both have it.
-                        waits_for = steps.throw(thrown)  # type: ignore[attr-defined]
+                    waits_for = next(steps) if thrown is None else steps.throw(thrown)
                 finally:
                     longest_ns = max(longest_ns, perf_ns() - step_ns)
                 thrown = None
@@ -319,13 +315,13 @@ class _Offloaded:
 
 async def give_way() -> None:
     """Let everything else that is ready run once."""
-    await asyncio.sleep(0)
+    await one_turn()
 
 
 async def pump(
     inbox: Inbox[T],
     handle: Callable[[int, T], Coroutine[Any, Any, None] | None],
-    concurrent: bool | int,  # noqa: FBT001  # a number, where True and False are numbers too
+    concurrent: bool | int,  # a number, where True and False are numbers too
 ) -> None:
     """Hand everything that arrives in `inbox` to `handle`, until cancelled.
 
@@ -406,7 +402,7 @@ def accepts(callback: Callable[..., Any], *counts: int, subject: str, wanted: st
     raise CallbackSignatureError(subject, f"{name}{signature}", wanted)
 
 
-def checked_concurrency(concurrent: bool | int, subject: str) -> bool | int:  # noqa: FBT001  # as in `pump`
+def checked_concurrency(concurrent: bool | int, subject: str) -> bool | int:  # as in `pump`
     """Return `concurrent` if it is False, True or a positive number.
 
     Raises:

@@ -53,7 +53,7 @@ class Service(Entity, Generic[RequestT, ResponseT]):
     """Answers requests. Made by `Node.create_service`.
 
     Attributes:
-        srv_type: The service type.
+        srv_type: The service class.
         qos_profile: Its profile.
         stats: What became of the requests.
     """
@@ -61,7 +61,7 @@ class Service(Entity, Generic[RequestT, ResponseT]):
     def __init__(
         self,
         channel: Channel,
-        srv_type: type[Any],
+        srv_type: Any,
         callback: ServiceCallback[RequestT, ResponseT],
         *,
         concurrent: bool | int,
@@ -80,7 +80,7 @@ class Service(Entity, Generic[RequestT, ResponseT]):
         wants = accepts(
             callback, 2, 1, subject=self.subject, wanted="(request, response) or (request)"
         )
-        self._wants_response = wants == 2  # noqa: PLR2004  # request and response
+        self._wants_response = wants == 2  # request and response
         self._dispatch = channel.callbacks.dispatch(
             callback, self, self.stats, on_error=on_error, offload=offload
         )
@@ -164,7 +164,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
     """Calls a service. Made by `Node.create_client`.
 
     Attributes:
-        srv_type: The service type.
+        srv_type: The service class.
         qos_profile: Its profile.
         stats: What became of the calls.
     """
@@ -172,7 +172,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
     def __init__(
         self,
         channel: Channel,
-        srv_type: type[Any],
+        srv_type: Any,
         requesters: Sequence[Requester],
         time_base: TimeBase,
     ) -> None:
@@ -253,7 +253,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         began_ns = perf_ns()
         try:
             async with asyncio.timeout(timeout_sec) as limit:
-                response = await self._exchange(request)
+                response: ResponseT = await self._exchange(request)
         except TimeoutError as error:
             self.stats.errors += 1
             if limit.expired() and timeout_sec is not None:

@@ -35,8 +35,7 @@ class Distribution:
 
     def record(self, duration_ns: int) -> None:
         """Add one duration, which must not be negative."""
-        if duration_ns > self.max_ns:
-            self.max_ns = duration_ns
+        self.max_ns = max(self.max_ns, duration_ns)
         shifted = duration_ns + _OFFSET
         octave = shifted.bit_length() - _SUB_BUCKETS_LOG2 - 1
         bucket = (octave << _SUB_BUCKETS_LOG2) + (shifted >> octave)
@@ -143,6 +142,4 @@ class ClientStats:
         self.run_time = Distribution()
 
     def __repr__(self) -> str:
-        return (
-            f"ClientStats(calls={self.calls}, errors={self.errors}, run_time={self.run_time})"
-        )
+        return f"ClientStats(calls={self.calls}, errors={self.errors}, run_time={self.run_time})"

@@ -214,7 +214,7 @@ class Subscription(Entity, Generic[ItemT]):
             wants = accepts(
                 callback, 1, 2, subject=self.subject, wanted="(message) or (message, info)"
             )
-            self._wants_info = wants == 2  # noqa: PLR2004  # the message and its info
+            self._wants_info = wants == 2  # the message and its info
             self._dispatch = channel.callbacks.dispatch(
                 callback, self, self.stats, on_error=on_error, offload=offload
             )
@@ -268,7 +268,8 @@ class Subscription(Entity, Generic[ItemT]):
         entered_ns, item = self._inbox.pop()
         self.stats.received += 1
         self.stats.queue_wait.record(perf_ns() - entered_ns)
-        return item
+        taken: ItemT = item
+        return taken
 
     def _refuse_if_called_back(self) -> None:
         if self._dispatch is not None:

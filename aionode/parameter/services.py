@@ -25,7 +25,7 @@ class ParameterService(NamedTuple):
     """
 
     name: str
-    srv_type: type[Any]
+    srv_type: Any
     callback: Callable[[Any, Any], Any]
 
 

@@ -223,7 +223,7 @@ class Transport(ABC):
 
     @abstractmethod
     def create_server(
-        self, endpoint: EndpointInfo, srv_type: type[Any], serve: Callable[[Request], None]
+        self, endpoint: EndpointInfo, srv_type: Any, serve: Callable[[Request], None]
     ) -> Announcement:
         """Announce a server of `srv_type`, whose requests go to `serve`.
 
@@ -231,5 +231,5 @@ class Transport(ABC):
         """
 
     @abstractmethod
-    def create_requester(self, endpoint: EndpointInfo, srv_type: type[Any]) -> Requester:
+    def create_requester(self, endpoint: EndpointInfo, srv_type: Any) -> Requester:
         """Announce a client of `srv_type`."""

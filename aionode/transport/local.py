@@ -65,14 +65,14 @@ class LocalTransport(Transport):
         return local_reader
 
     def create_server(
-        self, endpoint: EndpointInfo, srv_type: type[Any], serve: Callable[[Request], None]
+        self, endpoint: EndpointInfo, srv_type: Any, serve: Callable[[Request], None]
     ) -> Announcement:
         """Connect a server with the clients of its service."""
         server = LocalServer(endpoint, srv_type, serve, self._servers)
         self._servers.setdefault(endpoint.name, []).append(server)
         return server
 
-    def create_requester(self, endpoint: EndpointInfo, srv_type: type[Any]) -> Requester:
+    def create_requester(self, endpoint: EndpointInfo, srv_type: Any) -> Requester:
         """Connect a client with the servers of its service."""
         return LocalRequester(endpoint, srv_type, self._servers)
 
@@ -228,7 +228,7 @@ class LocalServer(Announcement):
     def __init__(
         self,
         endpoint: EndpointInfo,
-        srv_type: type[Any],
+        srv_type: Any,
         serve: Callable[[Request], None],
         servers: dict[str, list[LocalServer]],
     ) -> None:
@@ -288,7 +288,7 @@ class LocalRequest(Request):
 class LocalCall:
     """One call under way, to one or more servers."""
 
-    def __init__(self, reply_to: ReplyTo, srv_type: type[Any]) -> None:
+    def __init__(self, reply_to: ReplyTo, srv_type: Any) -> None:
         self._reply_to: ReplyTo | None = reply_to
         self.srv_type = srv_type
         self.requests: list[LocalRequest] = []
@@ -321,7 +321,7 @@ class LocalRequester(Requester):
     """A client as its servers in the same context see it."""
 
     def __init__(
-        self, endpoint: EndpointInfo, srv_type: type[Any], servers: dict[str, list[LocalServer]]
+        self, endpoint: EndpointInfo, srv_type: Any, servers: dict[str, list[LocalServer]]
     ) -> None:
         self._endpoint = endpoint
         self._srv_type = srv_type
