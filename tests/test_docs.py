@@ -73,8 +73,14 @@ def test_quoted_code_is_the_code_that_is_run(page: str) -> None:
 
 
 @pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "python")])
-def test_the_code_of_a_page_runs(page: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_code_of_a_page_runs(
+    page: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     """What is not quoted is run, the blocks of a page one after the other."""
+    definitions = tmp_path / "ros_ws" / "src" / "tutorial" / "msg"
+    definitions.mkdir(parents=True)
+    (definitions / "Words.msg").write_text("string text\n", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
     local = Context(transport="local")
     monkeypatch.setattr(Context, "default", lambda: local)
     names: dict[str, Any] = {"__name__": "documentation"}

@@ -1,0 +1,38 @@
+"""Parameters as a class: set them at the start or while the program runs.
+
+Run it with ``python examples/driver.py --ros-args -p speed:=0.8``, and from a second terminal
+``aionode param set /driver speed 1.5``.
+"""
+
+from typing import Annotated, Literal
+
+import msgspec
+from msgspec import Meta
+
+import aionode
+from aionode import Node
+
+
+class Driving(msgspec.Struct):
+    """What can be set about driving."""
+
+    frame: str = "base_link"
+    speed: Annotated[float, Meta(ge=0.0, le=2.0, description="in m/s")] = 0.5
+    mode: Literal["manual", "auto"] = "manual"
+
+
+class Driver(Node):
+    """Says how fast it drives, and says it again when that is changed."""
+
+    def __init__(self) -> None:
+        super().__init__("driver")
+        self.driving = self.declare_struct(Driving, on_change=self.tell)
+        self.tell(self.driving)
+
+    def tell(self, driving: Driving) -> None:
+        """Log the speed."""
+        self.get_logger().info(f"Driving at {driving.speed} m/s, {driving.mode}")
+
+
+if __name__ == "__main__":
+    aionode.run(Driver)
