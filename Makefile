@@ -60,11 +60,13 @@ clean:
 
 # Two steps, so that the first look at aionode does not wait for the tools of its developers.
 .venv/installed: pyproject.toml | .venv/bin/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fast]'
+	@echo "Installing aionode into .venv ..."
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fast]'
 	@touch $@
 
 .venv/installed-dev: pyproject.toml | .venv/bin/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fast,bag,dev]'
+	@echo "Installing aionode and the tools of its developers into .venv ..."
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fast,bag,dev]'
 	@touch .venv/installed $@
 
 .venv/bin/python:

@@ -54,7 +54,7 @@ class Listener(Node):
         print(
             f"\n{self.heard} messages heard, {stats.dropped} dropped. "
             f"From publish to callback: {stats.queue_wait.p50_ns / 1e6:.3f} ms at the median.\n"
-            "No ROS, no network, one event loop. "
+            "No ROS, no broker, one event loop. "
             "Next: python -m aionode.examples.service",
             flush=True,
         )
