@@ -13,6 +13,12 @@ name; new ones end in `Error`. They carry plain values, never live objects.
     ├── ConfigurationError (ValueError)
     ├── DecodeError (ValueError)
     ├── EntityDestroyedError (RuntimeError)
+    ├── GoalError (RuntimeError)
+    │   ├── GoalAbortedError
+    │   ├── GoalCanceledError
+    │   ├── GoalLostError
+    │   └── GoalRejectedError
+    ├── GoalTransitionError (RuntimeError)
     ├── IdlError (ValueError)
     ├── InterfaceNotFoundError (LookupError)
     ├── InvalidLogLevelError (ValueError, RuntimeError)
@@ -55,6 +61,12 @@ __all__ = [
     "ConfigurationError",
     "DecodeError",
     "EntityDestroyedError",
+    "GoalAbortedError",
+    "GoalCanceledError",
+    "GoalError",
+    "GoalLostError",
+    "GoalRejectedError",
+    "GoalTransitionError",
     "IdlError",
     "InterfaceNotFoundError",
     "InvalidLogLevelError",
@@ -198,6 +210,90 @@ class RequestTimeoutError(AionodeError, TimeoutError):
         self.timeout_sec = timeout_sec
         self.servers = servers
         super().__init__(f"{service}: no reply in {timeout_sec:g} s; {silence(servers)}")
+
+
+class GoalError(AionodeError, RuntimeError):
+    """A goal of an action did not come to a good end.
+
+    Attributes:
+        action: Name of the action.
+        goal_id: Id of the goal, in 32 hexadecimal digits.
+    """
+
+    def __init__(self, action: str, goal_id: str, what: str) -> None:
+        self.action = action
+        self.goal_id = goal_id
+        super().__init__(f"{action}: goal {goal_id} {what}")
+
+
+class GoalRejectedError(GoalError):
+    """The action server did not accept a goal."""
+
+    def __init__(self, action: str, goal_id: str) -> None:
+        super().__init__(
+            action, goal_id, "was rejected; the server's goal_callback decides, and knows why"
+        )
+
+
+class GoalAbortedError(GoalError):
+    """The action server gave a goal up.
+
+    Attributes:
+        result: The result message, as far as the server got.
+        error_text: Type and text of the exception that ended it; empty if there was none, or if
+            the server cannot tell.
+    """
+
+    def __init__(self, action: str, goal_id: str, result: object, error_text: str = "") -> None:
+        self.result = result
+        self.error_text = error_text
+        reason = f": {error_text}" if error_text else "; the server gave no reason"
+        super().__init__(action, goal_id, f"was aborted{reason}")
+
+
+class GoalCanceledError(GoalError):
+    """A goal was canceled, by a request from here or from elsewhere.
+
+    Attributes:
+        result: The result message, as far as the server got.
+    """
+
+    def __init__(self, action: str, goal_id: str, result: object) -> None:
+        self.result = result
+        super().__init__(action, goal_id, "was canceled")
+
+
+class GoalLostError(GoalError):
+    """How a goal ended cannot be known: its server went away, or does not know it any more.
+
+    Attributes:
+        problem: What happened.
+    """
+
+    def __init__(self, action: str, goal_id: str, problem: str) -> None:
+        self.problem = problem
+        super().__init__(
+            action, goal_id, f"was lost: {problem}; wait_for_server() and send it again"
+        )
+
+
+class GoalTransitionError(AionodeError, RuntimeError):
+    """A goal cannot do in its state what it was told to.
+
+    Attributes:
+        goal_id: Id of the goal, in 32 hexadecimal digits.
+        status: Its state.
+        event: What should have happened to it.
+        fits: What can happen in that state.
+    """
+
+    def __init__(self, goal_id: str, status: str, event: str, fits: list[str]) -> None:
+        self.goal_id = goal_id
+        self.status = status
+        self.event = event
+        self.fits = fits
+        possible = f"only {', '.join(fits)} can follow" if fits else "nothing can follow that"
+        super().__init__(f"goal {goal_id}: {event} while {status}; {possible}")
 
 
 class CallbackSignatureError(AionodeError, TypeError, RuntimeError):
