@@ -137,13 +137,14 @@ def default_text(default: object) -> str:
 
 def individual(cls: type[Any]) -> Individual:
     """Return the description of one type alone."""
+    name = type_name(cls)
     if issubclass(cls, ServiceType | ActionType):
         members = [nested_member(name, part) for name, part in halves(cls)]
     else:
         members = [member(field.name, field.type) for field in fields(cls)]
     # Structures without fields do not exist in IDL.
     placeholder = member("structure_needs_at_least_one_member", FieldType("uint8"))
-    return {"type_name": type_name(cls), "fields": members or [placeholder]}
+    return {"type_name": name, "fields": members or [placeholder]}
 
 
 def halves(cls: type[Any]) -> Iterator[tuple[str, type[Any]]]:

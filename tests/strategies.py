@@ -1,0 +1,115 @@
+"""Random messages of any type, and the list of all types that come with aionode."""
+
+from __future__ import annotations
+
+import pkgutil
+from functools import cache
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from hypothesis import strategies as st
+
+import aionode.interfaces
+from aionode.message import (
+    DTYPES,
+    ActionType,
+    FieldType,
+    Message,
+    ServiceType,
+    fields,
+    type_name,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["message_classes", "messages", "shipped_types", "values"]
+
+MOST_ELEMENTS = 4
+"""Length of random sequences: each further element tells nothing new."""
+
+INTEGERS = {
+    name: (np.iinfo(dtype).min, np.iinfo(dtype).max)
+    for name, dtype in DTYPES.items()
+    if np.dtype(dtype).kind in "iu"
+}
+
+
+@cache
+def shipped_types() -> dict[str, Any]:
+    """Return every message, service and action class of `aionode.interfaces` by its ROS name."""
+    found: dict[str, Any] = {}
+    for package in pkgutil.iter_modules(aionode.interfaces.__path__):
+        root = f"aionode.interfaces.{package.name}"
+        for module in pkgutil.iter_modules(import_module(root).__path__):
+            members = vars(import_module(f"{root}.{module.name}")).values()
+            named = [member for member in members if is_type(member)]
+            found |= {type_name(cls): cls for cls in named if cls.__module__.startswith(root)}
+    return dict(sorted(found.items()))
+
+
+def is_type(member: object) -> bool:
+    """Tell whether a member of a module is a class with a ROS name."""
+    return isinstance(member, type) and bool(getattr(member, "__ros_type__", ""))
+
+
+@cache
+def message_classes() -> dict[str, type[Message]]:
+    """Return every message class that comes with aionode, parts of services and actions included."""
+    return {
+        type_name(part): part for cls in shipped_types().values() for part in parts_of(cls)
+    }
+
+
+def parts_of(cls: Any) -> Iterator[type[Message]]:
+    """Yield the messages that a type consists of."""
+    if issubclass(cls, ServiceType):
+        yield from (cls.Request, cls.Response, cls.Event)  # type: ignore[attr-defined] # nested
+    elif issubclass(cls, ActionType):
+        yield from (cls.Goal, cls.Result, cls.Feedback, cls.Impl.FeedbackMessage)
+        yield from parts_of(cls.Impl.SendGoalService)
+        yield from parts_of(cls.Impl.GetResultService)
+    else:
+        yield cls
+
+
+def messages(cls: type[Message], *, nan: bool = False) -> st.SearchStrategy[Any]:
+    """Return a strategy for messages of one class, in the forms that a reader gets.
+
+    Args:
+        cls: The class.
+        nan: Whether floats may be NaN, which equals nothing.
+    """
+    return st.builds(cls, **{field.name: values(field.type, nan=nan) for field in fields(cls)})
+
+
+def values(kind: FieldType, *, nan: bool = False) -> st.SearchStrategy[Any]:
+    """Return a strategy for the values of a field."""
+    if kind.container == "single":
+        return single_values(kind, nan=nan)
+    least = kind.size if kind.container == "array" else 0
+    most = min(kind.size or MOST_ELEMENTS, MOST_ELEMENTS)
+    if kind.form == "bytes":
+        return st.binary(min_size=least, max_size=max(least, most))
+    if kind.form == "list":
+        return st.lists(single_values(kind, nan=nan), min_size=least, max_size=max(least, most))
+    drawn = st.lists(single_values(kind, nan=nan), min_size=min(least, most), max_size=most)
+    dtype = DTYPES[kind.kind]
+    # A long array repeats the few values that were drawn.
+    return drawn.map(lambda some: np.resize(np.array(some, dtype), least or len(some)))
+
+
+def single_values(kind: FieldType, *, nan: bool) -> st.SearchStrategy[Any]:
+    """Return a strategy for one value."""
+    if kind.nested is not None:
+        return messages(kind.nested, nan=nan)
+    if kind.kind in INTEGERS:
+        return st.integers(*INTEGERS[kind.kind])
+    if kind.kind in {"float32", "float64"}:
+        return st.floats(width=32 if kind.kind == "float32" else 64, allow_nan=nan)
+    if kind.kind == "bool":
+        return st.booleans()
+    if kind.kind == "byte":
+        return st.binary(min_size=1, max_size=1)
+    return st.text(max_size=min(kind.string_bound or 8, 8))
