@@ -1,0 +1,142 @@
+"""The main program: which nouns there are, and what becomes of their errors.
+
+Nothing but click is imported here; the noun that was named is, and nothing else.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from aionode.errors import AionodeError, NameValidationException
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = ["LateGroup", "main", "one_line", "root"]
+
+NOUNS = {
+    "action": ("aionode.cli.action:action", "Send goals, and see who serves which action."),
+    "completion": ("aionode.cli.completing:completion", "Print the completion of a shell."),
+    "doctor": ("aionode.cli.doctor:doctor_command", "Say why two endpoints do not talk."),
+    "interface": ("aionode.cli.interface:interface", "Show message, service and action types."),
+    "node": ("aionode.cli.node:node", "List nodes, and what they offer and use."),
+    "param": ("aionode.cli.param:param", "Read and set parameters of nodes."),
+    "router": ("aionode.cli.router:router_command", "Connect machines, as rmw_zenohd does."),
+    "run": ("aionode.cli.run:run_command", "Run node classes together in one process."),
+    "service": ("aionode.cli.service:service", "List, find and call services."),
+    "topic": ("aionode.cli.topic:topic", "List, print, publish and measure topics."),
+}
+
+INTERRUPTED = 130
+"""The exit status of a program that Ctrl-C ended before it was done, as shells know it."""
+
+
+class LateGroup(click.Group):
+    """A group whose commands are imported when they are used.
+
+    Args:
+        late: For each command, where it is (``module:attribute``) and one line of help.
+    """
+
+    def __init__(self, *args: Any, late: Mapping[str, tuple[str, str]], **options: Any) -> None:
+        super().__init__(*args, **options)
+        self.late = late
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names of the commands."""
+        return [*super().list_commands(ctx), *self.late]
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Return a command, importing it."""
+        if cmd_name not in self.late:
+            return super().get_command(ctx, cmd_name)
+        module, _, attribute = self.late[cmd_name][0].partition(":")
+        command: click.Command = getattr(importlib.import_module(module), attribute)
+        return command
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command; a reader of its output that has enough ends it quietly."""
+        try:
+            return super().invoke(ctx)
+        except BrokenPipeError:
+            silence_stdout()
+            ctx.exit(0)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the list of commands without importing them."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, text) for name, (_, text) in self.late.items()])
+
+
+@click.group(
+    cls=LateGroup,
+    late=NOUNS,
+    name="aionode",
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+@click.version_option(package_name="aionode", prog_name="aionode")
+def root() -> None:
+    """Look at nodes, topics, services, parameters and actions, and take part.
+
+    The words, options and output are those of ros2. Each command that prints data has --json, which
+    prints one record per line. There is no daemon: every answer is of this moment.
+    """
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line and return the exit status.
+
+    Errors are one line on stderr. A reader that goes away, as ``head`` does, ends a command
+    quietly.
+
+    Args:
+        argv: The arguments without the name of the program; those of the process without it.
+    """
+    try:
+        status = root.main(args=argv, prog_name="aionode", standalone_mode=False)
+    except click.exceptions.NoArgsIsHelpError as error:
+        sys.stdout.write(f"{error.format_message()}\n")
+        return 0
+    except click.UsageError as error:
+        return report(usage_text(error), error.exit_code)
+    except click.ClickException as error:
+        return report(error.format_message(), error.exit_code)
+    except (click.Abort, KeyboardInterrupt):
+        return INTERRUPTED
+    except AionodeError as error:
+        return report(one_line(error), getattr(error, "status", 1))
+    return status if isinstance(status, int) else 0
+
+
+def report(text: str, status: int) -> int:
+    """Print an error and return the exit status."""
+    sys.stderr.write(f"{text}\n")
+    return status
+
+
+def usage_text(error: click.UsageError) -> str:
+    """Return in one line what is wrong with the arguments, and where to read what fits."""
+    where = error.ctx.command_path if error.ctx is not None else "aionode"
+    problem = " ".join(error.format_message().split())
+    return f"{where}: {problem} See '{where} --help'."
+
+
+def one_line(error: BaseException) -> str:
+    """Return what an error says, in one line."""
+    if isinstance(error, NameValidationException):
+        found = error.name[error.invalid_index : error.invalid_index + 1]
+        where = f", at character {error.invalid_index + 1} ({found!r})" if found else ""
+        return f"Invalid {error.name_type} {error.name!r}: {error.error_msg}{where}"
+    return "; ".join(line.strip() for line in str(error).splitlines() if line.strip())
+
+
+def silence_stdout() -> None:
+    """Send what is still to come nowhere, so that Python's own flush at the exit does not fail."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, sys.stdout.fileno())

@@ -1,0 +1,185 @@
+"""Options that several commands share."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from aionode.clock import Duration
+from aionode.qos import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSPresetProfiles,
+    ReliabilityPolicy,
+)
+
+if TYPE_CHECKING:
+    from aionode.qos import QoSProfile
+
+__all__ = [
+    "hidden_option",
+    "interfaces_option",
+    "json_option",
+    "load_interface_folders",
+    "positive",
+    "qos_from",
+    "qos_options",
+    "ros2_options",
+    "stdin_text",
+    "timeout_option",
+    "window_option",
+]
+
+CommandT = TypeVar("CommandT", bound=Callable[..., Any])
+
+json_option = click.option("--json", is_flag=True, help="Print one record per line, as JSON.")
+
+positive = click.FloatRange(min=0, min_open=True)
+"""A number above zero."""
+
+timeout_option = click.option(
+    "--timeout",
+    metavar="N",
+    type=positive,
+    default=1.0,
+    show_default=True,
+    help="Wait for the node for at most N seconds.",
+)
+
+window_option = click.option(
+    "-w",
+    "--window",
+    metavar="N",
+    type=click.IntRange(min=1),
+    default=10_000,
+    show_default=True,
+    help="Number of messages that the figures are made of.",
+)
+
+
+def hidden_option(*names: str, what: str) -> Callable[[CommandT], CommandT]:
+    """Return the option that lets hidden `what` be seen as well."""
+    return click.option(*names, "hidden", is_flag=True, help=f"Consider hidden {what} as well.")
+
+
+def ros2_options(command: CommandT) -> CommandT:
+    """Accept options of ros2 that mean nothing here, so that its users' scripts run."""
+    for names in (("--no-daemon",), ("--spin-time",), ("-s", "--use-sim-time")):
+        is_flag = names != ("--spin-time",)
+        command = click.option(*names, hidden=True, is_flag=is_flag, expose_value=False)(command)
+    return command
+
+
+# Interfaces
+
+
+def interfaces_option(command: CommandT) -> CommandT:
+    """Let the user name folders of interface definitions; they are loaded before the command."""
+    return click.option(
+        "--interfaces",
+        metavar="PATH",
+        multiple=True,
+        envvar="AIONODE_INTERFACES",
+        type=click.Path(exists=True, file_okay=False, path_type=Path),
+        expose_value=False,
+        callback=load_interface_folders,
+        help="Folder with .msg, .srv and .action files of your own; also $AIONODE_INTERFACES.",
+    )(command)
+
+
+def load_interface_folders(
+    ctx: click.Context, param: click.Parameter, value: tuple[Path, ...]
+) -> None:
+    """Load the interfaces of some folders."""
+    if value:
+        from aionode.idl import load_interfaces
+
+        for path in value:
+            load_interfaces(path)
+
+
+def stdin_text(values: str | None, stdin: bool) -> str:
+    """Return the values as given, or read them from standard input.
+
+    Raises:
+        click.UsageError: both were given.
+    """
+    if not stdin:
+        return "{}" if values is None else values
+    if values is not None:
+        raise click.UsageError("Give the values or --stdin, not both.")
+    return sys.stdin.read()
+
+
+# Quality of service
+
+
+def qos_options(preset: str) -> Callable[[CommandT], CommandT]:
+    """Return the options for a QoS profile that begins as `preset`."""
+
+    def short_keys(kind: Any) -> click.Choice[str]:
+        return click.Choice([k for k in kind.short_keys() if k != "unknown"], case_sensitive=False)
+
+    declared = (
+        click.option(
+            "--qos-profile",
+            type=short_keys(QoSPresetProfiles),
+            help=f"Preset to begin with (default: {preset}).",
+        ),
+        click.option("--qos-depth", type=click.IntRange(min=0), help="Length of the queue."),
+        click.option("--qos-history", type=short_keys(HistoryPolicy)),
+        click.option("--qos-reliability", type=short_keys(ReliabilityPolicy)),
+        click.option("--qos-durability", type=short_keys(DurabilityPolicy)),
+        click.option("--qos-liveliness", type=short_keys(LivelinessPolicy)),
+        click.option("--qos-liveliness-lease-duration-seconds", type=positive, metavar="N"),
+    )
+
+    def decorate(command: CommandT) -> CommandT:
+        for option in reversed(declared):
+            command = option(command)
+        return command
+
+    return decorate
+
+
+def qos_from(preset: str, options: dict[str, Any]) -> QoSProfile | None:
+    """Take the options of `qos_options` out of `options` and return the profile they make.
+
+    None if the user gave none of them.
+    """
+    given = {
+        name: options.pop(f"qos_{name}")
+        for name in (
+            "profile",
+            "depth",
+            "history",
+            "reliability",
+            "durability",
+            "liveliness",
+            "liveliness_lease_duration_seconds",
+        )
+    }
+    if all(value is None for value in given.values()):
+        return None
+    profile = QoSPresetProfiles.get_from_short_key(given["profile"] or preset).replace()
+    for name, kind in (
+        ("history", HistoryPolicy),
+        ("reliability", ReliabilityPolicy),
+        ("durability", DurabilityPolicy),
+        ("liveliness", LivelinessPolicy),
+    ):
+        if given[name] is not None:
+            setattr(profile, name, kind.get_from_short_key(given[name]))
+    if given["depth"] is not None:
+        profile.depth = given["depth"]
+    elif profile.durability is DurabilityPolicy.TRANSIENT_LOCAL and profile.depth == 0:
+        profile.depth = 1
+    lease = given["liveliness_lease_duration_seconds"]
+    if lease is not None:
+        profile.liveliness_lease_duration = Duration(seconds=lease)
+    return profile

@@ -1,0 +1,105 @@
+"""What a command prints: text for people, or with ``--json`` one record per line for programs.
+
+Data goes to stdout, and what is said about it to stderr. Each item is flushed, so that a pipe
+shows it at once.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from typing import TYPE_CHECKING, Any, TextIO
+
+import msgspec
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["Output"]
+
+
+class Output:
+    """Where a verb prints to.
+
+    Args:
+        stdout: Where data goes.
+        stderr: Where warnings go.
+        json: Whether to print records instead of text.
+
+    Attributes:
+        json: Whether records are printed instead of text.
+    """
+
+    def __init__(
+        self,
+        stdout: TextIO | None = None,
+        stderr: TextIO | None = None,
+        *,
+        json: bool = False,
+    ) -> None:
+        self.json = json
+        self._stdout = sys.stdout if stdout is None else stdout
+        self._stderr = sys.stderr if stderr is None else stderr
+
+    @property
+    def is_terminal(self) -> bool:
+        """Whether a person reads the data as it comes."""
+        return not self.json and self._stdout.isatty()
+
+    def item(self, text: str, record: object) -> None:
+        """Print one item of data: `text`, or `record` in one line of JSON."""
+        if self.json:
+            self._write(msgspec.json.encode(record, enc_hook=str).decode())
+        else:
+            self._write(text)
+
+    def json_line(self, text: str) -> None:
+        """Print a record that is JSON already."""
+        self._write(text)
+
+    def text(self, text: str = "") -> None:
+        """Print a line for people; nothing with ``--json``."""
+        if not self.json:
+            self._write(text)
+
+    def raw(self, text: str) -> None:
+        """Print a text for people as it is, without a new line; nothing with ``--json``."""
+        if not self.json:
+            self._stdout.write(text)
+            self._stdout.flush()
+
+    def progress(self, text: str) -> None:
+        """Say what is being waited for: on stdout as ros2 does, on stderr with ``--json``."""
+        if self.json:
+            self.warn(text)
+        else:
+            self._write(text)
+
+    def warn(self, text: str) -> None:
+        """Print a line on stderr."""
+        self._stderr.write(f"{text}\n")
+        self._stderr.flush()
+
+    def _write(self, text: str) -> None:
+        self._stdout.write(f"{text}\n")
+        self._stdout.flush()
+
+    @contextlib.contextmanager
+    def waiting(self, text: str) -> Iterator[None]:
+        """Show on a terminal, for as long as it takes, what is being waited for; else nothing."""
+        if self.json or not (self._stdout.isatty() and self._stderr.isatty()):
+            yield
+            return
+        from rich.console import Console
+
+        with Console(file=self._stderr).status(text):
+            yield
+
+    @contextlib.contextmanager
+    def live(self) -> Iterator[Any]:
+        """Give a function that shows a rich table in place of the one before."""
+        from rich.console import Console
+        from rich.live import Live
+
+        with Live(console=Console(file=self._stdout), auto_refresh=False) as live:
+            yield lambda table: live.update(table, refresh=True)

@@ -1,0 +1,117 @@
+"""Running a verb: a node for it, Ctrl-C, and the exit status."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from typing import TYPE_CHECKING
+
+import click
+
+from aionode.cli.output import Output
+from aionode.errors import AionodeError
+from aionode.node import Node
+from aionode.runner import best_loop_factory, signals_to
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable, Callable, Coroutine
+
+    from aionode.context import Context
+    from aionode.runner import LoopFactory
+
+__all__ = ["make_node", "run_verb"]
+
+INTERRUPTED = 130
+"""The exit status of a program that Ctrl-C ended before it was done, as shells know it."""
+
+UNLIMITED_MS = 3_600_000.0
+"""How long a command may block its own loop: nothing else runs there, and terminals are slow."""
+
+
+def make_node(context: Context | None = None, node_name: str | None = None) -> Node:
+    """Return the node of a command: hidden, and without anything that others would see."""
+    return Node(
+        node_name or f"_aionode_cli_{os.getpid()}",
+        context=context,
+        enable_rosout=False,
+        start_parameter_services=False,
+        callback_budget_ms=UNLIMITED_MS,
+    )
+
+
+def run_verb(
+    verb: Callable[[Node, Output], Awaitable[int | None]],
+    *,
+    json: bool = False,
+    node_name: str | None = None,
+    endless: bool = False,
+    busy: bool = False,
+) -> None:
+    """Run `verb` with a node, until it returns or Ctrl-C; then end the command.
+
+    Args:
+        verb: Called with a running node and the output; it may return an exit status.
+        json: Whether to print records.
+        node_name: Name of the node; a hidden one without it.
+        endless: Whether Ctrl-C is the usual end, with status 0, and not an interruption (130).
+        busy: Whether many messages are expected, so that the faster loop is worth its import.
+
+    Raises:
+        click.exceptions.Exit: always, with the status.
+        AionodeError: the command cannot do what was asked.
+    """
+    output = Output(json=json)
+
+    async def work() -> int | None:
+        async with make_node(node_name=node_name) as node:
+            return await verb(node, output)
+
+    status = run_until_stopped(work(), loop_factory=best_loop_factory() if busy else None)
+    if status is None:
+        status = 0 if endless else INTERRUPTED
+    raise click.exceptions.Exit(status)
+
+
+def run_until_stopped(
+    work: Coroutine[None, None, int | None], loop_factory: LoopFactory | None = None
+) -> int | None:
+    """Return the exit status of `work`, or None if a signal ended it.
+
+    Raises:
+        BaseException: what `work` raised; the first error where it raised several.
+    """
+    try:
+        with asyncio.Runner(loop_factory=loop_factory) as runner:
+            return runner.run(stoppable(work))
+    except BaseExceptionGroup as group:
+        raise first_error(group) from None
+
+
+async def stoppable(work: Coroutine[None, None, int | None]) -> int | None:
+    """Await `work`, and cancel it at the first SIGINT or SIGTERM."""
+    loop = asyncio.get_running_loop()
+    task = asyncio.current_task()
+    assert task is not None  # noqa: S101  # a coroutine runs in a task
+    stopped = False
+
+    def stop() -> None:
+        nonlocal stopped
+        stopped = True
+        task.cancel()
+
+    with signals_to(lambda: loop.call_soon_threadsafe(stop)):
+        try:
+            return await work or 0
+        except asyncio.CancelledError:
+            if stopped:
+                return None
+            raise
+
+
+def first_error(group: BaseExceptionGroup[BaseException]) -> BaseException:
+    """Return the error of a group that tells most: one of aionode's own if there is one."""
+    known, _ = group.split((AionodeError, BrokenPipeError))
+    error: BaseException = known or group
+    while isinstance(error, BaseExceptionGroup):
+        error = error.exceptions[0]
+    return error

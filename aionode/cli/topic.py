@@ -1,0 +1,401 @@
+"""``aionode topic``: list, print, publish and measure topics."""
+
+from __future__ import annotations
+
+import functools
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from aionode.cli import lookup
+from aionode.cli.completing import complete_interfaces, complete_names
+from aionode.cli.options import (
+    hidden_option,
+    interfaces_option,
+    json_option,
+    positive,
+    qos_from,
+    qos_options,
+    ros2_options,
+    stdin_text,
+    window_option,
+)
+from aionode.cli.session import run_verb
+from aionode.cli.text import endpoint_text, names_text
+from aionode.errors import CommandError
+from aionode.graph import EndpointKind
+
+if TYPE_CHECKING:
+    from aionode.cli.output import Output
+    from aionode.graph import EndpointInfo
+    from aionode.node import Node
+
+__all__ = ["find", "info", "list_topics", "topic", "type_of_topic"]
+
+topic_argument = click.argument("topic_name", shell_complete=complete_names("topic"))
+type_argument = click.argument("message_type", shell_complete=complete_interfaces("msg"))
+hidden_topics = hidden_option("--include-hidden-topics", what="topics")
+
+
+# Verbs
+
+
+async def list_topics(
+    node: Node,
+    *,
+    output: Output,
+    types: bool = False,
+    count: bool = False,
+    hidden: bool = False,
+    verbose: bool = False,
+) -> None:
+    """Print every topic that somebody publishes or subscribes to."""
+    found = lookup.names_and_types(node, *lookup.TOPIC_KINDS, hidden=hidden)
+    if count:
+        output.item(str(len(found)), {"topics": len(found)})
+        return
+    numbers = {
+        name: {kind: len(lookup.endpoints(node, kind, name=name)) for kind in lookup.TOPIC_KINDS}
+        for name in found
+    }
+    if verbose and not output.json and found:
+        output.text(verbose_text("Published", "publisher", EndpointKind.PUBLISHER, found, numbers))
+        output.text(
+            verbose_text("Subscribed", "subscriber", EndpointKind.SUBSCRIPTION, found, numbers)
+        )
+        return
+    for name, of in found.items():
+        output.item(
+            f"{name} [{', '.join(of)}]" if types else name,
+            {
+                "name": name,
+                "types": of,
+                "publishers": numbers[name][EndpointKind.PUBLISHER],
+                "subscriptions": numbers[name][EndpointKind.SUBSCRIPTION],
+            },
+        )
+
+
+def verbose_text(
+    title: str,
+    word: str,
+    kind: EndpointKind,
+    found: dict[str, list[str]],
+    numbers: dict[str, dict[EndpointKind, int]],
+) -> str:
+    """Return the topics that have endpoints of one kind, with their number."""
+    text = f"{title} topics:\n"
+    for name, types in found.items():
+        if number := numbers[name][kind]:
+            plural = "s" if number > 1 else ""
+            text += f" * {name} [{', '.join(types)}] {number} {word}{plural}\n"
+    return text
+
+
+async def info(node: Node, topic_name: str, *, output: Output, verbose: bool = False) -> None:
+    """Print the type of a topic and who uses it."""
+    name = node.resolve_topic_name(topic_name)
+    publishers = lookup.endpoints(node, EndpointKind.PUBLISHER, name=name)
+    subscriptions = lookup.endpoints(node, EndpointKind.SUBSCRIPTION, name=name)
+    if not (publishers or subscriptions):
+        raise unknown_topic(node, "Unknown topic", topic_name)
+    types = sorted({user.type_name for user in (*publishers, *subscriptions)})
+    if output.json:
+        output.item("", info_record(name, types, publishers, subscriptions, verbose=verbose))
+        return
+    end = "\n" if verbose else ""
+    output.text(f"Type: {names_text(types)}{end}")
+    for title, users in (("Publisher", publishers), ("Subscription", subscriptions)):
+        output.text(f"{title} count: {len(users)}{end}")
+        for user in users if verbose else ():
+            output.text(f"{endpoint_text(user)}\n")
+
+
+def info_record(
+    name: str,
+    types: list[str],
+    publishers: list[EndpointInfo],
+    subscriptions: list[EndpointInfo],
+    *,
+    verbose: bool,
+) -> dict[str, Any]:
+    """Return what is known of a topic as plain values."""
+    record: dict[str, Any] = {"name": name, "types": types}
+    for word, users in (("publishers", publishers), ("subscriptions", subscriptions)):
+        record[word] = [endpoint_record(user) for user in users] if verbose else len(users)
+    return record
+
+
+def endpoint_record(user: EndpointInfo) -> dict[str, Any]:
+    """Return an endpoint as plain values; times in nanoseconds."""
+    profile = user.qos
+    return {
+        "node": user.node.fully_qualified_name,
+        "type": user.type_name,
+        "type_hash": user.type_hash,
+        "gid": user.gid.hex(),
+        "qos": {
+            "reliability": profile.reliability.short_key,
+            "history": profile.history.short_key,
+            "depth": profile.depth,
+            "durability": profile.durability.short_key,
+            "lifespan_ns": profile.lifespan.nanoseconds,
+            "deadline_ns": profile.deadline.nanoseconds,
+            "liveliness": profile.liveliness.short_key,
+            "liveliness_lease_duration_ns": profile.liveliness_lease_duration.nanoseconds,
+        },
+    }
+
+
+async def type_of_topic(node: Node, topic_name: str, *, output: Output) -> None:
+    """Print the type of a topic."""
+    name = node.resolve_topic_name(topic_name)
+    types = lookup.names_and_types(node, *lookup.TOPIC_KINDS, hidden=True).get(name)
+    if types is None:
+        raise unknown_topic(node, "Unknown topic", topic_name)
+    for one in types:
+        output.item(one, {"name": name, "type": one})
+
+
+async def find(
+    node: Node, message_type: str, *, output: Output, count: bool = False, hidden: bool = False
+) -> None:
+    """Print the topics of one type."""
+    found = lookup.names_and_types(node, *lookup.TOPIC_KINDS, hidden=hidden)
+    names = [name for name, types in found.items() if message_type in types]
+    if count:
+        output.item(str(len(names)), {"topics": len(names)})
+        return
+    for name in names:
+        output.item(name, {"name": name, "types": found[name]})
+
+
+def unknown_topic(node: Node, text: str, topic_name: str) -> CommandError:
+    """Return the error for a topic that nobody uses."""
+    names = lookup.names_and_types(node, *lookup.TOPIC_KINDS, hidden=True)
+    return lookup.unknown(text, topic_name, names, "topic list")
+
+
+# Commands
+
+
+@click.group()
+def topic() -> None:
+    """List, print, publish and measure topics."""
+
+
+@topic.command("list")
+@click.option("-t", "--show-types", "types", is_flag=True, help="Print the types too.")
+@click.option("-c", "--count-topics", "count", is_flag=True, help="Print only how many there are.")
+@hidden_topics
+@click.option("-v", "--verbose", is_flag=True, help="Print how many publish and subscribe.")
+@json_option
+@ros2_options
+def list_command(json: bool, **options: Any) -> None:
+    """List the topics that somebody publishes or subscribes to."""
+    run_verb(lambda node, output: list_topics(node, output=output, **options), json=json)
+
+
+@topic.command("info")
+@topic_argument
+@click.option("-v", "--verbose", is_flag=True, help="Print nodes, type hashes, ids and QoS too.")
+@json_option
+@ros2_options
+def info_command(topic_name: str, json: bool, verbose: bool) -> None:
+    """Print the type of a topic and who uses it."""
+    run_verb(lambda node, output: info(node, topic_name, verbose=verbose, output=output), json=json)
+
+
+@topic.command("type")
+@topic_argument
+@json_option
+@ros2_options
+def type_command(topic_name: str, json: bool) -> None:
+    """Print the type of a topic."""
+    run_verb(lambda node, output: type_of_topic(node, topic_name, output=output), json=json)
+
+
+@topic.command("find")
+@type_argument
+@click.option("-c", "--count-topics", "count", is_flag=True, help="Print only how many there are.")
+@hidden_topics
+@json_option
+@ros2_options
+def find_command(message_type: str, json: bool, **options: Any) -> None:
+    """List the topics of one type."""
+    run_verb(lambda node, output: find(node, message_type, output=output, **options), json=json)
+
+
+@topic.command("echo")
+@topic_argument
+@click.argument("message_type", required=False, shell_complete=complete_interfaces("msg"))
+@qos_options("sensor_data")
+@click.option("--csv", is_flag=True, help="Print all values in one line, separated by commas.")
+@click.option("--field", metavar="PATH", help="Print one field, such as pose.position or name[0].")
+@click.option("-f", "--full-length", is_flag=True, help="Print arrays and strings in full.")
+@click.option(
+    "-l",
+    "--truncate-length",
+    metavar="N",
+    type=click.IntRange(min=0),
+    default=128,
+    show_default=True,
+    help="Print arrays and strings up to this length.",
+)
+@click.option("--no-arr", is_flag=True, help="Describe arrays instead of printing them.")
+@click.option("--no-str", is_flag=True, help="Describe strings instead of printing them.")
+@click.option("--flow-style", is_flag=True, help="Print each message in braces, on one line.")
+@click.option("--no-lost-messages", is_flag=True, help="Do not say when messages were lost.")
+@click.option("--raw", is_flag=True, help="Print the bytes as they came.")
+@click.option("--filter", "filter_text", metavar="EXPR", help="Python; m is the message.")
+@click.option("--once", is_flag=True, help="Print one message and end.")
+@click.option("--timeout", metavar="N", type=positive, help="End after N seconds.")
+@click.option("-i", "--include-message-info", "with_info", is_flag=True, help="Print times too.")
+@click.option("-c", "--clear", is_flag=True, help="Clear the screen before each message.")
+@click.option("-n", "--node-name", help="Name of the node that listens (default: a hidden one).")
+@json_option
+@interfaces_option
+@ros2_options
+def echo_command(json: bool, node_name: str | None, once: bool, **options: Any) -> None:
+    """Print each message of a topic, as YAML, CSV or JSON."""
+    from aionode.cli.echo import echo
+
+    qos = qos_from("sensor_data", options)
+    if options.pop("full_length"):
+        options["truncate_length"] = None
+    run_verb(
+        lambda node, output: echo(node, qos=qos, once=once, output=output, **options),
+        json=json,
+        node_name=node_name,
+        endless=not once,
+        busy=True,
+    )
+
+
+@topic.command("pub")
+@topic_argument
+@type_argument
+@click.argument("values", required=False)
+@click.option("--stdin", is_flag=True, help="Read the values from standard input.")
+@click.option(
+    "-r", "--rate", metavar="N", type=positive, default=1.0, show_default=True, help="In Hz."
+)
+@click.option(
+    "-p", "--print", "print_nth", metavar="N", type=click.IntRange(min=0), default=1,
+    help="Print only every N-th message.",
+)  # fmt: skip
+@click.option("-1", "--once", is_flag=True, help="Publish one message and end.")
+@click.option(
+    "-t", "--times", metavar="N", type=click.IntRange(min=0), default=0,
+    help="Publish N messages and end.",
+)  # fmt: skip
+@click.option(
+    "-w", "--wait-matching-subscriptions", "wait_for", metavar="N", type=click.IntRange(min=0),
+    help="Wait for N subscriptions first (default: 1 with --once or --times, else 0).",
+)  # fmt: skip
+@click.option(
+    "--max-wait-time-secs", "max_wait_s", metavar="N", type=positive,
+    help="Wait for subscriptions no longer than N seconds.",
+)  # fmt: skip
+@click.option(
+    "--keep-alive", "keep_alive_s", metavar="N", type=click.FloatRange(min=0), default=0.1,
+    show_default=True, help="Stay for N seconds after the last message.",
+)  # fmt: skip
+@click.option("-n", "--node-name", help="Name of the node that publishes (default: a hidden one).")
+@qos_options("default")
+@json_option
+@interfaces_option
+@ros2_options
+def pub_command(
+    json: bool,
+    node_name: str | None,
+    values: str | None,
+    stdin: bool,
+    once: bool,
+    times: int,
+    wait_for: int | None,
+    max_wait_s: float | None,
+    **options: Any,
+) -> None:
+    """Publish messages given in YAML, such as '{data: hello}'.
+
+    A Header may be given as auto and a Time as now: they get the time of publishing.
+    """
+    from aionode.cli.pub import pub
+
+    if once and times:
+        raise click.UsageError("Give --once or --times, not both.")
+    times = 1 if once else times
+    if wait_for is None:
+        wait_for = min(times, 1)
+    if max_wait_s is not None and wait_for == 0:
+        raise click.UsageError(
+            "--max-wait-time-secs needs --wait-matching-subscriptions, --once or --times."
+        )
+    qos = qos_from("default", options)
+    text = stdin_text(values, stdin)
+    run_verb(
+        lambda node, output: pub(
+            node,
+            values=text,
+            times=times,
+            wait_for=wait_for,
+            max_wait_s=max_wait_s,
+            qos=qos,
+            output=output,
+            **options,
+        ),
+        json=json,
+        node_name=node_name,
+        endless=times == 0,
+        busy=True,
+    )
+
+
+@topic.command("hz")
+@click.argument("topic_names", nargs=-1, required=True, shell_complete=complete_names("topic"))
+@window_option
+@click.option("--filter", "filter_text", metavar="EXPR", help="Count messages for which it is so.")
+@click.option("--wall-time", is_flag=True, help="Count with this machine's time, not ROS time.")
+@json_option
+@interfaces_option
+@ros2_options
+def hz_command(json: bool, topic_names: tuple[str, ...], **options: Any) -> None:
+    """Print how often messages come, once a second."""
+    from aionode.cli.measure import hz
+
+    measure(functools.partial(hz, topic_names=topic_names, **options), json=json)
+
+
+@topic.command("bw")
+@topic_argument
+@click.option(
+    "-w", "--window", metavar="N", type=click.IntRange(min=1), default=100, show_default=True,
+    help="Number of messages that the figures are made of.",
+)  # fmt: skip
+@json_option
+@interfaces_option
+@ros2_options
+def bw_command(json: bool, **options: Any) -> None:
+    """Print how many bytes come, once a second."""
+    from aionode.cli.measure import bw
+
+    measure(functools.partial(bw, **options), json=json)
+
+
+@topic.command("delay")
+@topic_argument
+@window_option
+@json_option
+@interfaces_option
+@ros2_options
+def delay_command(json: bool, **options: Any) -> None:
+    """Print how old messages are when they come, by the stamp of their header."""
+    from aionode.cli.measure import delay
+
+    measure(functools.partial(delay, **options), json=json)
+
+
+def measure(verb: Any, *, json: bool) -> None:
+    """Run a verb that prints figures until Ctrl-C."""
+    run_verb(lambda node, output: verb(node, output=output), json=json, endless=True, busy=True)

@@ -1,0 +1,125 @@
+"""Messages from the YAML that a user types."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from aionode.errors import CommandError, MessageError
+from aionode.message import check, fields, from_builtins, type_name
+
+if TYPE_CHECKING:
+    from aionode.clock import Time
+    from aionode.message import Message
+
+__all__ = ["Filler", "message_from_yaml"]
+
+HEADER = "std_msgs/msg/Header"
+TIME = "builtin_interfaces/msg/Time"
+
+
+def plain_values(text: str, what: str) -> dict[str, Any]:
+    """Return what YAML says, as plain values.
+
+    Raises:
+        CommandError: it is no YAML, or no mapping.
+    """
+    import yaml
+
+    try:
+        values = yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # noqa: S506  # both are safe
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        where = f" at line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+        problem = getattr(error, "problem", None) or str(error).splitlines()[0]
+        raise CommandError(
+            f"The passed value is no YAML: {shortened(text)}{where}: {problem}; {what} fits"
+        ) from error
+    if values is None:
+        return {}
+    if not isinstance(values, dict):
+        raise CommandError(
+            "The passed value needs to be a dictionary in YAML format: "
+            f"{shortened(text)} is a {type(values).__name__}; {what} fits"
+        )
+    return values
+
+
+def shortened(text: str) -> str:
+    """Return a text in quotes and on one line, and not too much of it."""
+    limit = 60
+    return repr(text if len(text) <= limit else f"{text[:limit]}...")
+
+
+def example_of(msg_type: type[Message]) -> str:
+    """Return values that fit a type, in YAML."""
+    names = [field.name for field in fields(msg_type)]
+    return f"'{{{names[0]}: ...}}'" if names else "'{}'"
+
+
+def message_from_yaml(msg_type: type[Message], text: str) -> Message:
+    """Return the message that a user typed.
+
+    Raises:
+        CommandError: it does not fit the type.
+    """
+    return made(msg_type, plain_values(text, example_of(msg_type)))
+
+
+def made(msg_type: type[Message], values: dict[str, Any]) -> Message:
+    """Return the message that plain values make."""
+    try:
+        msg = from_builtins(msg_type, values)
+        check(msg)
+    except MessageError as error:
+        raise CommandError(f"Failed to populate field: {error}") from error
+    return msg
+
+
+class Filler:
+    """Makes messages from YAML in which a Header may be ``auto`` and a Time ``now``.
+
+    Raises:
+        CommandError: the text does not fit the type.
+    """
+
+    def __init__(self, msg_type: type[Message], text: str) -> None:
+        self._stamps: list[Callable[[Message, Any], None]] = []
+        values = plain_values(text, example_of(msg_type))
+        self._strip(msg_type, values, ())
+        self._message = made(msg_type, values)
+
+    def message(self, now: Time) -> Message:
+        """Return the message, stamped with `now` where that was asked for."""
+        for stamp in self._stamps:
+            stamp(self._message, now.to_msg())
+        return self._message
+
+    def _strip(
+        self, msg_type: type[Message], values: dict[str, Any], path: tuple[str, ...]
+    ) -> None:
+        """Take every ``auto`` and ``now`` out of `values`, and note where they were."""
+        for field in fields(msg_type):
+            nested, value = field.type.nested, values.get(field.name)
+            if nested is None or field.type.container != "single":
+                continue
+            here = (*path, field.name)
+            if value == "auto" and type_name(nested) == HEADER:
+                values[field.name] = {}
+                self._stamps.append(setter((*here, "stamp")))
+            elif value == "now" and type_name(nested) == TIME:
+                values[field.name] = {}
+                self._stamps.append(setter(here))
+            elif isinstance(value, dict):
+                self._strip(nested, value, here)
+
+
+def setter(path: tuple[str, ...]) -> Callable[[Any, Any], None]:
+    """Return what sets the field at `path` of a message."""
+
+    def set_field(msg: Any, value: Any) -> None:
+        for name in path[:-1]:
+            msg = getattr(msg, name)
+        setattr(msg, path[-1], value)
+
+    return set_field
