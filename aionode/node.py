@@ -25,10 +25,10 @@ from aionode.logging import get_logger
 from aionode.message import Message, ServiceType
 from aionode.node_graph import NodeGraphMethods
 from aionode.node_parameters import NodeParameterMethods
-from aionode.parameter import ParameterStore, declare_qos_overrides
+from aionode.parameter import Parameter, ParameterStore, declare_qos_overrides
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from types import TracebackType
 
     from aionode.clock import Clock
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from aionode.graph import Graph
     from aionode.logging import RcutilsLogger
     from aionode.message import ServiceClass
-    from aionode.parameter import Parameter, QoSOverridingOptions
+    from aionode.parameter import QoSOverridingOptions
     from aionode.qos import QoSProfile
 
 __all__ = ["Node"]
@@ -139,11 +139,11 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         full_name = self.get_fully_qualified_name()
         self._parameters = ParameterStore(
             full_name,
-            overrides={
-                **shared.parameters_for(full_name),
-                **own.parameters_for(full_name),
-                **{parameter.name: parameter for parameter in parameter_overrides or ()},
-            },
+            overrides=[
+                *parameters_from(shared.parameters_for(full_name)),
+                *parameters_from(own.parameters_for(full_name)),
+                *(parameter_overrides or ()),
+            ],
             allow_undeclared=allow_undeclared_parameters,
             publish=node_services.publish_parameter_events(self),
         )
@@ -666,6 +666,11 @@ class Node(NodeGraphMethods, NodeParameterMethods):
             raise EntityDestroyedError(
                 f"node {self.get_fully_qualified_name()}", f"given a {wanted}"
             )
+
+
+def parameters_from(values: Mapping[str, object]) -> list[Parameter]:
+    """Return plain values as parameters."""
+    return [Parameter(name, value=value) for name, value in values.items()]
 
 
 def expect_message_type(msg_type: object, subject: str) -> None:

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from aionode import qos
 from aionode.clock import Time
 from aionode.errors import QueueFullError
-from aionode.idl import definition_text
 from aionode.interfaces.rcl_interfaces.msg import (
     Log,
     LoggerLevel,
@@ -195,6 +194,9 @@ def types_of(node: Node) -> Iterator[Any]:
 
 def source_of(kind: Any) -> TypeSource:
     """Return the text that defines a type."""
+    # Rarely asked for, and the parser of definitions takes time to import.
+    from aionode.idl import definition_text
+
     name = type_name(kind)
     return TypeSource(
         type_name=name,

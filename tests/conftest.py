@@ -11,7 +11,7 @@ import uvloop
 from aionode.node import Node
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Callable
+    from collections.abc import Callable
 
     from aionode.context import Context
 
@@ -32,9 +32,9 @@ def pytest_asyncio_loop_factories(
 
 
 @pytest.fixture
-async def node(node_factory: Callable[..., Node]) -> AsyncIterator[Node]:
+async def node(node_factory: Callable[..., Node]) -> Node:
     """A running node in a context without network."""
-    yield node_factory("node")
+    return node_factory("node")
 
 
 @pytest.fixture

@@ -12,6 +12,7 @@ from aionode.errors import EntityDestroyedError, NodeNameNonExistentError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.node import Node
+from aionode.settle import one_turn
 from aionode.testing import local_context, settle
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 
 def failing(msg: String) -> None:
+    """Fail with what was heard."""
     raise ValueError(f"cannot use {msg.data}")
 
 
@@ -168,7 +170,7 @@ async def test_leaving_a_node_cancels_callbacks_and_waits_for_them(context: Cont
         try:
             await asyncio.Event().wait()
         finally:
-            await asyncio.sleep(0)
+            await one_turn()
             events.append("cleaned up")
 
     async with Node("node", context=context) as node:
@@ -232,10 +234,11 @@ async def test_an_exception_of_the_body_comes_in_a_group(context: Context) -> No
 
 async def test_a_failing_callback_interrupts_the_body(context: Context) -> None:
     """The body may wait for something that will never come now."""
+    node = Node("node", context=context)
+    node.create_subscription(String, "words", failing)
+    node.create_publisher(String, "words", 10).publish(String(data="x"))
     with pytest.raises(ExceptionGroup) as caught:
-        async with Node("node", context=context) as node:
-            node.create_subscription(String, "words", failing)
-            node.create_publisher(String, "words", 10).publish(String(data="x"))
+        async with node:
             await asyncio.Event().wait()
 
     assert caught.group_contains(ValueError)
@@ -366,4 +369,4 @@ async def test_cancelled_waits_leave_nothing_in_the_graph(node: Node) -> None:
             async with asyncio.timeout(0):
                 await node.graph.changed()
     await settle()
-    assert not node.graph._waiters  # noqa: SLF001  # what grows is the subject
+    assert not node.graph._waiters  # what grows is the subject

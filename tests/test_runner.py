@@ -8,7 +8,7 @@ import subprocess
 import sys
 import textwrap
 import threading
-from typing import Any
+from typing import Any, Self
 
 import pytest
 
@@ -31,14 +31,14 @@ class Program:
     """A Python program in a process of its own, which says when it is ready."""
 
     def __init__(self, body: str) -> None:
-        self.process = subprocess.Popen(  # noqa: S603  # the text is in this file
+        self.process = subprocess.Popen(  # the text is in this file
             [sys.executable, "-c", PREAMBLE + textwrap.dedent(body)],
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
         )
 
-    def __enter__(self) -> Program:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -46,10 +46,12 @@ class Program:
         self.process.communicate()
 
     def wait_until_ready(self) -> None:
+        """Wait for the line that says so."""
         assert self.process.stdout is not None
         assert self.process.stdout.readline() == "ready\n"
 
     def end(self) -> tuple[int, str, str]:
+        """Wait for the end; return status, output and errors."""
         out, err = self.process.communicate(timeout=20)
         return self.process.returncode, out, err
 
@@ -169,6 +171,7 @@ def test_an_error_of_aionode_is_one_line() -> None:
 
 
 def run_in_this_process(*nodes: Any) -> None:
+    """Run without reading the arguments of pytest."""
     aionode.run(*nodes, args=[], loop_factory=asyncio.new_event_loop)
 
 

@@ -41,10 +41,8 @@ class TimerInfo:
         )
 
 
-TimerCallback = (
-    Callable[[], Coroutine[Any, Any, None] | None]
-    | Callable[[TimerInfo], Coroutine[Any, Any, None] | None]
-)
+TimerCallback = Callable[[], object] | Callable[[TimerInfo], object]
+"""What a timer calls, sync or async; what it returns is awaited if it can be, and not used."""
 
 Dispatcher = Callable[[TimerCallback, "Timer", CallbackStats], "Dispatch"]
 """Makes what runs a timer's callback, with the node's way of handling errors."""

@@ -62,10 +62,9 @@ class MessageInfo(TypedDict):
     publisher_gid: bytes
 
 
-SubscriptionCallback = (
-    Callable[[ItemT], Coroutine[Any, Any, None] | None]
-    | Callable[[ItemT, MessageInfo], Coroutine[Any, Any, None] | None]
-)
+SubscriptionCallback = Callable[[ItemT], object] | Callable[[ItemT, MessageInfo], object]
+"""What a subscription calls, sync or async; what it returns is awaited if it can be, and not used.
+"""
 
 
 class Publisher(Entity, Generic[MsgT]):

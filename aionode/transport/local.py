@@ -13,7 +13,6 @@ from aionode.errors import ServiceError
 from aionode.message import snapshotter
 from aionode.qos import DurabilityPolicy, HistoryPolicy, ReliabilityPolicy
 from aionode.transport.base import Announcement, Origin, Request, Requester, Transport, Writer
-from aionode.wire import cdr
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -88,7 +87,11 @@ def _in_class(msg: Any, msg_type: type[Any]) -> Any:
 
     There may be two classes for one definition, such as a generated one and one written by hand.
     """
-    return msg if type(msg) is msg_type else cdr.decode(msg_type, cdr.encode(msg))
+    if type(msg) is msg_type:
+        return msg
+    from aionode.wire import cdr  # nodes of one definition need no codec
+
+    return cdr.decode(msg_type, cdr.encode(msg))
 
 
 class _Nothing(Announcement):
@@ -137,6 +140,8 @@ class LocalReader(Announcement):
         """Return what takes messages of `msg_type` to the reader, in the form that it wants."""
         deliver = self.reader.deliver
         if self.reader.raw:
+            from aionode.wire import cdr  # nodes without raw readers need no codec
+
             encode = cdr.encoder(msg_type)
             return lambda msg, origin: deliver(encode(msg), origin)
         if self.msg_type is not msg_type:

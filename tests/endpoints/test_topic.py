@@ -37,10 +37,12 @@ BEST_EFFORT_KEEP_ALL = QoSProfile(
 
 
 def kept(depth: int) -> QoSProfile:
+    """Return a profile that keeps messages for late readers."""
     return QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def fill(publisher: Any, *texts: str) -> None:
+    """Publish each text."""
     for text in texts:
         publisher.publish(String(data=text))
 
@@ -153,7 +155,7 @@ async def test_a_publisher_may_change_its_message_at_once(node: Node) -> None:
     publisher = node.create_publisher(Float64MultiArray, "numbers", 10)
     msg = Float64MultiArray(data=np.zeros(3))
     publisher.publish(msg)
-    msg.data[0] = 9.0  # type: ignore[index]  # an array, as it was made
+    msg.data[0] = 9.0
     assert list((await reader.receive()).data) == [0.0, 0.0, 0.0]
 
 
@@ -280,7 +282,7 @@ async def test_drain_ends_when_the_full_reader_goes(
 
 
 async def test_what_a_destroyed_callback_did_not_get_is_counted(context: Context) -> None:
-    """received + dropped is what was sent, also at the end."""
+    """Received + dropped is what was sent, also at the end."""
     node = Node("node", context=context)
     subscription = node.create_subscription(String, "words", lambda msg: None)
     fill(node.create_publisher(String, "words", 10), "a", "b")
@@ -366,7 +368,7 @@ async def test_destroying_a_publisher_cancels_whoever_waits_for_its_subscribers(
 ) -> None:
     """They would wait for ever."""
     publisher = node.create_publisher(String, "words", 10)
-    waiting = asyncio.ensure_future(publisher.wait_for_subscribers(1))
+    waiting = asyncio.get_running_loop().create_task(publisher.wait_for_subscribers(1))
     await settle()
     publisher.destroy()
     with pytest.raises(asyncio.CancelledError):
@@ -448,14 +450,15 @@ async def test_an_impossible_option_is_refused(
 # Faults
 
 
-async def faulty_pair(**faults: Any) -> tuple[Context, Node]:
+def faulty_node(**faults: Any) -> Node:
+    """Return a node whose messages suffer."""
     context = Context(transport=FaultyTransport(LocalTransport(), **faults))
-    return context, Node("node", context=context)
+    return Node("node", context=context)
 
 
 async def test_lost_messages_are_counted() -> None:
     """By the gaps in the sequence numbers of their publisher."""
-    _, node = await faulty_pair(drop=0.5, seed=3)
+    node = faulty_node(drop=0.5, seed=3)
     reader = node.create_subscription(Int32, "numbers", qos_profile=100)
     publisher = node.create_publisher(Int32, "numbers", 10)
     for number in range(100):
@@ -468,7 +471,7 @@ async def test_lost_messages_are_counted() -> None:
 
 async def test_a_delayed_message_is_what_was_published(manual_clock: Any) -> None:
     """Not what its publisher made of it since."""
-    _, node = await faulty_pair(delay=1.0, clock=manual_clock)
+    node = faulty_node(delay=1.0, clock=manual_clock)
     reader = node.create_subscription(Int32, "numbers")
     msg = Int32(data=1)
     node.create_publisher(Int32, "numbers", 10).publish(msg)
@@ -484,7 +487,7 @@ async def test_the_faults_of_a_faulty_transport(
     faults: dict[str, float], expected: list[int]
 ) -> None:
     """Each does what its name says."""
-    _, node = await faulty_pair(**faults)
+    node = faulty_node(**faults)
     reader = node.create_subscription(Int32, "numbers")
     publisher = node.create_publisher(Int32, "numbers", 10)
     for number in range(2):
