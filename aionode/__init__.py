@@ -17,6 +17,16 @@ Exceptions are in `aionode.errors`, quality-of-service presets in `aionode.qos`,
 `aionode.interfaces`, helpers for tests in `aionode.testing`.
 """
 
+from aionode.action import (
+    ActionClient,
+    ActionResult,
+    ActionServer,
+    CancelResponse,
+    ClientGoalHandle,
+    GoalResponse,
+    GoalStatus,
+    ServerGoalHandle,
+)
 from aionode.clock import Clock, ClockType, Duration, Time
 from aionode.context import Context
 from aionode.endpoints.dispatch import CallbackContext
@@ -36,13 +46,20 @@ from aionode.qos import (
 from aionode.runner import run
 
 __all__ = [
+    "ActionClient",
+    "ActionResult",
+    "ActionServer",
     "CallbackContext",
+    "CancelResponse",
     "Client",
+    "ClientGoalHandle",
     "Clock",
     "ClockType",
     "Context",
-    "Duration",
     "DurabilityPolicy",
+    "Duration",
+    "GoalResponse",
+    "GoalStatus",
     "HistoryPolicy",
     "LivelinessPolicy",
     "MessageInfo",
@@ -52,6 +69,7 @@ __all__ = [
     "QoSProfile",
     "Rate",
     "ReliabilityPolicy",
+    "ServerGoalHandle",
     "Service",
     "Subscription",
     "Time",

@@ -23,6 +23,7 @@ from aionode.graph import EndpointKind
 from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.logging import get_logger
 from aionode.message import Message, ServiceType
+from aionode.node_actions import NodeActionMethods
 from aionode.node_graph import NodeGraphMethods
 from aionode.node_parameters import NodeParameterMethods
 from aionode.parameter import Parameter, ParameterStore, declare_qos_overrides
@@ -51,7 +52,7 @@ ResponseT = TypeVar("ResponseT", bound=Message)
 EntityT = TypeVar("EntityT", bound="Entity")
 
 
-class Node(NodeGraphMethods, NodeParameterMethods):
+class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
     """A participant in the system, with publishers, subscriptions, services, clients and timers.
 
     A node is made at any time, with or without a running event loop, and so are its entities. Its

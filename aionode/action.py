@@ -1,0 +1,57 @@
+"""Actions: goals that take their time, that report how far they are, and that can be cancelled.
+
+A server::
+
+    async def drive(goal_handle):
+        for part in route_to(goal_handle.request.pose):
+            await go_along(part)
+            goal_handle.publish_feedback(Drive.Feedback(distance_left=part.rest))
+        goal_handle.succeed()
+        return Drive.Result(arrived=True)
+
+    node.create_action_server(Drive, "drive", drive)
+
+and a client::
+
+    client = node.create_action_client(Drive, "drive")
+    goal = await client.send_goal(Drive.Goal(pose=kitchen))
+    async for feedback in goal:
+        print(feedback.distance_left)
+    print((await goal.result()).status)
+
+In aionode.errors are `GoalRejectedError`, `GoalAbortedError`, `GoalCanceledError` and
+`GoalLostError`.
+"""
+
+from __future__ import annotations
+
+from aionode.endpoints.action_client import ActionClient
+from aionode.endpoints.action_server import ActionServer
+from aionode.endpoints.client_goal import ActionResult, ClientGoalHandle
+from aionode.endpoints.server_goal import ServerGoalHandle
+from aionode.errors import (
+    GoalAbortedError,
+    GoalCanceledError,
+    GoalError,
+    GoalLostError,
+    GoalRejectedError,
+    GoalTransitionError,
+)
+from aionode.goal import CancelResponse, GoalResponse, GoalStatus
+
+__all__ = [
+    "ActionClient",
+    "ActionResult",
+    "ActionServer",
+    "CancelResponse",
+    "ClientGoalHandle",
+    "GoalAbortedError",
+    "GoalCanceledError",
+    "GoalError",
+    "GoalLostError",
+    "GoalRejectedError",
+    "GoalResponse",
+    "GoalStatus",
+    "GoalTransitionError",
+    "ServerGoalHandle",
+]

@@ -1,0 +1,397 @@
+"""Action clients: they send goals, and tell what becomes of them."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable, Coroutine
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
+from uuid import uuid4
+
+from aionode.endpoints.action_server import expect_action_type, reason_id
+from aionode.endpoints.client_goal import ActionResult, ClientGoalHandle
+from aionode.endpoints.dispatch import accepts, pump
+from aionode.endpoints.entity import Entity
+from aionode.endpoints.inbox import Inbox
+from aionode.endpoints.stats import CallbackStats
+from aionode.errors import (
+    GoalAbortedError,
+    GoalCanceledError,
+    GoalLostError,
+    GoalRejectedError,
+    RequestTimeoutError,
+    ServiceError,
+    ServiceUnavailableError,
+)
+from aionode.goal import GoalStatus
+from aionode.message import Message, checker, type_name
+from aionode.qos import (
+    QoSProfile,
+    qos_profile_action_status_default,
+    qos_profile_services_default,
+)
+
+if TYPE_CHECKING:
+    from aionode.message import ActionClass
+    from aionode.node import Node
+
+__all__ = ["ActionClient"]
+
+T = TypeVar("T")
+GoalT = TypeVar("GoalT", bound=Message)
+ResultT = TypeVar("ResultT", bound=Message)
+FeedbackT = TypeVar("FeedbackT", bound=Message)
+
+ANSWER_LIMIT_S = 1.0
+"""How long an answer is waited for that should come at once, in seconds of the machine."""
+
+UNLIMITED = 2**63 - 1
+
+FEEDBACK_QOS = QoSProfile(depth=100)
+"""Of the feedback of all goals together, as much as one goal keeps."""
+
+
+class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
+    """Sends goals to an action server. Works while its node runs.
+
+    ::
+
+        client = ActionClient(node, Fibonacci, "fibonacci")
+        await client.wait_for_server()
+        result = await client.call(Fibonacci.Goal(order=5))      # the whole in one, or
+
+        goal = await client.send_goal(Fibonacci.Goal(order=5))
+        async for feedback in goal:
+            ...
+        outcome = await goal.result()
+
+    Args:
+        node: Whose it is.
+        action_type: An action class.
+        action_name: Name of the action; a relative one gets the node's namespace.
+        goal_service_qos_profile: Profile of the service that takes goals.
+        result_service_qos_profile: Profile of the service that gives results.
+        cancel_service_qos_profile: Profile of the service that takes cancel requests.
+        feedback_sub_qos_profile: Profile of the feedback topic.
+        status_sub_qos_profile: Profile of the status topic.
+
+    Attributes:
+        action_type: The action type.
+        action_name: The full name of the action.
+
+    Raises:
+        TypeError: an argument is of a wrong kind.
+        InvalidTopicNameException: `action_name` is invalid (a ValueError).
+        EntityDestroyedError: the node was destroyed (a RuntimeError).
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        action_type: ActionClass[GoalT, ResultT, FeedbackT],
+        action_name: str,
+        *,
+        goal_service_qos_profile: QoSProfile | int = qos_profile_services_default,
+        result_service_qos_profile: QoSProfile | int = qos_profile_services_default,
+        cancel_service_qos_profile: QoSProfile | int = qos_profile_services_default,
+        feedback_sub_qos_profile: QoSProfile | int = FEEDBACK_QOS,
+        status_sub_qos_profile: QoSProfile | int = qos_profile_action_status_default,
+    ) -> None:
+        expect_action_type(action_type, f"action client of {action_name}")
+        self.action_type = cast("Any", action_type)
+        self.action_name = node.resolve_topic_name(action_name)
+        super().__init__(f"action client of {self.action_name}")
+        self._check = checker(self.action_type.Goal)
+        self._graph = node.graph
+        self._goals: dict[bytes, ClientGoalHandle[ResultT, FeedbackT]] = {}
+        self._accepted: Inbox[Any] = Inbox(UNLIMITED, CallbackStats(), keep_all=True)
+        self._waits: set[asyncio.Future[None]] = set()
+
+        impl = self.action_type.Impl
+        hidden = f"{self.action_name}/_action"
+        self._parts: list[Entity] = []
+        try:
+            self._send_goal = self._part(
+                node.create_client(
+                    impl.SendGoalService,
+                    f"{hidden}/send_goal",
+                    qos_profile=goal_service_qos_profile,
+                )
+            )
+            self._cancel_goal = self._part(
+                node.create_client(
+                    impl.CancelGoalService,
+                    f"{hidden}/cancel_goal",
+                    qos_profile=cancel_service_qos_profile,
+                )
+            )
+            self._get_result = self._part(
+                node.create_client(
+                    impl.GetResultService,
+                    f"{hidden}/get_result",
+                    qos_profile=result_service_qos_profile,
+                )
+            )
+            self._feedback = self._part(
+                node.create_subscription(
+                    impl.FeedbackMessage,
+                    f"{hidden}/feedback",
+                    self._on_feedback,
+                    feedback_sub_qos_profile,
+                )
+            )
+            self._status = self._part(
+                node.create_subscription(
+                    impl.GoalStatusMessage,
+                    f"{hidden}/status",
+                    self._on_status,
+                    status_sub_qos_profile,
+                )
+            )
+        except BaseException:
+            self._close_parts()
+            raise
+        node.add_entity(self)
+
+    def _part(self, part: Any) -> Any:
+        self._parts.append(part)
+        return part
+
+    def __repr__(self) -> str:
+        return (
+            f"<ActionClient {self.action_name} {type_name(self.action_type)} "
+            f"goals={len(self._goals)}>"
+        )
+
+    # The server
+
+    def server_is_ready(self) -> bool:
+        """Whether a server is matched now, with all its three services and two topics."""
+        return bool(
+            self._send_goal.service_is_ready()
+            and self._cancel_goal.service_is_ready()
+            and self._get_result.service_is_ready()
+            and self._feedback.get_publisher_count() > 0
+            and self._status.get_publisher_count() > 0
+        )
+
+    async def wait_for_server(self, timeout_sec: float | None = None) -> bool:
+        """Wait until a server is matched.
+
+        Args:
+            timeout_sec: How long at most, in seconds; None waits for ever.
+
+        Returns:
+            True when a server is there, False when `timeout_sec` has passed.
+
+        Raises:
+            EntityDestroyedError: the client was destroyed before.
+            CancelledError: the client was destroyed while it waited.
+        """
+        self.refuse_if_destroyed()
+        try:
+            async with asyncio.timeout(timeout_sec):
+                while not self.server_is_ready():
+                    wait = self._graph.changed()
+                    self._waits.add(wait)
+                    wait.add_done_callback(self._waits.discard)
+                    await wait
+        except TimeoutError:
+            return self.server_is_ready()
+        return True
+
+    # Goals
+
+    async def call(
+        self,
+        goal: GoalT,
+        feedback_callback: Callable[[Any], Any] | None = None,
+    ) -> ResultT:
+        """Send `goal`, wait for its end, and return the result message.
+
+        Cancelling cancels the goal: the server is asked once, and its answer is waited for up to
+        1 s before CancelledError goes on. So does ``asyncio.timeout``.
+
+        Args:
+            goal: An instance of ``action_type.Goal``.
+            feedback_callback: Called with each feedback message, as in rclpy: the feedback itself
+                is its field ``feedback``. Sync or async.
+
+        Raises:
+            GoalRejectedError: the server did not accept the goal.
+            GoalAbortedError: the server gave the goal up; with what is known of the reason.
+            GoalCanceledError: the goal was canceled by a request that was not the caller's.
+            GoalLostError: the server went away, or forgot the goal.
+            TypeError, MessageError, ServiceError, EntityDestroyedError, CancelledError: as
+                `send_goal`.
+        """
+        handle = await self.send_goal(goal, feedback_callback)
+        outcome = await handle.result()
+        if outcome.status is GoalStatus.SUCCEEDED:
+            return outcome.result
+        if outcome.status is GoalStatus.CANCELED:
+            raise GoalCanceledError(self.action_name, handle.text, outcome.result)
+        if outcome.status is GoalStatus.ABORTED:
+            raise GoalAbortedError(
+                self.action_name, handle.text, outcome.result, outcome.error_text
+            )
+        raise GoalLostError(self.action_name, handle.text, "the server does not know it any more")
+
+    async def send_goal(
+        self,
+        goal: GoalT,
+        feedback_callback: Callable[[Any], Any] | None = None,
+        goal_uuid: Any = None,
+    ) -> ClientGoalHandle[ResultT, FeedbackT]:
+        """Send `goal`, and return its handle when the server has accepted it.
+
+        Without a server nothing answers, so `wait_for_server` first, or limit the wait with
+        `asyncio.timeout`. When cancelled, a goal that the server has accepted meanwhile is
+        cancelled, too.
+
+        Args:
+            goal: An instance of ``action_type.Goal``; it may be changed after the call began.
+            feedback_callback: Called with each feedback message, as in rclpy: the feedback itself
+                is its field ``feedback``. Sync or async. Without it, iterate over the handle.
+            goal_uuid: The id as unique_identifier_msgs/msg/UUID; a random one without it.
+
+        Raises:
+            GoalRejectedError: the server did not accept the goal.
+            TypeError: `goal` is of another type.
+            MessageError: a value does not fit its field.
+            ServiceError: the server's goal_callback failed, or the server went away.
+            EntityDestroyedError: the client was destroyed before (a RuntimeError).
+            CancelledError: the client was destroyed meanwhile.
+        """
+        self.refuse_if_destroyed("given a goal")
+        self._check(goal)
+        if feedback_callback is not None:
+            accepts(feedback_callback, 1, subject=self.subject, wanted="(feedback_message)")
+        handle: ClientGoalHandle[ResultT, FeedbackT] = ClientGoalHandle(
+            self, uuid_message(uuid4().bytes) if goal_uuid is None else goal_uuid, feedback_callback
+        )
+        # Entered first, because feedback may be faster than the answer.
+        self._goals.setdefault(handle.key, handle)
+        try:
+            response = await self.awaiting(
+                handle,
+                self._send_goal.call(
+                    self.action_type.Impl.SendGoalService.Request(goal_id=handle.goal_id, goal=goal)
+                ),
+            )
+        except BaseException:
+            self._forget(handle)
+            raise
+        if not response.accepted:
+            self._forget(handle)
+            raise GoalRejectedError(self.action_name, handle.text)
+        handle.accepted = True
+        handle.stamp = response.stamp
+        handle.status = max(handle.status, GoalStatus.ACCEPTED)
+        self._accepted.put(handle)
+        return handle
+
+    def _forget(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
+        if self._goals.get(goal.key) is goal:
+            del self._goals[goal.key]
+
+    async def awaiting(self, goal: ClientGoalHandle[ResultT, FeedbackT], wait: Awaitable[T]) -> T:
+        """Return what `wait` returns; if cancelled, cancel `goal` as well. For its handle."""
+        try:
+            return await wait
+        except asyncio.CancelledError:
+            if not (self.destroyed or goal.done or goal.withdrawn):
+                goal.withdrawn = True  # one request is enough, however many wait
+                # The answer is awaited, because whoever is cancelled may end the node next.
+                with suppress(ServiceError, RequestTimeoutError):
+                    await self.cancel_goal(goal, ANSWER_LIMIT_S)
+            raise
+
+    async def cancel_goal(
+        self, goal: ClientGoalHandle[ResultT, FeedbackT], timeout_sec: float | None = None
+    ) -> Any:
+        """Ask the server to cancel `goal`. For its handle."""
+        request = self.action_type.Impl.CancelGoalService.Request()
+        request.goal_info.goal_id = goal.goal_id
+        return await self._cancel_goal.call(request, timeout_sec)
+
+    # What the server says
+
+    def _on_feedback(self, message: Any) -> Any:
+        goal = self._goals.get(message.goal_id.uuid.tobytes())
+        if goal is None:
+            return None  # of another client, or late
+        if goal.feedback_callback is not None:
+            return goal.feedback_callback(message)
+        goal.take(message.feedback)
+        return None
+
+    def _on_status(self, message: Any) -> None:
+        if not self._goals:
+            return
+        for each in message.status_list:
+            goal = self._goals.get(each.goal_info.goal_id.uuid.tobytes())
+            if goal is not None:
+                goal.status = max(goal.status, GoalStatus(each.status))
+
+    async def run(self) -> None:
+        """Wait for the results of all goals, until cancelled."""
+        await pump(self._accepted, self._follow, concurrent=True)
+
+    def _follow(
+        self, _entered_ns: int, goal: ClientGoalHandle[ResultT, FeedbackT]
+    ) -> Coroutine[Any, Any, None]:
+        return self._until_end(goal)
+
+    async def _until_end(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
+        try:
+            response = await self._ask(goal.goal_id)
+            status = GoalStatus(response.status)
+            text = await self._reason(goal) if status is GoalStatus.ABORTED else ""
+        except ServiceUnavailableError:
+            problem = "the server went away before it ended"
+            goal.end(lost=GoalLostError(self.action_name, goal.text, problem))
+        except ServiceError as error:
+            problem = f"the server could not tell its result ({error})"
+            goal.end(lost=GoalLostError(self.action_name, goal.text, problem))
+        else:
+            goal.end(ActionResult(status, response.result, text))
+        finally:
+            self._forget(goal)
+
+    async def _ask(self, goal_id: Any, timeout_sec: float | None = None) -> Any:
+        request = self.action_type.Impl.GetResultService.Request(goal_id=goal_id)
+        return await self._get_result.call(request, timeout_sec)
+
+    async def _reason(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> str:
+        """Return why `goal` was aborted, if the server is one of aionode and knows."""
+        try:
+            await self._ask(uuid_message(reason_id(goal.key)), ANSWER_LIMIT_S)
+        except ServiceError as error:
+            return error.error_text if error.error_type == "AbortReason" else ""
+        except RequestTimeoutError:
+            return ""
+        return ""
+
+    # The end
+
+    def close(self) -> None:
+        """Withdraw the client, and cancel what waits; goals go on at the server."""
+        self._close_parts()
+        for wait in list(self._waits):
+            wait.cancel(f"{self.subject}: destroyed")
+        goals, self._goals = self._goals, {}
+        for goal in goals.values():
+            goal.end()
+
+    def _close_parts(self) -> None:
+        for part in self._parts:
+            part.destroy()
+
+
+def uuid_message(goal_id: bytes) -> Any:
+    """Return 16 bytes as unique_identifier_msgs/msg/UUID."""
+    # Imported here, because whoever imports aionode need not know this message.
+    from aionode.interfaces.unique_identifier_msgs.msg import UUID
+
+    return UUID(uuid=list(goal_id))

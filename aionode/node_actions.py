@@ -1,0 +1,82 @@
+"""The actions of a node: their servers and clients, made of its services and topics."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from aionode.action import ActionClient, ActionServer
+from aionode.message import Message
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.action import ServerGoalHandle
+    from aionode.endpoints.dispatch import Callbacks, OnError
+    from aionode.endpoints.entity import Entity
+    from aionode.message import ActionClass
+
+__all__ = ["NodeActionMethods"]
+
+GoalT = TypeVar("GoalT", bound=Message)
+ResultT = TypeVar("ResultT", bound=Message)
+FeedbackT = TypeVar("FeedbackT", bound=Message)
+
+
+class NodeActionMethods:
+    """The part of `Node` that has actions."""
+
+    _callbacks: Callbacks
+    _add: Callable[[Entity], Entity]
+
+    def create_action_server(
+        self,
+        action_type: ActionClass[GoalT, ResultT, FeedbackT],
+        action_name: str,
+        execute_callback: Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any],
+        *,
+        goal_callback: Callable[[GoalT], Any] | None = None,
+        handle_accepted_callback: (
+            Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any] | None
+        ) = None,
+        cancel_callback: (
+            Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any] | None
+        ) = None,
+        result_timeout: float = 10.0,
+        concurrent: bool | int = True,
+        on_error: OnError = "raise",
+        offload: bool = False,
+    ) -> ActionServer[GoalT, ResultT, FeedbackT]:
+        """Return a server that executes goals; see `aionode.ActionServer` for all arguments."""
+        return ActionServer(
+            self,  # type: ignore[arg-type]  # only Node inherits this
+            action_type,
+            action_name,
+            execute_callback,
+            goal_callback=goal_callback,
+            handle_accepted_callback=handle_accepted_callback,
+            cancel_callback=cancel_callback,
+            result_timeout=result_timeout,
+            concurrent=concurrent,
+            on_error=on_error,
+            offload=offload,
+        )
+
+    def create_action_client(
+        self, action_type: ActionClass[GoalT, ResultT, FeedbackT], action_name: str
+    ) -> ActionClient[GoalT, ResultT, FeedbackT]:
+        """Return a client that sends goals; see `aionode.ActionClient`."""
+        return ActionClient(self, action_type, action_name)  # type: ignore[arg-type]  # as above
+
+    # What entities need that are made of others
+
+    @property
+    def callbacks(self) -> Callbacks:
+        """How callbacks of this node are run."""
+        return self._callbacks
+
+    def add_entity(self, entity: Entity) -> None:
+        """Take in an entity that was made elsewhere: start it now or later, destroy it at the end.
+
+        For entities that are made of others, such as an action server.
+        """
+        self._add(entity)
