@@ -305,7 +305,8 @@ def draw(samples: Samples, path: Path) -> None:
                 axis.set_xlabel("publish → callback, milliseconds")
             if column == 0:
                 axis.set_ylabel("share of messages that took longer")
-    axes[0][0].legend(loc="lower right", bbox_to_anchor=(0.86, 0.03), fontsize="small")
+    lines, labels = axes[0][0].get_legend_handles_labels()
+    figure.legend(lines, labels, loc="outside lower center", ncols=len(labels))
     figure.suptitle("From publish to callback in one process, against a bare asyncio.Queue hop")
     figure.savefig(path, dpi=110)
 
