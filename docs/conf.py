@@ -14,6 +14,7 @@ extensions = [
     "myst_parser",  # pages in Markdown
     "sphinx.ext.autodoc",  # the reference, from docstrings
     "sphinx.ext.napoleon",  # … which have Google's form
+    "sphinx_click",  # the command line, from its help
 ]
 source_suffix = {".md": "markdown"}
 root_doc = "index"
@@ -37,3 +38,4 @@ autodoc_default_options = {"members": True, "show-inheritance": True}
 napoleon_google_docstring = True
 napoleon_numpy_docstring = False
 napoleon_use_rtype = False
+napoleon_use_ivar = True
