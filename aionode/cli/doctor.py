@@ -1,0 +1,221 @@
+"""``aionode doctor``: what is on the network, and why two endpoints do not talk."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from aionode.cli import lookup
+from aionode.cli.completing import complete_names
+from aionode.cli.diagnosis import Finding, diagnose
+from aionode.cli.options import json_option, ros2_options
+from aionode.cli.session import run_verb
+from aionode.graph import EndpointKind
+from aionode.transport.zenoh_config import DiscoveryRange
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from aionode.cli.output import Output
+    from aionode.graph import EndpointInfo, NodeInfo
+    from aionode.node import Node
+    from aionode.transport.zenoh_config import Network
+
+__all__ = ["doctor", "doctor_command", "network_findings"]
+
+PROBE_S = 0.2
+"""How long a router on this machine may take to accept a connection; it takes 0.1 ms."""
+
+ZENOH = "rmw_zenoh_cpp"
+
+
+async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> int:
+    """Print what is on the network and what looks wrong; return 1 if something does not work.
+
+    Args:
+        node: The command's node.
+        names: Look only at these nodes, topics and services.
+        output: Where to print.
+
+    Raises:
+        CommandError: one of the names is not there.
+    """
+    network = node.context.network
+    has_router = await answers(network.router_port)
+    domains = other_domains(node)
+    nodes, endpoints = chosen(node, names)
+    record = {
+        "domain_id": network.domain_id,
+        "other_domains": domains,
+        "discovery_range": network.discovery_range.value,
+        "static_peers": list(network.static_peers),
+        "router": has_router,
+        "participants": len({one.participant for one in nodes}),
+        "nodes": len(nodes),
+        "topics": count(endpoints, EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION),
+        "services": count(endpoints, EndpointKind.SERVER, EndpointKind.CLIENT),
+    }
+    output.item("\n".join(summary(record, network.router_port)), record)
+    found = diagnose(nodes, endpoints)
+    found += network_findings(
+        network, os.environ, has_router=has_router, domains=domains, alone=not nodes
+    )
+    for finding in found:
+        output.item(
+            f"\n{finding.severity}: {finding.subject}: {finding.text}\n  -> {finding.remedy}",
+            {
+                "severity": finding.severity,
+                "subject": finding.subject,
+                "text": finding.text,
+                "remedy": finding.remedy,
+            },
+        )
+    problems = sum(finding.severity == "problem" for finding in found)
+    output.text(f"\n{problems} problem(s), {len(found) - problems} hint(s)")
+    return 1 if problems else 0
+
+
+def summary(record: Mapping[str, Any], router_port: int) -> list[str]:
+    """Return what is on the network in a few lines."""
+    router = "answers" if record["router"] else "none"
+    return [
+        f"Domain: {record['domain_id']}",
+        f"Discovery range: {record['discovery_range']}",
+        f"Static peers: {', '.join(record['static_peers']) or 'none'}",
+        f"Router on this machine (port {router_port}): {router}",
+        f"Other processes: {record['participants']}",
+        f"Nodes: {record['nodes']}",
+        f"Topics: {record['topics']}",
+        f"Services: {record['services']}",
+    ]
+
+
+def count(endpoints: Sequence[EndpointInfo], *kinds: EndpointKind) -> int:
+    """Return how many names the endpoints of some kinds use."""
+    return len({endpoint.name for endpoint in endpoints if endpoint.kind in kinds})
+
+
+def chosen(node: Node, names: Sequence[str]) -> tuple[list[NodeInfo], list[EndpointInfo]]:
+    """Return nodes and endpoints; only those that have, or belong to, one of `names` if given."""
+    nodes = lookup.node_infos(node)
+    endpoints = [e for e in lookup.endpoints(node) if not e.node.name.startswith("_")]
+    if not names:
+        return nodes, endpoints
+    wanted = {name if name.startswith("/") else f"/{name}" for name in names}
+    known = {one.fully_qualified_name for one in nodes} | {one.name for one in endpoints}
+    for name in sorted(wanted - known):
+        raise lookup.unknown("No node, topic or service", name, known, "node list")
+    # A partner may have another name, so whoever looks like one stays in.
+    of_nodes = {one.name for one in endpoints if one.node.fully_qualified_name in wanted}
+    near = {
+        name
+        for name in {one.name for one in endpoints}
+        if any(lookup.close_to(name, [each]) for each in wanted | of_nodes)
+    }
+    return (
+        [one for one in nodes if one.fully_qualified_name in wanted] or nodes,
+        [one for one in endpoints if one.name in wanted | of_nodes | near],
+    )
+
+
+def other_domains(node: Node) -> list[int]:
+    """Return the domains of nodes that can be reached but not heard, as far as is known."""
+    found: set[int] = set()
+    for transport in node.context.transports:
+        found |= set(getattr(transport, "other_domains", ()))
+    return sorted(found)
+
+
+async def answers(port: int) -> bool:
+    """Whether somebody listens on a port of this machine."""
+    try:
+        async with asyncio.timeout(PROBE_S):
+            _, writer = await asyncio.open_connection("127.0.0.1", port)
+    except (OSError, TimeoutError):
+        return False
+    writer.close()
+    return True
+
+
+def network_findings(
+    network: Network,
+    environ: Mapping[str, str],
+    *,
+    has_router: bool,
+    domains: Sequence[int],
+    alone: bool,
+) -> list[Finding]:
+    """Return what keeps nodes from being found at all."""
+    found = []
+    if domains:
+        others = ", ".join(map(str, domains))
+        found.append(
+            Finding(
+                "problem" if alone else "hint",
+                "domain",
+                f"there are nodes in domain {others}, and this is domain {network.domain_id}: "
+                "they do not hear each other",
+                f"ROS_DOMAIN_ID={domains[0]} for those that should",
+            )
+        )
+    wide = network.discovery_range
+    if wide is DiscoveryRange.OFF and not network.static_peers:
+        found.append(
+            Finding(
+                "problem",
+                "discovery range",
+                "it is OFF, so nobody is looked for",
+                "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST or SUBNET",
+            )
+        )
+    elif wide is DiscoveryRange.SYSTEM_DEFAULT and not has_router:
+        found.append(
+            Finding(
+                "problem",
+                "router",
+                "others are found through a router only, and none answers on port "
+                f"{network.router_port}",
+                "start one: aionode router, or ros2 run rmw_zenoh_cpp rmw_zenohd",
+            )
+        )
+    elif wide is DiscoveryRange.LOCALHOST and alone and not network.static_peers and not domains:
+        found.append(
+            Finding(
+                "hint",
+                "discovery range",
+                "nobody is on this machine, and other machines are not looked for",
+                "ROS_STATIC_PEERS=<host>, ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET, or a router",
+            )
+        )
+    return [*found, *rmw_findings(environ)]
+
+
+def rmw_findings(environ: Mapping[str, str]) -> list[Finding]:
+    """Return what is wrong with the ROS 2 nodes that are started from here."""
+    rmw = environ.get("RMW_IMPLEMENTATION", "")
+    if rmw in {"", ZENOH}:
+        return []
+    return [
+        Finding(
+            "hint",
+            "RMW_IMPLEMENTATION",
+            f"it is {rmw}, so ROS 2 nodes started from here are not heard",
+            f"RMW_IMPLEMENTATION={ZENOH}",
+        )
+    ]
+
+
+@click.command()
+@click.argument("names", nargs=-1, shell_complete=complete_names("topic"))
+@json_option
+@ros2_options
+def doctor_command(names: tuple[str, ...], json: bool) -> None:
+    """Say what is on the network, and why two endpoints do not talk.
+
+    NAMES of nodes, topics and services limit it to those. The exit status is 1 if something does
+    not work.
+    """
+    run_verb(lambda node, output: doctor(node, names, output=output), json=json)
