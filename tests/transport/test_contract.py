@@ -1,0 +1,314 @@
+"""One suite for every transport: a node in one process and its twin in another behave alike.
+
+`left` and `right` are two running nodes. With ``local`` they share a context, with ``zenoh`` each
+has its own, as two processes would.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import AsyncExitStack
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import pytest
+
+from aionode.context import Context
+from aionode.errors import MessageError, ServiceError, ServiceUnavailableError
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.sensor_msgs.msg import Image, JointState
+from aionode.interfaces.std_msgs.msg import Int8, Int32
+from aionode.node import Node
+from aionode.parameter import Parameter
+from aionode.parameter_client import AsyncParameterClient
+from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
+from aionode.testing import local_context
+from aionode.wire import cdr
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator
+
+Request = AddTwoInts.Request
+Response = AddTwoInts.Response
+
+
+class Pair(NamedTuple):
+    """Two running nodes, and where a third can be made beside the right one."""
+
+    left: Node
+    right: Node
+    beside_right: Context
+
+
+@pytest.fixture(params=["local", "zenoh"])
+async def pair(request: pytest.FixtureRequest) -> AsyncIterator[Pair]:
+    """Two nodes that know each other."""
+    async with AsyncExitStack() as stack, asyncio.timeout(30):
+        if request.param == "local":
+            context = await stack.enter_async_context(local_context())
+            contexts = (context, context)
+        else:
+            contexts = (
+                await stack.enter_async_context(Context()),
+                await stack.enter_async_context(Context()),
+            )
+        left = await stack.enter_async_context(Node("left", context=contexts[0]))
+        right = await stack.enter_async_context(Node("right", context=contexts[1]))
+        await left.wait_for_node("/right")
+        await right.wait_for_node("/left")
+        yield Pair(left, right, contexts[1])
+
+
+def numbers(reader: Any, count: int) -> Any:
+    """Return a coroutine that takes so many numbers."""
+
+    async def take() -> list[int]:
+        return [(await reader.receive()).data for _ in range(count)]
+
+    return take()
+
+
+def add(request: Request, response: Response) -> Response:
+    """Answer as the tutorial's server does."""
+    response.sum = request.a + request.b
+    return response
+
+
+# Topics
+
+
+async def test_messages_arrive_in_order_and_once(pair: Pair) -> None:
+    """However they travel."""
+    reader = pair.right.create_subscription(Int32, "numbers", None, 100)
+    writer = pair.left.create_publisher(Int32, "numbers", 100)
+    await writer.wait_for_subscribers()
+    for number in range(100):
+        writer.publish(Int32(data=number))
+    assert await numbers(reader, 100) == list(range(100))
+    assert (reader.stats.received, reader.stats.dropped, reader.stats.lost) == (100, 0, 0)
+
+
+async def test_readers_on_both_sides_hear_each_message_once(pair: Pair) -> None:
+    """The publisher's own process is no exception."""
+    readers = [node.create_subscription(Int32, "numbers", None, 10) for node in pair[:2]]
+    writer = pair.left.create_publisher(Int32, "numbers", 10)
+    await writer.wait_for_subscribers(2)
+    for number in range(3):
+        writer.publish(Int32(data=number))
+    for reader in readers:
+        assert await numbers(reader, 3) == [0, 1, 2]
+        assert reader.stats.received == 3
+
+
+async def test_callbacks_get_what_readers_get(pair: Pair) -> None:
+    """With message and info."""
+    heard: list[tuple[Int32, Any]] = []
+    came = asyncio.Event()
+
+    def callback(msg: Int32, info: Any) -> None:
+        heard.append((msg, info))
+        came.set()
+
+    pair.right.create_subscription(Int32, "numbers", callback)
+    writer = pair.left.create_publisher(Int32, "numbers", 10)
+    await writer.wait_for_subscribers()
+    writer.publish(Int32(data=7))
+    await came.wait()
+    ((msg, info),) = heard
+    assert msg == Int32(data=7)
+    assert info["publication_sequence_number"] == 1
+    assert info["received_timestamp"] >= info["source_timestamp"] > 0
+    (publisher,) = pair.left.get_publishers_info_by_topic("numbers")
+    assert list(info["publisher_gid"]) == publisher.endpoint_gid
+
+
+async def test_arrays_arrive_read_only_and_whole(pair: Pair) -> None:
+    """Large ones, small ones, and none."""
+    reader = pair.right.create_subscription(JointState, "joints")
+    images = pair.right.create_subscription(Image, "image")
+    joints = pair.left.create_publisher(JointState, "joints", 10)
+    pixels = pair.left.create_publisher(Image, "image", 10)
+    await joints.wait_for_subscribers()
+    await pixels.wait_for_subscribers()
+    joints.publish(JointState(name=["a", "b"], position=[1.0, 2.0]))
+    data = bytes(range(256)) * 4096
+    pixels.publish(Image(height=1024, width=1024, data=data))
+
+    state = await reader.receive()
+    assert isinstance(state.position, np.ndarray)
+    assert not state.position.flags.writeable
+    assert (state.name, list(state.position), len(state.velocity)) == (["a", "b"], [1.0, 2.0], 0)
+    assert bytes((await images.receive()).data) == data
+
+
+async def test_a_late_reader_of_a_kept_topic_gets_the_last_ones_once(pair: Pair) -> None:
+    """In order, before new ones; a volatile reader gets none of them."""
+    profile = QoSProfile(depth=2, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    writer = pair.left.create_publisher(Int32, "map", profile)
+    for number in range(4):
+        writer.publish(Int32(data=number))
+    late = pair.right.create_subscription(Int32, "map", None, profile)
+    volatile = pair.right.create_subscription(Int32, "map", None, 10)
+    assert await numbers(late, 2) == [2, 3]
+    await writer.wait_for_subscribers(2)
+    writer.publish(Int32(data=4))
+    assert await numbers(late, 1) == [4]
+    assert await numbers(volatile, 1) == [4]
+
+
+async def test_raw_readers_get_the_bytes(pair: Pair) -> None:
+    """The same ones, wherever they come from."""
+    reader = pair.right.create_subscription(Int32, "numbers", raw=True)
+    writer = pair.left.create_publisher(Int32, "numbers", 10)
+    await writer.wait_for_subscribers()
+    writer.publish(Int32(data=5))
+    assert bytes(await reader.receive()) == cdr.encode(Int32(data=5))
+
+
+async def test_a_value_that_does_not_fit_is_refused_by_publish(pair: Pair) -> None:
+    """Nobody hears it, and the next one arrives."""
+    reader = pair.right.create_subscription(Int8, "numbers")
+    writer = pair.left.create_publisher(Int8, "numbers", 10)
+    await writer.wait_for_subscribers()
+    with pytest.raises(MessageError, match=r"std_msgs/msg/Int8\.data"):
+        writer.publish(Int8(data=300))
+    writer.publish(Int8(data=3))
+    assert await numbers(reader, 1) == [3]
+
+
+async def test_nothing_is_lost_with_keep_all_and_drain(pair: Pair) -> None:
+    """A publisher that waits for room loses nothing."""
+    keep_all = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+    reader = pair.right.create_subscription(Int32, "numbers", None, keep_all)
+    writer = pair.left.create_publisher(Int32, "numbers", keep_all)
+    await writer.wait_for_subscribers()
+    for number in range(2000):
+        writer.publish(Int32(data=number))
+        if number % 500 == 0:
+            await writer.drain()
+    await writer.drain()
+    assert await numbers(reader, 2000) == list(range(2000))
+
+
+async def test_a_destroyed_publisher_leaves_the_graph_of_the_other_side(pair: Pair) -> None:
+    """And the counts with it."""
+    reader = pair.right.create_subscription(Int32, "numbers")
+    writer = pair.left.create_publisher(Int32, "numbers", 10)
+    while reader.get_publisher_count() != 1:
+        await pair.right.graph.changed()
+    writer.destroy()
+    while reader.get_publisher_count() != 0:
+        await pair.right.graph.changed()
+    assert pair.right.count_publishers("numbers") == 0
+
+
+# Services
+
+
+async def test_a_call_returns_the_response(pair: Pair) -> None:
+    """Between any two nodes."""
+    pair.right.create_service(AddTwoInts, "add", add)
+    client = pair.left.create_client(AddTwoInts, "add")
+    await client.wait_for_service()
+    assert (await client.call(Request(a=2, b=3))).sum == 5
+
+
+async def test_many_calls_at_once_are_told_apart(pair: Pair) -> None:
+    """Answered out of order."""
+    gate = asyncio.Event()
+
+    async def handler(request: Request) -> Response:
+        if request.a % 2:
+            await gate.wait()
+        return Response(sum=request.a)
+
+    pair.right.create_service(AddTwoInts, "add", handler, concurrent=True)
+    client = pair.left.create_client(AddTwoInts, "add")
+    await client.wait_for_service()
+    async with asyncio.TaskGroup() as tasks:
+        calls = [tasks.create_task(client.call(Request(a=n))) for n in range(30)]
+        await asyncio.wait(calls[::2])
+        gate.set()
+    assert [call.result().sum for call in calls] == list(range(30))
+
+
+async def test_a_failing_handler_answers_with_its_error(pair: Pair) -> None:
+    """Type and text cross the network."""
+
+    def handler(request: Request) -> Response:
+        raise ValueError(f"cannot add {request.a}")
+
+    pair.right.create_service(AddTwoInts, "add", handler, on_error="log")
+    client = pair.left.create_client(AddTwoInts, "add")
+    await client.wait_for_service()
+    with pytest.raises(ServiceError, match="/add: ValueError: cannot add 7") as caught:
+        await client.call(Request(a=7))
+    assert (caught.value.error_type, caught.value.error_text) == ("ValueError", "cannot add 7")
+
+
+async def test_a_server_that_goes_away_ends_the_call(pair: Pair) -> None:
+    """At once, with an error that says so."""
+    began = asyncio.Event()
+
+    async def handler(request: Request) -> Response:
+        began.set()
+        await asyncio.Event().wait()
+        return Response()
+
+    client = pair.left.create_client(AddTwoInts, "add")
+    async with Node("third", context=pair.beside_right) as third:
+        third.create_service(AddTwoInts, "add", handler)
+        await client.wait_for_service()
+        call = asyncio.get_running_loop().create_task(client.call(Request()))
+        await began.wait()
+    with pytest.raises(ServiceUnavailableError):
+        await call
+    while client.service_is_ready():
+        await pair.left.graph.changed()
+
+
+async def test_a_cancelled_call_does_not_disturb_the_next(pair: Pair) -> None:
+    """Its late answer goes nowhere."""
+    began = asyncio.Event()
+    gate = asyncio.Event()
+
+    async def handler(request: Request) -> Response:
+        began.set()
+        if request.a == 1:
+            await gate.wait()
+        return Response(sum=request.a)
+
+    pair.right.create_service(AddTwoInts, "add", handler, concurrent=True)
+    client = pair.left.create_client(AddTwoInts, "add")
+    await client.wait_for_service()
+    call = asyncio.get_running_loop().create_task(client.call(Request(a=1)))
+    await began.wait()
+    call.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await call
+    gate.set()
+    assert (await client.call(Request(a=2))).sum == 2
+
+
+async def test_parameters_of_the_other_side_can_be_set(pair: Pair) -> None:
+    """Services with real types, six of them."""
+    pair.right.declare_parameter("speed", 1.0)
+    client = AsyncParameterClient(pair.left, "/right")
+    await client.wait_for_services()
+    (result,) = await client.set_parameters([Parameter("speed", value=2.0)])
+    assert result.successful
+    assert pair.right.get_parameter("speed").value == 2.0
+
+
+# Graph
+
+
+async def test_both_sides_see_the_same_graph(pair: Pair) -> None:
+    """Names, types, hashes, profiles and ids."""
+    pair.left.create_publisher(Int32, "/numbers", QoSProfile(depth=3))
+    while not pair.right.count_publishers("/numbers"):
+        await pair.right.graph.changed()
+    assert pair.right.get_publishers_info_by_topic(
+        "/numbers"
+    ) == pair.left.get_publishers_info_by_topic("/numbers")
+    assert sorted(pair.right.get_node_names()) == sorted(pair.left.get_node_names())
