@@ -184,7 +184,10 @@ def test_equality_compares_values_arrays_included() -> None:
     assert (one == other, one != other) == (True, False)
     other.orientation_covariance[3] = 2
     assert (one == other, one != other) == (False, True)
-    assert Image(data=b"ab") == Image(data=memoryview(b"ab"))
+    for data in (memoryview(b"ab"), [97, 98], np.frombuffer(b"ab", np.uint8)):
+        assert Image(data=b"ab") == Image(data=data)
+        assert Image(data=data) == Image(data=b"ab")
+        assert Image(data=data) != Image(data=b"aa")
     assert JointState(name=["a"]) != JointState(name=["a", "b"])
     assert JointState(position=np.zeros(2)) != JointState(position=np.zeros(3))
 

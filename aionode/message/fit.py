@@ -11,6 +11,7 @@ import operator
 import reprlib
 import struct
 from collections.abc import Sequence as AbstractSequence
+from functools import cache
 from typing import TYPE_CHECKING, Any, TypeGuard
 
 from aionode.errors import MessageError
@@ -19,9 +20,10 @@ from aionode.message.fieldtypes import DTYPES, INT_RANGES, FieldType
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    import numpy as np
     import numpy.typing as npt
 
-__all__ = ["fit", "fit_element"]
+__all__ = ["fit", "fit_array", "fit_bytes", "fit_element"]
 
 
 def fit(type_: FieldType, value: object, path: str) -> Any:
@@ -146,6 +148,9 @@ def check_length(type_: FieldType, length: int, path: str) -> None:
 
 def is_listing(value: object) -> TypeGuard[AbstractSequence[Any]]:
     """Return whether a value is a sequence of elements, as opposed to text or bytes."""
+    kind = type(value)
+    if kind is list or kind is tuple:  # the usual ones, without the detour of an ABC
+        return True
     return isinstance(value, AbstractSequence) and not isinstance(
         value, str | bytes | bytearray | memoryview
     )
@@ -175,6 +180,8 @@ def fit_bytes(type_: FieldType, value: object, path: str) -> bytes | bytearray |
 
 def buffered(value: object) -> bool:
     """Return whether a value gives access to its memory."""
+    if isinstance(value, list | tuple):
+        return False
     try:
         memoryview(value)  # type: ignore[arg-type] # the question is whether it does
     except (TypeError, BufferError):
@@ -212,7 +219,7 @@ def fit_array(type_: FieldType, value: object, path: str) -> npt.NDArray[Any]:
     """Return an array of one dimension and the right dtype; one made here is read-only."""
     import numpy as np
 
-    dtype = np.dtype(DTYPES[type_.kind])
+    dtype = dtype_of(type_.kind)
     if isinstance(value, np.ndarray):
         array = value
     elif is_listing(value) and not buffered(value):
@@ -225,6 +232,14 @@ def fit_array(type_: FieldType, value: object, path: str) -> npt.NDArray[Any]:
         raise MessageError(path, f"an array of {array.ndim} dimensions, needs 1")
     check_length(type_, len(array), path)
     return array if array.dtype is dtype or array.dtype == dtype else cast(type_, array, path)
+
+
+@cache
+def dtype_of(kind: str) -> np.dtype[Any]:
+    """Return the dtype of the arrays of a kind."""
+    import numpy as np  # numpy is loaded when it is first needed
+
+    return np.dtype(DTYPES[kind])
 
 
 def frozen(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
@@ -258,7 +273,7 @@ def cast(type_: FieldType, array: npt.NDArray[Any], path: str) -> npt.NDArray[An
     """Return an array of another dtype as one of this field's, if every element fits."""
     import numpy as np
 
-    dtype = np.dtype(DTYPES[type_.kind])
+    dtype = dtype_of(type_.kind)
     if array.dtype.kind == "O":
         return array_of_items(type_, list(array), path, dtype)
     fitting = {"b": "b", "i": "iu", "u": "iu", "f": "iuf"}[dtype.kind]

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from aionode.errors import MessageError
 from aionode.message.base import Message, message_class, type_name
 from aionode.message.fieldtypes import INT_RANGES, FieldType
-from aionode.message.fit import check_length, fit, given
+from aionode.message.fit import check_length, fit, fit_array, fit_bytes, given
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -76,6 +76,8 @@ class Unrolling:
         self.lines: list[str] = []
         self.names: dict[str, Any] = {
             "fit": fit,
+            "fit_array": fit_array,
+            "fit_bytes": fit_bytes,
             "refuse": refuse,
             "messages": messages,
             "strings": strings,
@@ -127,7 +129,10 @@ class Unrolling:
         elif type_.form == "list":
             self.lines.append(f"{value} = strings({known}, {value}, path, {path!r})")
         else:
-            own = "frozen" if type_.form == "ndarray" else "fixed"
+            own, rule = (
+                ("frozen", "fit_array") if type_.form == "ndarray" else ("fixed", "fit_bytes")
+            )
+            fitting = fitting.replace("fit(", f"{rule}(", 1)
             line = f"{value} = {own}({fitting})" if self.copying else fitting
             if type_.form == "bytes" and type_.container == "unbounded":
                 line = f"if {value}.__class__ is not bytes: {line}"

@@ -113,6 +113,8 @@ def empty(dtype: str) -> npt.NDArray[Any]:
 EMPTY = {dtype: partial(empty, dtype) for dtype in set(DTYPES.values())}
 """How to get the empty array of each dtype."""
 
+BYTES_LIKE = bytes | bytearray | memoryview
+
 SCALARS = frozenset({int, float, str, bool, bytes})
 
 
@@ -123,9 +125,22 @@ def same(one: Any, other: Any) -> bool:
         return bool(one == other)
     if is_listing(one) and is_listing(other):
         return len(one) == len(other) and all(map(same, one, other))
-    if hasattr(one, "__len__") and hasattr(other, "__len__") and not isinstance(one, str):
-        return list(one) == list(other) if len(one) == len(other) else False
+    if isinstance(one, BYTES_LIKE) and isinstance(other, BYTES_LIKE):
+        return one == other
+    if isinstance(one, BYTES_LIKE | list) and isinstance(other, BYTES_LIKE | list):
+        return list(one) == list(other)
+    if hasattr(one, "__array__") or hasattr(other, "__array__"):
+        return same_numbers(one, other)
     return bool(one == other)
+
+
+def same_numbers(one: Any, other: Any) -> bool:
+    """Return whether two values are equal, one of which is an array."""
+    import numpy as np  # numpy is loaded when it is first needed
+
+    if isinstance(other, BYTES_LIKE):
+        one, other = other, one
+    return np.array_equal(np.frombuffer(one, "B") if isinstance(one, BYTES_LIKE) else one, other)
 
 
 def shown(type_: FieldType, value: Any) -> str:
