@@ -255,6 +255,17 @@ def test_a_wrong_mode_is_one_line_and_status_1() -> None:
     assert program.process.returncode == 1
 
 
+def test_ci_runs_every_example() -> None:
+    """A new example is run before it lands."""
+    script = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+
+    modules = [f"aionode.examples.{path.stem}" for path in (ROOT / "aionode/examples").glob("*.py")]
+    files = [f"examples/{path.name}" for path in (ROOT / "examples").glob("*.py")]
+
+    modules.remove("aionode.examples.__init__")
+    assert [each for each in modules + files if each not in script] == []
+
+
 @pytest.fixture
 async def web(aionode_context: Context) -> AsyncIterator[httpx.AsyncClient]:
     """A browser, as it were, in front of the web application."""
