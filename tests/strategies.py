@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import pkgutil
 from functools import cache
 from importlib import import_module
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 __all__ = ["message_classes", "messages", "shipped_types", "values"]
+
+HEAVIEST = 160
+"""Values of a message up to which it is drawn as a whole."""
 
 MOST_ELEMENTS = 4
 """Length of random sequences: each further element tells nothing new."""
@@ -56,16 +60,14 @@ def is_type(member: object) -> bool:
 
 @cache
 def message_classes() -> dict[str, type[Message]]:
-    """Return every message class that comes with aionode, parts of services and actions included."""
-    return {
-        type_name(part): part for cls in shipped_types().values() for part in parts_of(cls)
-    }
+    """Return every message class of aionode, parts of services and actions included."""
+    return {type_name(part): part for cls in shipped_types().values() for part in parts_of(cls)}
 
 
 def parts_of(cls: Any) -> Iterator[type[Message]]:
     """Yield the messages that a type consists of."""
     if issubclass(cls, ServiceType):
-        yield from (cls.Request, cls.Response, cls.Event)  # type: ignore[attr-defined] # nested
+        yield from (cls.Request, cls.Response, cls.Event)
     elif issubclass(cls, ActionType):
         yield from (cls.Goal, cls.Result, cls.Feedback, cls.Impl.FeedbackMessage)
         yield from parts_of(cls.Impl.SendGoalService)
@@ -81,7 +83,21 @@ def messages(cls: type[Message], *, nan: bool = False) -> st.SearchStrategy[Any]
         cls: The class.
         nan: Whether floats may be NaN, which equals nothing.
     """
-    return st.builds(cls, **{field.name: values(field.type, nan=nan) for field in fields(cls)})
+    drawn = {field.name: values(field.type, nan=nan) for field in fields(cls)}
+    if weight(cls) <= HEAVIEST:
+        return st.builds(cls, **drawn)
+    # More than hypothesis draws at once: one field at a time.
+    return st.one_of(*(st.builds(cls, **{name: field}) for name, field in drawn.items()))
+
+
+@cache
+def weight(cls: Any) -> int:
+    """Return about how many values a random message of a class has."""
+    return sum(
+        (weight(field.type.nested) if field.type.nested else 1)
+        * (1 if field.type.container == "single" else 2)
+        for field in fields(cls)
+    )
 
 
 def values(kind: FieldType, *, nan: bool = False) -> st.SearchStrategy[Any]:
@@ -92,8 +108,14 @@ def values(kind: FieldType, *, nan: bool = False) -> st.SearchStrategy[Any]:
     most = min(kind.size or MOST_ELEMENTS, MOST_ELEMENTS)
     if kind.form == "bytes":
         return st.binary(min_size=least, max_size=max(least, most))
+    if kind.form == "list" and kind.container != "array":
+        return st.lists(
+            single_values(kind, nan=nan), max_size=min(most, 2 if kind.nested else most)
+        )
     if kind.form == "list":
-        return st.lists(single_values(kind, nan=nan), min_size=least, max_size=max(least, most))
+        # A message in several places would be one object: each is built anew.
+        drawn = st.lists(single_values(kind, nan=nan), min_size=1, max_size=1)
+        return drawn.map(lambda some: [copy.deepcopy(some[0]) for _ in range(least)])
     drawn = st.lists(single_values(kind, nan=nan), min_size=min(least, most), max_size=most)
     dtype = DTYPES[kind.kind]
     # A long array repeats the few values that were drawn.
