@@ -1,0 +1,91 @@
+"""What tests of actions share: a server that does what it is told, and a client of plain calls."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, Any
+
+from aionode.action import ServerGoalHandle
+from aionode.interfaces.action_msgs.msg import GoalInfo, GoalStatusArray
+from aionode.interfaces.action_msgs.srv import CancelGoal
+from aionode.interfaces.builtin_interfaces.msg import Time
+from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.interfaces.unique_identifier_msgs.msg import UUID
+from aionode.qos import qos_profile_action_status_default
+
+if TYPE_CHECKING:
+    from aionode.node import Node
+
+__all__ = ["Goal", "PlainClient", "Worker", "uuid_of"]
+
+Goal = ServerGoalHandle[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
+Impl = Fibonacci.Impl
+
+
+def uuid_of(number: int) -> UUID:
+    """Return the id with this number."""
+    return UUID(uuid=list(number.to_bytes(16, "big")))
+
+
+class Worker:
+    """An `execute_callback` that begins, and ends when the test says so."""
+
+    def __init__(self) -> None:
+        self.begun: asyncio.Queue[Goal] = asyncio.Queue()
+        self.may_end = asyncio.Event()
+        self.cancelled: list[Goal] = []
+
+    async def __call__(self, goal: Goal) -> Fibonacci.Result:
+        """Wait for `may_end`, then succeed with the sequence 0 … order."""
+        self.begun.put_nowait(goal)
+        try:
+            await self.may_end.wait()
+        except asyncio.CancelledError:
+            self.cancelled.append(goal)
+            raise
+        goal.succeed()
+        return Fibonacci.Result(sequence=list(range(goal.request.order + 1)))
+
+
+class PlainClient:
+    """A client made of plain services and topics, as an independent program would be."""
+
+    def __init__(self, node: Node, action: str = "fibonacci") -> None:
+        hidden = f"{action}/_action"
+        self._goals = node.create_client(Impl.SendGoalService, f"{hidden}/send_goal")
+        self._cancels = node.create_client(CancelGoal, f"{hidden}/cancel_goal")
+        self._results = node.create_client(Impl.GetResultService, f"{hidden}/get_result")
+        self.feedback = node.create_subscription(Impl.FeedbackMessage, f"{hidden}/feedback")
+        self.statuses: list[dict[int, int]] = []
+        node.create_subscription(
+            GoalStatusArray,
+            f"{hidden}/status",
+            self._on_status,
+            qos_profile_action_status_default,
+        )
+
+    async def _on_status(self, msg: GoalStatusArray) -> None:
+        self.statuses.append(
+            {number_of(each.goal_info.goal_id): each.status for each in msg.status_list}
+        )
+
+    async def send(self, number: int = 1, order: int = 5) -> Any:
+        """Send a goal; return the response."""
+        return await self._goals.call(
+            Impl.SendGoalService.Request(goal_id=uuid_of(number), goal=Fibonacci.Goal(order=order))
+        )
+
+    async def result(self, number: int = 1) -> Any:
+        """Ask for a result; return the response."""
+        return await self._results.call(Impl.GetResultService.Request(goal_id=uuid_of(number)))
+
+    async def cancel(self, number: int = 1, stamp: Time | None = None) -> tuple[int, list[int]]:
+        """Ask to cancel; return the code and the numbers of the goals."""
+        info = GoalInfo(goal_id=uuid_of(number), stamp=stamp or Time())
+        response = await self._cancels.call(CancelGoal.Request(goal_info=info))
+        return response.return_code, [number_of(each.goal_id) for each in response.goals_canceling]
+
+
+def number_of(goal_id: UUID) -> int:
+    """Return the number of an id."""
+    return int.from_bytes(bytes(goal_id.uuid), "big")
