@@ -1,7 +1,8 @@
 """Whether a value fits a field, and the form in which its readers get it.
 
 `fit` takes every value that a user may reasonably put into a field and returns it in the one form
-that readers see; a value that is in that form already comes back as it is, without a copy.
+that readers see; a value that is in that form already comes back as it is, without a copy. Messages
+within messages are the business of `aionode.message.snapshot`, which takes them apart.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-__all__ = ["fit", "fit_array", "fit_bytes", "fit_element"]
+__all__ = ["fit", "fit_array", "fit_bytes", "fit_element", "listed"]
 
 
 def fit(type_: FieldType, value: object, path: str) -> Any:
@@ -117,15 +118,6 @@ def fit_string(type_: FieldType, value: object, path: str) -> str:
     return text
 
 
-def fit_message(type_: FieldType, value: object, path: str) -> Any:
-    """Return a snapshot of a nested message."""
-    from aionode.message.snapshot import snapshotter
-
-    assert type_.nested is not None  # noqa: S101 (of kind message)
-    take: Any = snapshotter(type_.nested)
-    return take(value, path)
-
-
 ELEMENTS: dict[str, Callable[[FieldType, object, str], object]] = {
     **dict.fromkeys(INT_RANGES, fit_int),
     "float32": fit_float,
@@ -134,7 +126,6 @@ ELEMENTS: dict[str, Callable[[FieldType, object, str], object]] = {
     "byte": fit_byte,
     "string": fit_string,
     "wstring": fit_string,
-    "message": fit_message,
 }
 
 
@@ -156,14 +147,20 @@ def is_listing(value: object) -> TypeGuard[AbstractSequence[Any]]:
     )
 
 
-def fit_list(type_: FieldType, value: object, path: str) -> list[Any]:
-    """Return a list of strings or messages."""
+def listed(type_: FieldType, value: object, path: str) -> list[Any]:
+    """Return a list of as many elements as the field can have, whatever they are."""
     if type(value).__module__ == "numpy" and hasattr(value, "tolist"):
         value = value.tolist()
-    if not isinstance(value, AbstractSequence) or not is_listing(value):
+    if not is_listing(value):
         raise MessageError(path, f"{given(value)}, needs a list")
     check_length(type_, len(value), path)
-    return [fit_element(type_, item, f"{path}[{i}]") for i, item in enumerate(value)]
+    return list(value)
+
+
+def fit_list(type_: FieldType, value: object, path: str) -> list[str]:
+    """Return a list of strings."""
+    items = listed(type_, value, path)
+    return [fit_string(type_, item, f"{path}[{i}]") for i, item in enumerate(items)]
 
 
 def fit_bytes(type_: FieldType, value: object, path: str) -> bytes | bytearray | memoryview:

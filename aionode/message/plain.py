@@ -19,7 +19,7 @@ import msgspec
 from aionode.errors import MessageError
 from aionode.message.base import Message, message_class, type_name
 from aionode.message.fieldtypes import FieldType
-from aionode.message.fit import fit, given, is_listing
+from aionode.message.fit import fit, given, listed
 from aionode.message.snapshot import snapshot
 
 if TYPE_CHECKING:
@@ -172,14 +172,14 @@ def value_from(type_: FieldType, value: object, path: str) -> object:
     if type_.nested is not None:
         if type_.container == "single":
             return message_from(type_.nested, value, path)
-        if is_listing(value):
-            value = [message_from(type_.nested, v, f"{path}[{i}]") for i, v in enumerate(value)]
-    elif type_.container == "single":
+        items = enumerate(listed(type_, value, path))
+        return [message_from(type_.nested, item, f"{path}[{i}]") for i, item in items]
+    if type_.container == "single":
         value = scalar_from(type_, value, path)
     elif type_.kind in {"float32", "float64"} and isinstance(value, list | tuple):
         value = [scalar_from(type_, item, f"{path}[{i}]") for i, item in enumerate(value)]
     fitted = fit(type_, value, path)
-    if type_.form == "ndarray" and fitted is not value:
+    if type_.form == "ndarray" and fitted is not value and fitted.flags.owndata:
         fitted.flags.writeable = True  # made for this message alone
     return fitted
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from aionode.errors import MessageError
 from aionode.message.base import Message, message_class, type_name
 from aionode.message.fieldtypes import INT_RANGES, FieldType
-from aionode.message.fit import check_length, fit, fit_array, fit_bytes, given
+from aionode.message.fit import check_length, fit, fit_array, fit_bytes, given, listed
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -179,9 +179,7 @@ def messages(
     type_: FieldType, take: Callable[..., Any], values: Any, path: str, field: str
 ) -> list[Any]:
     """Return copies of a list of messages."""
-    if values.__class__ is not list:
-        return fit(type_, values, path + field)  # type: ignore[no-any-return] # a list
-    check_length(type_, len(values), path + field)
+    values = listed(type_, values, path + field)
     try:
         return [take(value) for value in values]
     except (MessageError, TypeError):
