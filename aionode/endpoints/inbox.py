@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 from aionode.clock import perf_ns
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from aionode.endpoints.stats import CallbackStats
 
 __all__ = ["Inbox"]
@@ -68,6 +70,12 @@ class Inbox(Generic[T]):
         """Wait until there is room, or until woken by `wake`."""
         if not self.has_room():
             await _sleep_in(self._writers)
+
+    def when_room(self, callback: Callable[[], None]) -> None:
+        """Call `callback` soon after the next item was taken, or after `wake`."""
+        waiter = asyncio.get_running_loop().create_future()
+        waiter.add_done_callback(lambda _: callback())
+        self._writers.append(waiter)
 
     def discard(self) -> list[T]:
         """Remove and count what was not taken, and return it."""

@@ -299,6 +299,10 @@ class Subscription(Entity, Generic[ItemT]):
         """Whether a message can be taken without losing one that should be kept."""
         return self._inbox.has_room()
 
+    def when_room(self, callback: Callable[[], None]) -> None:
+        """Call `callback` soon after the next message was taken, or after it was destroyed."""
+        self._inbox.when_room(callback)
+
     async def wait_for_room(self) -> None:
         """Wait until `has_room`, or until destroyed."""
         while not self.destroyed and not self._inbox.has_room():

@@ -82,6 +82,9 @@ class Reader(Protocol):
     async def wait_for_room(self) -> None:
         """Wait until `has_room`, or until the reader is destroyed."""
 
+    def when_room(self, callback: Callable[[], None]) -> None:
+        """Call `callback` soon after the next message was taken, or the reader destroyed."""
+
 
 class Writer(Announcement):
     """The sending end of one publisher in one transport.

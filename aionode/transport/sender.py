@@ -48,6 +48,12 @@ class Sender:
         """Return a bounded queue that this thread empties."""
         return Outlet(self, self._wakeup, limit, keep_all=keep_all)
 
+    def close(self) -> None:
+        """Let the thread end after the jobs that it has; returns at once."""
+        if self._thread is not None:
+            self._thread = None
+            self._jobs.put(None)
+
     async def flush(self) -> None:
         """Wait until the jobs so far are done and the thread has ended; the next starts another.
 

@@ -269,6 +269,10 @@ def session_settings(network: Network, answering: Iterable[int]) -> dict[str, An
             "period_increase_factor": 2,
         },
         "open/return_conditions/connect_scouted": False,
+        # A reader that keeps all and is slow may hold up its senders for so long, as in ROS.
+        "transport/link/tx/queue/congestion_control/block/wait_before_close": 60_000_000,
+        # Large messages are sent from a thread, which may wait longer for a slow network.
+        "transport/link/tx/queue/congestion_control/drop/max_wait_before_drop_fragments": 500_000,
         # Bounds close() while a frozen peer does not answer.
         "transport/unicast/open_timeout": 1500,
         "scouting/multicast/enabled": subnet,

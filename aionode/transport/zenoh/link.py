@@ -38,7 +38,7 @@ class Link:
         graph: Where others are found while it is open.
         wakeup: The way from Zenoh's threads to the loop.
         bulk: Sends what is large.
-        patient: Sends what waits for slow readers.
+        senders: Every thread that sends.
         garbage: How many samples of each key were in no known form.
         own_gids: Ids of this context's publishers.
         cancellations: Requests that clients have given up.
@@ -53,7 +53,7 @@ class Link:
         self.graph: Graph | None = None
         self.wakeup = Wakeup()
         self.bulk = Sender("aionode-bulk", self.wakeup)
-        self.patient = Sender("aionode-keep-all", self.wakeup)
+        self.senders = {self.bulk}
         self.garbage: Counter[str] = Counter()
         self.own_gids: set[bytes] = set()
         self.cancellations = Cancellations(participant, domain_id, self.wakeup)
@@ -85,7 +85,7 @@ class Link:
 
     async def flush(self) -> None:
         """Wait until everything that was handed to the threads was sent, and let them end."""
-        for sender in (self.bulk, self.patient):
+        for sender in list(self.senders):
             await sender.flush()
 
     def disconnect(self) -> zenoh.Session | None:

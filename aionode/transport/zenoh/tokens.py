@@ -90,7 +90,7 @@ class Watcher:
             return
         token = parse_token(key)
         if token is None:
-            self._link.note_garbage(key, "a liveliness token")
+            self._link.note_garbage(f"{PREFIX}/**", f"the liveliness token {key}")
         elif token.domain_id != self._link.domain_id:
             self._note_domain(token.domain_id)
         elif self._link.graph is not None:

@@ -13,6 +13,8 @@ from aionode.errors import DecodeError
 from aionode.message import fields
 from aionode.qos import DurabilityPolicy, HistoryPolicy, ReliabilityPolicy
 from aionode.transport.base import Origin, Writer
+from aionode.transport.sender import Sender
+from aionode.transport.wakeup import Lane, PatientLane
 from aionode.transport.zenoh.handlers import direct, translated
 from aionode.transport.zenoh.link import Entity
 from aionode.wire import attachment, cdr
@@ -97,8 +99,10 @@ class ZenohWriter(Entity, Writer):
         self._early: deque[tuple[bytes, bytes]] = deque(maxlen=depth)
         self.active = self._transient
         self.bounded = qos.history is HistoryPolicy.KEEP_ALL and is_reliable(qos)
-        sender = link.patient if self.bounded else link.bulk
-        self._outlet = sender.outlet(depth, keep_all=self.bounded)
+        # One that waits for slow readers holds up nobody else.
+        self._sender = Sender("aionode-keep-all", link.wakeup) if self.bounded else link.bulk
+        link.senders.add(self._sender)
+        self._outlet = self._sender.outlet(depth, keep_all=self.bounded)
         link.own_gids.add(self.gid)
         link.on_reader.setdefault(endpoint.name, []).append(self._update)
         link.add(self)
@@ -193,6 +197,9 @@ class ZenohWriter(Entity, Writer):
         self._transient = False
         super().close()
         self.link.own_gids.discard(self.gid)
+        if self.bounded:
+            self.link.senders.discard(self._sender)
+            self._sender.close()
         self._update()
 
 
@@ -229,7 +236,13 @@ class ZenohReader(Entity):
         depth = depth_of(endpoint.qos)
         # A few hundred images waiting for a busy loop would take all memory; what is small may
         # wait for its turn in the subscription's own queue, where it is counted if dropped.
-        self._lane = link.lane(self._take, depth if self._buffers else max(depth, BACKLOG))
+        limit = depth if self._buffers else max(depth, BACKLOG)
+        if endpoint.qos.history is HistoryPolicy.KEEP_ALL and is_reliable(endpoint.qos):
+            self._lane: Lane[zenoh.Sample] = PatientLane(
+                link.wakeup, self._take, limit, reader.has_room, reader.when_room
+            )
+        else:
+            self._lane = link.lane(self._take, limit)
         self._subscribers: list[zenoh.Subscriber[None] | ext.AdvancedSubscriber[None]] = []
         link.add(self)
 
@@ -261,6 +274,7 @@ class ZenohReader(Entity):
     def undeclare_data(self) -> None:
         """Withdraw the subscriber."""
         subscribers, self._subscribers = self._subscribers, []
+        self._lane.clear()  # a thread that waits for room would hold up what follows
         for subscriber in subscribers:
             subscriber.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
         self._lane.clear()

@@ -1,0 +1,180 @@
+"""Other participants for tests on Zenoh, out of earshot of everything else on the machine."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import socket
+from collections.abc import AsyncIterator, Iterator, Mapping
+from contextlib import asynccontextmanager, closing, contextmanager
+from typing import Any
+
+import zenoh  # noqa: TID251  # plays the other participants, without aionode
+
+from aionode.context import Context
+from aionode.node import Node
+from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
+
+__all__ = [
+    "KEEP_ALL",
+    "Collector",
+    "free_ports",
+    "isolated_environment",
+    "kept",
+    "quiet_node",
+    "raw_session",
+    "ros_router",
+    "ros_session",
+    "two_contexts",
+]
+
+DOMAIN_ID = 42
+
+KEEP_ALL = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+
+
+def kept(depth: int) -> QoSProfile:
+    """Return a profile that gives the last messages to late subscriptions."""
+    return QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+def free_ports(count: int) -> list[int]:
+    """Return ports of loopback on which nobody listens."""
+    with_sockets = [socket.socket() for _ in range(count)]
+    try:
+        for each in with_sockets:
+            each.bind(("127.0.0.1", 0))
+        return [each.getsockname()[1] for each in with_sockets]
+    finally:
+        for each in with_sockets:
+            each.close()
+
+
+def isolated_environment() -> dict[str, str]:
+    """Return variables with which processes hear each other and nobody else."""
+    ports = free_ports(4)
+    return {
+        "ROS_DOMAIN_ID": str(DOMAIN_ID),
+        "AIONODE_MEETING_PORTS": ",".join(str(p) for p in ports[:3]),
+        "AIONODE_ROUTER_PORT": str(ports[3]),
+    }
+
+
+@asynccontextmanager
+async def two_contexts(**options: Any) -> AsyncIterator[tuple[Context, Context]]:
+    """Two participants that know each other, in one process."""
+    async with Context(**options) as first, Context(**options) as second:
+        yield first, second
+
+
+def quiet_node(name: str, context: Context | None = None, **options: Any) -> Node:
+    """Return a node that has only what a test gives it, in a context of its own without one."""
+    options = {"enable_rosout": False, "start_parameter_services": False, **options}
+    return Node(name, context=context or Context(), **options)
+
+
+class Collector:
+    """Takes what foreign threads bring, and lets a test wait for it."""
+
+    def __init__(self) -> None:
+        self._loop = asyncio.get_running_loop()
+        self._changed = asyncio.Event()
+        self.items: list[Any] = []
+
+    def __call__(self, item: Any) -> None:
+        """Take one item; from any thread."""
+        self.items.append(item)
+        self._loop.call_soon_threadsafe(self._changed.set)
+
+    async def have(self, count: int) -> list[Any]:
+        """Wait for so many items, and return them."""
+        while len(self.items) < count:
+            self._changed.clear()
+            if len(self.items) < count:
+                await self._changed.wait()
+        return self.items
+
+
+def zenoh_config(settings: Mapping[str, Any]) -> zenoh.Config:
+    """Return a configuration with these settings."""
+    config = zenoh.Config()
+    for key, value in settings.items():
+        config.insert_json5(key, json.dumps(value))
+    return config
+
+
+@contextmanager
+def raw_session() -> Iterator[zenoh.Session]:
+    """A plain Zenoh session that dials the first meeting port."""
+    port = os.environ["AIONODE_MEETING_PORTS"].split(",")[0]
+    config = zenoh_config(
+        {
+            "listen/endpoints": ["tcp/127.0.0.1:0"],
+            "connect/endpoints": [f"tcp/127.0.0.1:{port}"],
+            "open/return_conditions/connect_scouted": False,
+            "scouting/multicast/enabled": False,
+            "timestamping/enabled": True,
+        }
+    )
+    with closing(zenoh.open(config)) as session:
+        yield session
+
+
+EVERYBODY = ["router", "peer"]
+
+
+def ros_session() -> zenoh.Session:
+    """Return a session as a ROS 2 node on rmw_zenoh_cpp opens it, but for the router's port."""
+    return zenoh.open(
+        zenoh_config(
+            {
+                "mode": "peer",
+                "connect/endpoints": [f"tcp/localhost:{os.environ['AIONODE_ROUTER_PORT']}"],
+                "connect/timeout_ms": -1,
+                "connect/exit_on_failure": False,
+                "connect/retry": {
+                    "period_init_ms": 1000,
+                    "period_max_ms": 4000,
+                    "period_increase_factor": 2,
+                },
+                "listen/endpoints": ["tcp/localhost:0"],
+                "open/return_conditions/connect_scouted": False,
+                "scouting/multicast/enabled": False,
+                "scouting/gossip/enabled": True,
+                "scouting/gossip/target": {"router": EVERYBODY, "peer": ["router"]},
+                "scouting/gossip/autoconnect": {"router": [], "peer": EVERYBODY},
+                "scouting/gossip/autoconnect_strategy": {
+                    "peer": {"to_router": "always", "to_peer": "greater-zid"}
+                },
+                "timestamping/enabled": True,
+                "queries_default_timeout": 600_000,
+                "transport/link/tx/lease": 60_000,
+                "transport/link/tx/keep_alive": 2,
+                "transport/shared_memory/enabled": False,
+            }
+        )
+    )
+
+
+def ros_router() -> zenoh.Session:
+    """Return a router with the settings of `rmw_zenohd`, but for its port and on loopback only."""
+    return zenoh.open(
+        zenoh_config(
+            {
+                "mode": "router",
+                "listen/endpoints": [f"tcp/127.0.0.1:{os.environ['AIONODE_ROUTER_PORT']}"],
+                "connect/endpoints": [],
+                "open/return_conditions/connect_scouted": False,
+                "scouting/multicast/enabled": False,
+                "scouting/gossip/enabled": True,
+                "scouting/gossip/target": {"router": EVERYBODY, "peer": ["router"]},
+                "scouting/gossip/autoconnect": {"router": [], "peer": EVERYBODY},
+                "timestamping/enabled": True,
+                "queries_default_timeout": 600_000,
+                "transport/link/tx/lease": 60_000,
+                "transport/link/tx/keep_alive": 2,
+                "transport/shared_memory/enabled": False,
+            }
+        )
+    )
