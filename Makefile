@@ -5,7 +5,7 @@
 #   make check   style, types, layers, the documentation's code, the documentation itself
 #   make bench   the benchmarks; tables, JSON and pictures in benchmarks/results/
 #   make docs    the documentation as pages, in site/
-#   make fuzz    the property tests with many more examples
+#   make fuzz    the property tests with many more examples, and damaged messages by the million
 #   make soak    the example under load, for SOAK_SECONDS seconds
 #   make quotes  brings the code quoted in README.md and docs/ up to date
 #   make clean   removes what was made, .venv included
@@ -47,6 +47,7 @@ docs: .venv/installed-dev
 
 fuzz: .venv/installed-dev
 	$(BIN)/python -m pytest -q -m hypothesis --hypothesis-profile=fuzz --timeout=3600
+	$(BIN)/python -m tests.fuzz_cdr --cases 3000000
 
 soak: .venv/installed-dev
 	$(BIN)/python -m aionode.examples.overload --seconds $(SOAK_SECONDS)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 import uvloop
+from hypothesis import settings
 
 from aionode.node import Node
 
@@ -14,6 +15,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.context import Context
+
+# For `make fuzz`. Tests that set a number of examples of their own take it as a part of this one.
+settings.register_profile("fuzz", max_examples=2000, deadline=None)
 
 
 def debugging_loop() -> asyncio.AbstractEventLoop:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from decimal import Decimal
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, cast
+from types import new_class
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -516,9 +517,12 @@ def test_a_whole_character_beyond_16_bits_is_read_too() -> None:
 
 def made(name: str, annotations: dict[str, Any]) -> Any:
     """Return a message class with these fields."""
-    namespace = {"__annotations__": annotations}
-    metaclass = cast("Any", type(Message))
-    return metaclass(name, (Message,), namespace, typename=f"test/msg/{name}")
+    return new_class(
+        name,
+        (Message,),
+        {"typename": f"test/msg/{name}"},
+        lambda namespace: namespace.update(__annotations__=annotations),
+    )
 
 
 def test_a_message_may_be_nested_a_hundred_times() -> None:
@@ -535,12 +539,7 @@ def test_a_message_may_be_nested_a_hundred_times() -> None:
 
 def test_a_message_may_have_a_thousand_fields() -> None:
     """More than Python once allowed as arguments of a call."""
-    annotations: dict[str, Any] = {
-        f"f{number}": (float64, str)[number % 2] for number in range(999)
-    }
-    cls: Any = type(Message)(
-        "Large", (Message,), {"__annotations__": annotations}, typename="test/msg/Large"
-    )
+    cls = made("Large", {f"f{number}": (float64, str)[number % 2] for number in range(999)})
     message = cls(f998=0.5, f1="a")
 
     assert cdr.decode(cls, cdr.encode(message)) == message
