@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 from collections.abc import Callable
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 import yaml
 from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from aionode.errors import MessageError
 from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -209,6 +211,21 @@ def test_a_message_that_does_not_fit_is_not_printed() -> None:
     """The same errors hold in both directions."""
     with pytest.raises(MessageError, match=r"std_msgs/msg/Int8\.data: 300"):
         to_json(Int8(data=300))
+
+
+@given(st.one_of(st.text(max_size=20), st.text("{}[]:,-!&*#'\" \n\t01data", max_size=20)))
+def test_no_text_raises_anything_but_a_message_error(text: str) -> None:
+    """It is typed at a prompt, or comes from the network."""
+    for read in (from_json, from_yaml):
+        with contextlib.suppress(MessageError):
+            assert isinstance(read(String, text), String)
+
+
+@pytest.mark.parametrize("text", ["[" * 100_000, "data: 2001-99-99"])
+def test_texts_that_break_a_parser_are_message_errors(text: str) -> None:
+    """Too deep for the stack, or a date that is none."""
+    with pytest.raises(MessageError):
+        from_yaml(String, text) if ":" in text else from_json(String, text)
 
 
 @settings(max_examples=150, suppress_health_check=list(HealthCheck), deadline=None)

@@ -48,6 +48,7 @@ def define(
 
     Raises:
         IdlError: The text cannot be read, or uses a type that is not there.
+        TypeError: `typename` is not the name of a ROS type.
     """
     builder = Builder({typename: parse(typename, text)}, reuse=False)
     builder.built.update(types or {})

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from aionode.message import FieldType
+from aionode.message.base import checked_type_name
 
 __all__ = ["HALVES", "InterfaceText", "Member", "MessageText", "TypeText", "split_type_name"]
 
@@ -77,6 +78,10 @@ class InterfaceText:
 
 
 def split_type_name(typename: str) -> tuple[str, str, str]:
-    """Return package, kind (``msg``, ``srv`` or ``action``) and name of an interface."""
-    package, kind, name = typename.split("/")
+    """Return package, kind (``msg``, ``srv`` or ``action``) and name of an interface.
+
+    Raises:
+        TypeError: It is not the name of one.
+    """
+    package, kind, name = checked_type_name(typename).split("/")
     return package, kind, name

@@ -112,7 +112,7 @@ def decoded(
     """Return what a text in JSON or YAML says, as plain values."""
     try:
         return decode(text)
-    except (msgspec.DecodeError, UnicodeError) as error:
+    except (msgspec.DecodeError, ValueError, RecursionError) as error:
         raise MessageError(type_name(cls), f"this is no {form}: {error}") from error
 
 
