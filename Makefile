@@ -6,7 +6,7 @@
 #   make bench   the benchmarks; tables, JSON and pictures in benchmarks/results/
 #   make docs    the documentation as pages, in site/
 #   make fuzz    the property tests with many more examples, and damaged messages by the million
-#   make soak    the example under load, for SOAK_SECONDS seconds
+#   make soak    everything at once, for SOAK_SECONDS seconds: nothing may grow
 #   make quotes  brings the code quoted in README.md and docs/ up to date
 #   make clean   removes what was made, .venv included
 
@@ -50,7 +50,7 @@ fuzz: .venv/installed-dev
 	$(BIN)/python -m tests.fuzz_cdr --cases 3000000
 
 soak: .venv/installed-dev
-	$(BIN)/python -m aionode.examples.overload --seconds $(SOAK_SECONDS)
+	$(BIN)/python benchmarks/soak.py --seconds $(SOAK_SECONDS)
 
 quotes: .venv/installed-dev
 	$(BIN)/python docs/quotes.py
