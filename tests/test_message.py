@@ -7,7 +7,7 @@ import pickle
 import subprocess
 import sys
 from types import new_class
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 import pytest
@@ -196,6 +196,7 @@ def test_messages_of_different_classes_are_never_equal() -> None:
     """Even if their fields have the same names and values."""
     assert Point() != Vector3()
     assert Point() != 0
+    assert not Point() == Vector3()  # noqa: SIM201 (the other operator)
 
 
 def test_messages_have_no_hash() -> None:
@@ -294,7 +295,9 @@ def test_a_type_name_has_to_be_one(name: str) -> None:
 
 
 def test_an_annotation_without_a_width_says_what_fits() -> None:
-    """`int` alone says nothing about the wire."""
+    """`int` alone says nothing about the wire, and a service is no value."""
+    with pytest.raises(TypeError, match="AddTwoInts: no field type"):
+        Array[AddTwoInts, 3]
     with pytest.raises(TypeError, match="use int32 or int64"):
 
         class Bad(Message, typename="tutorial/msg/Bad"):
@@ -320,6 +323,52 @@ def test_a_size_is_a_positive_int(size: object) -> None:
     """A size of nothing is a mistake."""
     with pytest.raises(TypeError, match="at least 1"):
         Array[int32, size]
+
+
+def test_an_array_needs_a_size_and_only_strings_have_a_bound() -> None:
+    """The error shows how it is written."""
+    make: Any = Array
+    bound: Any = Bounded
+
+    with pytest.raises(TypeError, match=r"as in Array\[float64, 9\]"):
+        make[int32]
+    with pytest.raises(TypeError, match="only strings have a bound, and int32 is none"):
+        bound[int32, 3]
+    with pytest.raises(TypeError, match="a size or bound of 0"):
+        bound[str, 0]
+
+
+def test_a_size_may_be_a_literal_type() -> None:
+    """Some write it so for their type checker."""
+    assert Array[int32, Literal[3]] == Array[int32, 3]
+
+
+def test_bytes_are_a_default_for_bytes() -> None:
+    """As short as it gets; the description has numbers, as the definition would."""
+
+    class Blob(Message, typename="tutorial/msg/Blob"):
+        data: Sequence[uint8] = b"ab"
+        fixed: Array[byte, 2] = DEFAULT
+
+    assert Blob() == Blob(data=[97, 98], fixed=b"\0\0")
+    assert [field.default for field in fields(Blob)] == [(97, 98), None]
+
+
+@pytest.mark.parametrize(
+    ("annotation", "default", "problem"),
+    [
+        (Inner, Inner(), "a message has no default here; write DEFAULT"),
+        (Sequence[int32], 5, r"5 \(int\), needs a list or tuple"),
+        (Array[int32, 2], (1,), "1 elements, needs 2"),
+        (Sequence[int32], (1, "b"), r"'b' \(str\), needs an int"),
+    ],
+)
+def test_other_defaults_that_do_not_fit(annotation: object, default: object, problem: str) -> None:
+    """All are found when the class is made."""
+    body = {"__annotations__": {"field": annotation}, "field": default}
+
+    with pytest.raises(MessageError, match=problem):
+        new_class("Bad", (Message,), {"typename": "tutorial/msg/Bad"}, lambda ns: ns.update(body))
 
 
 def test_a_service_needs_both_halves() -> None:

@@ -156,7 +156,7 @@ def field_type(annotation: object) -> FieldType:
     if isinstance(annotation, type):
         if annotation in BUILTINS:
             return BUILTINS[annotation]
-        if hasattr(annotation, "__ros_type__"):
+        if hasattr(annotation, "__ros_fields__"):
             return FieldType("message", nested=annotation)
     elif get_origin(annotation) is Annotated:
         for extra in reversed(get_args(annotation)[1:]):
@@ -179,12 +179,18 @@ def contained(
     if one.container != "single":
         msg = f"{one}: ROS has no arrays of arrays; put the inner one into a message of its own"
         raise TypeError(msg)
+    count = 0 if container == "unbounded" else checked_size(one, size)
+    return Annotated[Any, FieldType(one.kind, one.nested, one.string_bound, container, count)]
+
+
+def checked_size(one: FieldType, size: object) -> int:
+    """Return the size or bound of a container or string, or raise `TypeError`."""
     if get_origin(size) is Literal:
         (size,) = get_args(size)
-    if not isinstance(size, int) or (container != "unbounded" and size < 1):
+    if not isinstance(size, int) or size < 1:
         msg = f"{one}: a size or bound of {size!r}; it has to be an int of at least 1"
         raise TypeError(msg)
-    return Annotated[Any, FieldType(one.kind, one.nested, one.string_bound, container, size)]
+    return size
 
 
 # mypy takes a name of type Any with any arguments; pyright a class with `__class_getitem__`.
@@ -285,4 +291,5 @@ else:
             if one.kind not in {"string", "wstring"} or one.container != "single":
                 msg = f"Bounded: only strings have a bound, and {one} is none"
                 raise TypeError(msg)
-            return Annotated[str, FieldType(one.kind, string_bound=item[1])]
+            bound = checked_size(one, item[1])
+            return Annotated[str, FieldType(one.kind, string_bound=bound)]
