@@ -82,6 +82,11 @@ def test_what_means_the_same_is_taken_in_one_form(message: Message, value: objec
     [
         (Int8(data=300), "std_msgs/msg/Int8.data: 300, int8 holds -128 to 127"),
         (UInt64(data=-1), "std_msgs/msg/UInt64.data: -1, uint64 holds 0 to 18446744073709551615"),
+        (Int8(data=10**5000), "std_msgs/msg/Int8.data: a huge number, int8 holds -128 to 127"),
+        (
+            Float64(data=10**5000),
+            "std_msgs/msg/Float64.data: a huge number, too large for a float64",
+        ),
         (Char(data=256), "std_msgs/msg/Char.data: 256, char holds 0 to 255"),
         (Int8(data=True), "std_msgs/msg/Int8.data: True (bool), needs an int"),
         (Int8(data=1.0), "std_msgs/msg/Int8.data: 1.0 (float), needs an int"),

@@ -50,7 +50,15 @@ def fit_element(type_: FieldType, value: object, path: str) -> Any:
 
 def given(value: object) -> str:
     """Return a value and its type for the text of an error."""
-    return f"{reprlib.repr(value)} ({type(value).__name__})"
+    return f"{short(value)} ({type(value).__name__})"
+
+
+def short(value: object) -> str:
+    """Return a value, shortened, for the text of an error."""
+    try:
+        return reprlib.repr(value)
+    except ValueError:  # Python prints no int of more than 4300 digits
+        return "a huge number"
 
 
 def fit_int(type_: FieldType, value: object, path: str) -> int:
@@ -63,7 +71,7 @@ def fit_int(type_: FieldType, value: object, path: str) -> int:
         raise MessageError(path, f"{given(value)}, needs an int")
     low, high = INT_RANGES[type_.kind]
     if not low <= number <= high:
-        raise MessageError(path, f"{number}, {type_.kind} holds {low} to {high}")
+        raise MessageError(path, f"{short(number)}, {type_.kind} holds {low} to {high}")
     return number
 
 
@@ -76,7 +84,7 @@ def fit_float(type_: FieldType, value: object, path: str) -> float:
         if type_.kind == "float32":
             struct.pack("<f", number)
     except OverflowError:
-        problem = f"{reprlib.repr(value)}, too large for a {type_.kind}"
+        problem = f"{short(value)}, too large for a {type_.kind}"
         raise MessageError(path, problem) from None
     return number
 
