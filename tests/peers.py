@@ -26,6 +26,7 @@ __all__ = [
     "raw_session",
     "ros_router",
     "ros_session",
+    "ros_value",
     "two_contexts",
 ]
 
@@ -37,6 +38,17 @@ KEEP_ALL = QoSProfile(history=HistoryPolicy.KEEP_ALL)
 def kept(depth: int) -> QoSProfile:
     """Return a profile that gives the last messages to late subscriptions."""
     return QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+def ros_value(value: Any) -> Any:
+    """Return a recorded value in our form: an empty message has no field."""
+    if isinstance(value, dict):
+        return {
+            name: ros_value(each)
+            for name, each in value.items()
+            if name != "structure_needs_at_least_one_member"
+        }
+    return value
 
 
 def free_ports(count: int) -> list[int]:

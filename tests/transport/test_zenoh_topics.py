@@ -24,7 +24,16 @@ from aionode.qos import QoSProfile
 from aionode.wire import attachment, cdr
 from aionode.wire.keyexpr import buffer_key, data_key
 from aionode.wire.typehash import type_hash
-from tests.peers import DOMAIN_ID, KEEP_ALL, Collector, kept, quiet_node, raw_session, two_contexts
+from tests.peers import (
+    DOMAIN_ID,
+    KEEP_ALL,
+    Collector,
+    kept,
+    quiet_node,
+    raw_session,
+    ros_value,
+    two_contexts,
+)
 
 VECTORS: dict[str, Any] = json.loads(
     Path(__file__).parent.parent.joinpath("vectors", "vectors.json").read_text()
@@ -406,17 +415,6 @@ async def test_raw_subscriptions_get_the_bytes() -> None:
 
 
 # Helpers
-
-
-def ros_value(value: Any) -> Any:
-    """Return a recorded value in our form: an empty message has no field."""
-    if isinstance(value, dict):
-        return {
-            name: ros_value(each)
-            for name, each in value.items()
-            if name != "structure_needs_at_least_one_member"
-        }
-    return value
 
 
 def closing_all(*declared: Any) -> ExitStack:

@@ -1,0 +1,387 @@
+"""Services between contexts: requests are queries, as rmw_zenoh_cpp has them."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+import zenoh  # noqa: TID251  # plays the other participants, without aionode
+
+from aionode.errors import RequestTimeoutError, ServiceError, ServiceUnavailableError
+from aionode.interfaces import get_service
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.message import from_builtins
+from aionode.transport.zenoh.services import error_payload, parse_error
+from aionode.wire import attachment, cdr
+from aionode.wire.keyexpr import data_key
+from aionode.wire.typehash import type_hash
+from tests.peers import DOMAIN_ID, Collector, quiet_node, raw_session, ros_value, two_contexts
+
+VECTORS: dict[str, Any] = json.loads(
+    Path(__file__).parent.parent.joinpath("vectors", "vectors.json").read_text()
+)
+SERVICES: dict[str, dict[str, Any]] = VECTORS["services"]
+ADD_TYPE = "example_interfaces/srv/AddTwoInts"
+ADD_KEY = data_key(DOMAIN_ID, "/add", ADD_TYPE, type_hash(AddTwoInts))
+GID = b"raw client's gid"
+
+
+def add(request: AddTwoInts.Request, response: AddTwoInts.Response) -> AddTwoInts.Response:
+    """Answer as the tutorial does."""
+    response.sum = request.a + request.b
+    return response
+
+
+@contextmanager
+def raw_server(
+    session: zenoh.Session, answer: Callable[[zenoh.Query], None], name: str = "raw"
+) -> Iterator[None]:
+    """Serve /add without aionode, with the token of a ROS node."""
+    queryable = session.declare_queryable(ADD_KEY, answer, complete=True)
+    token = session.liveliness().declare_token(
+        f"@ros2_lv/{DOMAIN_ID}/{session.zid()}/0/1/SS/%/%/{name}/%add/"
+        f"example_interfaces::srv::dds_::AddTwoInts_/{type_hash(AddTwoInts)}/::,10:,:,:,,"
+    )
+    try:
+        yield
+    finally:
+        token.undeclare()
+        queryable.undeclare()
+
+
+def raw_call(session: zenoh.Session, payload: bytes | None, extra: bytes | None) -> Collector:
+    """Call /add as a ROS client does; the last item is None."""
+    replies = Collector()
+    session.get(
+        ADD_KEY,
+        zenoh.handlers.Callback(replies, lambda: replies(None)),
+        payload=payload,
+        attachment=extra,
+        target=zenoh.QueryTarget.ALL_COMPLETE,
+        consolidation=zenoh.ConsolidationMode.NONE,
+        timeout=30,
+    )
+    return replies
+
+
+# Both ends aionode
+
+
+async def test_many_calls_at_once_each_get_their_answer() -> None:
+    """More than are sent from the loop at once, too."""
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("server", first) as server,
+        quiet_node("client", second) as node,
+    ):
+        server.create_service(AddTwoInts, "add", add)
+        client = node.create_client(AddTwoInts, "add")
+        await client.wait_for_service()
+        answers = await asyncio.gather(
+            *(client.call(AddTwoInts.Request(a=n, b=1)) for n in range(200))
+        )
+
+        assert [answer.sum for answer in answers] == list(range(1, 201))
+
+
+async def test_a_failing_handler_tells_the_client_at_once() -> None:
+    """ROS has no way to; between aionode nodes the error travels."""
+
+    def fail(_: AddTwoInts.Request) -> AddTwoInts.Response:
+        raise KeyError("no such sum")
+
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("server", first) as server,
+        quiet_node("client", second) as node,
+    ):
+        server.create_service(AddTwoInts, "add", fail, on_error="log")
+        client = node.create_client(AddTwoInts, "add")
+        await client.wait_for_service()
+        with pytest.raises(ServiceError, match="KeyError: 'no such sum'") as caught:
+            await client.call(AddTwoInts.Request())
+
+        assert caught.value.error_type == "KeyError"
+
+
+async def test_a_server_that_goes_away_ends_the_call_at_once() -> None:
+    """Nobody waits for ever, and the next server is used."""
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("server", first) as server,
+        quiet_node("client", second) as node,
+    ):
+        began = asyncio.Event()
+
+        async def never(_: AddTwoInts.Request) -> AddTwoInts.Response:
+            began.set()
+            await asyncio.Event().wait()
+            raise AssertionError
+
+        service = server.create_service(AddTwoInts, "add", never)
+        client = node.create_client(AddTwoInts, "add")
+        await client.wait_for_service()
+        call = asyncio.gather(client.call(AddTwoInts.Request()))
+        await began.wait()
+        service.destroy()
+        with pytest.raises(ServiceUnavailableError, match="went away before it answered"):
+            await call
+
+        server.create_service(AddTwoInts, "add", add)
+        await client.wait_for_service()
+        assert (await client.call(AddTwoInts.Request(a=1, b=2))).sum == 3
+
+
+async def test_a_request_that_was_given_up_is_not_served() -> None:
+    """The server is told, so that it does no work for nobody."""
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("server", first) as server,
+        quiet_node("client", second) as node,
+    ):
+        served: list[int] = []
+        began, gate = asyncio.Event(), asyncio.Event()
+
+        async def slow(request: AddTwoInts.Request) -> AddTwoInts.Response:
+            served.append(request.a)
+            began.set()
+            await gate.wait()
+            return AddTwoInts.Response(sum=request.a)
+
+        server.create_service(AddTwoInts, "add", slow)
+        client = node.create_client(AddTwoInts, "add")
+        await client.wait_for_service()
+        told = asyncio.Event()
+        transport: Any = first.transports[1]
+        transport._link.cancellations.listeners[lambda _gid, _sequence: told.set()] = None
+        busy = asyncio.gather(client.call(AddTwoInts.Request(a=1)))
+        await began.wait()
+        with pytest.raises(RequestTimeoutError, match="1 matched server"):
+            await client.call(AddTwoInts.Request(a=2), timeout_sec=0.05)
+        last = asyncio.gather(client.call(AddTwoInts.Request(a=3)))
+        await told.wait()
+        gate.set()
+        await busy
+        await last
+
+        assert served == [1, 3]
+
+
+async def test_a_large_request_and_response_travel_through_a_thread() -> None:
+    """They take more than one packet, and sending them could hold up the loop."""
+    from aionode.interfaces.rcl_interfaces.srv import GetParameters
+
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("server", first) as server,
+        quiet_node("client", second) as node,
+    ):
+
+        def count(
+            request: GetParameters.Request, response: GetParameters.Response
+        ) -> GetParameters.Response:
+            response.values = [
+                type(response.values[0])() if response.values else value_of(name)
+                for name in request.names
+            ]
+            return response
+
+        server.create_service(GetParameters, "get", count)
+        client = node.create_client(GetParameters, "get")
+        await client.wait_for_service()
+        names = ["x" * 1000] * 500
+        response = await client.call(GetParameters.Request(names=names))
+
+        assert [len(value.string_value) for value in response.values] == [1000] * 500
+
+
+def value_of(name: str) -> Any:
+    """Return a parameter value that says `name`."""
+    from aionode.interfaces.rcl_interfaces.msg import ParameterValue
+
+    return ParameterValue(type=4, string_value=name)
+
+
+# One end ROS
+
+
+@pytest.mark.parametrize("half", ["request", "response"])
+async def test_requests_and_responses_are_those_of_rmw_zenoh(half: str) -> None:
+    """Key, payload and attachment, at both ends."""
+    async with quiet_node("node") as node:
+        with raw_session() as session:
+            for number, (name, golden) in enumerate(SERVICES.items(), 1):
+                srv_type = get_service(name)
+                request = from_builtins(srv_type.Request, ros_value(golden["request"]["value"]))
+                response = from_builtins(srv_type.Response, ros_value(golden["response"]["value"]))
+                key = f"{DOMAIN_ID}/srv{number}/{golden['dds_type']}/{golden['rihs01']}"
+                if half == "response":
+                    heard: list[Any] = []
+
+                    node.create_service(srv_type, f"srv{number}", remembering(heard, response))
+                    await served(session, f"@ros2_lv/{DOMAIN_ID}/**/SS/**", number)
+                    replies = Collector()
+                    session.get(
+                        key,
+                        replies,
+                        payload=bytes.fromhex(golden["request"]["cdr"]),
+                        attachment=attachment.pack(7, 1, GID),
+                        target=zenoh.QueryTarget.ALL_COMPLETE,
+                        consolidation=zenoh.ConsolidationMode.NONE,
+                        timeout=30,
+                    )
+                    (reply,) = await replies.have(1)
+                    extra = attachment.unpack(reply.ok.attachment.to_bytes())
+                    assert reply.ok.payload.to_bytes().hex() == golden["response"]["cdr"]
+                    assert str(reply.ok.key_expr) == key
+                    assert extra is not None
+                    assert (extra.sequence, extra.gid) == (7, GID)
+                    assert heard == [request]
+                else:
+                    queries = Collector()
+                    queryable = session.declare_queryable(key, queries, complete=True)
+                    token = session.liveliness().declare_token(
+                        f"@ros2_lv/{DOMAIN_ID}/{session.zid()}/0/{number}/SS/%/%/raw/%srv{number}/"
+                        f"{golden['dds_type']}/{golden['rihs01']}/::,10:,:,:,,"
+                    )
+                    client = node.create_client(srv_type, f"srv{number}")
+                    await client.wait_for_service()
+                    call = asyncio.gather(client.call(request))
+                    (query,) = await queries.have(1)
+                    extra = attachment.unpack(query.attachment.to_bytes())
+                    assert query.payload.to_bytes().hex() == golden["request"]["cdr"]
+                    assert extra is not None
+                    assert extra.sequence == 1
+                    query.reply(
+                        key,
+                        bytes.fromhex(golden["response"]["cdr"]),
+                        attachment=attachment.pack(1, 1, extra.gid),
+                    )
+                    query.drop()
+                    assert await call == [response]
+                    token.undeclare()
+                    queryable.undeclare()
+
+
+async def test_the_first_of_several_answers_counts() -> None:
+    """With ALL_COMPLETE every server answers."""
+    async with quiet_node("client") as node:
+        with raw_session() as session:
+
+            def answer(value: int) -> Callable[[zenoh.Query], None]:
+                return lambda query: query.reply(
+                    ADD_KEY, cdr.encode(AddTwoInts.Response(sum=value)), attachment=None
+                )
+
+            with raw_server(session, answer(5), "one"), raw_server(session, answer(5), "two"):
+                client = node.create_client(AddTwoInts, "add")
+                await client.wait_for_service()
+                for _ in range(3):
+                    assert (await client.call(AddTwoInts.Request())).sum == 5
+
+
+async def test_plain_text_in_place_of_an_answer_is_an_error_with_that_text() -> None:
+    """As other Zenoh programs send errors."""
+    async with quiet_node("client") as node:
+        with (
+            raw_session() as session,
+            raw_server(session, lambda query: query.reply_err(b"out of order")),
+        ):
+            client = node.create_client(AddTwoInts, "add")
+            await client.wait_for_service()
+            with pytest.raises(ServiceError, match="/add: out of order"):
+                await client.call(AddTwoInts.Request())
+
+
+async def test_an_answer_that_is_none_is_an_error_and_logged_once(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """The caller must not wait for ever for a server with another definition."""
+    async with quiet_node("client") as node:
+        with (
+            raw_session() as session,
+            raw_server(session, lambda query: query.reply(ADD_KEY, b"\0\1\0\0\1")),
+            caplog.at_level(logging.WARNING, "aionode.transport.zenoh"),
+        ):
+            client = node.create_client(AddTwoInts, "add")
+            await client.wait_for_service()
+            for _ in range(3):
+                with pytest.raises(ServiceError, match="the response is unreadable"):
+                    await client.call(AddTwoInts.Request())
+
+    assert sum("unknown form" in text for text in caplog.messages) == 1
+
+
+async def test_a_server_that_says_nothing_and_ends_is_unavailable() -> None:
+    """A query that is dropped ends the call."""
+    async with quiet_node("client") as node:
+        with raw_session() as session, raw_server(session, lambda query: query.drop()):
+            client = node.create_client(AddTwoInts, "add")
+            await client.wait_for_service()
+            with pytest.raises(ServiceUnavailableError):
+                await client.call(AddTwoInts.Request())
+
+
+async def test_strange_requests_are_answered_with_an_error_and_stop_nothing(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """Anybody may call anything with anything."""
+    good = cdr.encode(AddTwoInts.Request(a=1, b=2))
+    async with quiet_node("server") as node:
+        node.create_service(AddTwoInts, "add", add)
+        with raw_session() as session:
+            await served(session, f"@ros2_lv/{DOMAIN_ID}/**/SS/**", 1)
+            with caplog.at_level(logging.WARNING, "aionode.transport.zenoh"):
+                for payload in (None, b"", b"\0\1\0\0\1"):
+                    replies = await raw_call(session, payload, None).have(2)
+                    assert b"DecodeError" in replies[0].err.payload.to_bytes()
+                for extra in (None, b"", bytes(200), attachment.pack(1, 1, GID)):
+                    replies = await raw_call(session, good, extra).have(2)
+                    assert cdr.decode(
+                        AddTwoInts.Response, replies[0].ok.payload.to_bytes()
+                    ) == AddTwoInts.Response(sum=3)
+
+    assert sum("unknown form" in text for text in caplog.messages) == 1
+
+
+def remembering(heard: list[Any], response: Any) -> Callable[[Any], Any]:
+    """Return a handler that notes requests."""
+
+    def answer(request: Any) -> Any:
+        heard.append(request)
+        return response
+
+    return answer
+
+
+async def served(session: zenoh.Session, tokens: str, count: int) -> None:
+    """Wait until a session sees so many tokens."""
+    found = Collector()
+    subscriber = session.liveliness().declare_subscriber(tokens, found, history=True)
+    try:
+        await found.have(count)
+    finally:
+        subscriber.undeclare()
+
+
+# Errors as text
+
+
+def test_an_error_keeps_its_type_and_text() -> None:
+    """What the server raised is what the client reads."""
+    error = parse_error(error_payload("ValueError", "too large: 5 \N{MICRO SIGN}m"), "/s")
+
+    assert (error.service, error.error_type) == ("/s", "ValueError")
+    assert error.error_text == "too large: 5 \N{MICRO SIGN}m"
+
+
+@pytest.mark.parametrize("payload", [b"boom", b"{}", b"[1]", b"3", b"\xff\xfe", b""])
+def test_any_other_payload_is_an_error_too(payload: bytes) -> None:
+    """Whatever a server sends in place of an answer, the caller gets an error."""
+    assert str(parse_error(payload, "/s")).startswith("/s: ")
