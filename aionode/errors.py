@@ -49,6 +49,7 @@ name; new ones end in `Error`. They carry plain values, never live objects.
     ├── RequestTimeoutError (TimeoutError)
     ├── TimeSourceChangedError (RuntimeError)
     └── TransportError (ConnectionError)
+        └── FrameError
 """
 
 from __future__ import annotations
@@ -61,6 +62,7 @@ __all__ = [
     "ConfigurationError",
     "DecodeError",
     "EntityDestroyedError",
+    "FrameError",
     "GoalAbortedError",
     "GoalCanceledError",
     "GoalError",
@@ -375,6 +377,20 @@ class NodeNameNonExistentError(AionodeError, LookupError, RuntimeError):
 
 class TransportError(AionodeError, ConnectionError):
     """A transport cannot do what was asked; the text says what to change."""
+
+
+class FrameError(TransportError):
+    """A link between two processes carries, or should carry, what is no frame.
+
+    The link ends with it, and what it carried goes over Zenoh.
+
+    Attributes:
+        problem: What came, or was to be sent.
+    """
+
+    def __init__(self, problem: str) -> None:
+        self.problem = problem
+        super().__init__(f"link: {problem}; do both processes run the same release of aionode?")
 
 
 def silence(servers: int) -> str:
