@@ -8,15 +8,22 @@ none, those of the modules that are there already are kept, so they can be edite
 from __future__ import annotations
 
 import ast
-import math
-import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import aionode.message
 from aionode.idl.build import Builder
 from aionode.idl.definition import HALVES, InterfaceText, split_type_name
 from aionode.idl.folder import read_folder
+from aionode.idl.source import (
+    WIDTH,
+    class_line,
+    doc_lines,
+    import_lines,
+    import_order,
+    literal,
+    wrapped,
+)
 from aionode.message import (
     Constant,
     Field,
@@ -30,7 +37,6 @@ from aionode.message import (
 
 __all__ = ["generate"]
 
-WIDTH = 100
 KIND_WORDS = {"msg": "Messages", "srv": "Services", "action": "Actions"}
 BASE_NAMES = {"msg": "Message", "srv": "ServiceType", "action": "ActionType"}
 NUMBERS = {"bool": "Bools", "float32": "Floats", "float64": "Floats"}
@@ -281,60 +287,3 @@ def is_aionode(module: str) -> bool:
 def messages_of(cls: type[Interface], kind: str) -> list[type[Message]]:
     """Return the messages that an interface consists of."""
     return [cls] if issubclass(cls, Message) else [getattr(cls, half) for half in HALVES[kind]]
-
-
-def import_lines(module: str, names: Iterable[str]) -> Iterator[str]:
-    """Yield one import, and one for each renamed name, as isort has it."""
-    renamed = sorted(name for name in names if " as " in name)
-    usual = sorted(set(names) - set(renamed), key=import_order)
-    if usual:
-        line = f"from {module} import {', '.join(usual)}"
-        yield from [line] if len(line) <= WIDTH else wrapped(f"from {module} import (", usual, ")")
-    for name in renamed:
-        yield f"from {module} import {name}"
-
-
-def import_order(name: str) -> tuple[int, list[str | int]]:
-    """Return the key by which isort sorts names: constants, classes, others; 8 before 16."""
-    kind = 0 if name.isupper() and len(name) > 1 else 1 if name[0].isupper() else 2
-    parts = re.findall(r"\d+|\D+", name)
-    return kind, [int(part) if part.isdigit() else part for part in parts]
-
-
-def wrapped(start: str, items: list[str], end: str, indent: str = "") -> list[str]:
-    """Return the lines of a list of items: one line if they fit, else a line for each."""
-    line = f"{start}{', '.join(items)}{end}"
-    if len(line) <= WIDTH:
-        return [line]
-    return [start, *(f"{indent}    {item}," for item in items), f"{indent}{end}"]
-
-
-def class_line(name: str, bases: list[str], indent: str) -> list[str]:
-    """Return the line that begins a class, on three lines if it is long."""
-    line = f"{indent}class {name}({', '.join(bases)}):"
-    if len(line) <= WIDTH:
-        return [line]
-    return [f"{indent}class {name}(", f"{indent}    {', '.join(bases)}", f"{indent}):"]
-
-
-def doc_lines(text: str, indent: str) -> list[str]:
-    """Return the lines of a docstring."""
-    text = text.replace("\\", "\\\\").replace('"""', '\\"\\"\\"')
-    first, *more = text.split("\n")
-    if not more and not first.endswith('"'):
-        return [f'{indent}"""{first}"""']
-    return [f'{indent}"""{first}', *(f"{indent}{line}".rstrip() for line in more), f'{indent}"""']
-
-
-def literal(value: object) -> str:
-    """Return a Python literal as the ruff formatter leaves it."""
-    if isinstance(value, tuple):
-        items = ", ".join(map(literal, value))
-        return f"({items},)" if len(value) == 1 else f"({items})"
-    if isinstance(value, float) and not math.isfinite(value):
-        return f'float("{value}")'
-    text = repr(value)
-    if isinstance(value, str | bytes) and text.endswith("'") and '"' not in text:
-        start = text.index("'")
-        return f'{text[:start]}"{text[start + 1 : -1]}"'
-    return text

@@ -1,0 +1,94 @@
+"""The shipped types against the definitions that rosbags carries for each distribution.
+
+`docs/interfaces.md` says what differs; these tests keep that true.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from rosbags.typesys import Stores, get_typestore
+
+from aionode.interfaces import get_message
+from aionode.message import FieldType, fields, type_name
+from tests.interfaces.random_messages import shipped_names
+
+OTHER: dict[str, set[str]] = {
+    "ROS2_HUMBLE": {
+        "rosbag2_interfaces/msg/ReadSplitEvent",
+        "rosbag2_interfaces/msg/WriteSplitEvent",
+        "sensor_msgs/msg/Range",
+    },
+    "ROS2_JAZZY": set(),
+    "ROS2_KILTED": set(),
+    "ROS2_LYRICAL": {"lifecycle_msgs/msg/TransitionEvent"},
+}
+MISSING: dict[str, set[str]] = {
+    "ROS2_HUMBLE": {
+        "geometry_msgs/msg/PolygonInstance",
+        "geometry_msgs/msg/PolygonInstanceStamped",
+        "geometry_msgs/msg/VelocityStamped",
+        "nav_msgs/msg/Goals",
+        "rcl_interfaces/msg/LoggerLevel",
+        "rcl_interfaces/msg/SetLoggerLevelsResult",
+        "service_msgs/msg/ServiceEventInfo",
+        "type_description_interfaces/msg/Field",
+        "type_description_interfaces/msg/FieldType",
+        "type_description_interfaces/msg/IndividualTypeDescription",
+        "type_description_interfaces/msg/KeyValue",
+        "type_description_interfaces/msg/TypeDescription",
+        "type_description_interfaces/msg/TypeSource",
+    },
+    "ROS2_JAZZY": {"nav_msgs/msg/Goals"},
+    "ROS2_KILTED": set(),
+    "ROS2_LYRICAL": {
+        "actionlib_msgs/msg/GoalID",
+        "actionlib_msgs/msg/GoalStatus",
+        "actionlib_msgs/msg/GoalStatusArray",
+        "geometry_msgs/msg/Pose2D",
+    },
+}
+ELSEWHERE = ("test_msgs/", "example_interfaces/")
+"""Packages that rosbags does not carry."""
+
+
+def as_text(node: Any) -> str:
+    """Return a type as rosbags describes it, in the form of `str(FieldType)`."""
+    kind, content = int(node[0]), node[1]
+    if kind == 1:
+        return f"{content[0]}<={content[1]}" if content[1] else str(content[0])
+    if kind == 2:
+        return str(content).replace("/msg/", "/")
+    one, size = as_text(content[0]), content[1]
+    return f"{one}[{size}]" if kind == 3 else f"{one}[<={size}]" if size else f"{one}[]"
+
+
+def described(name: str) -> list[tuple[str, str]]:
+    """Return the fields of a shipped message; constants are not on the wire and not in the hash."""
+    found = [(field.name, str(field.type)) for field in fields(get_message(name))]
+    return found or [("structure_needs_at_least_one_member", "uint8")]
+
+
+@pytest.mark.parametrize("distribution", list(OTHER))
+def test_the_shipped_types_are_those_of_ros_but_for_what_the_docs_say(distribution: str) -> None:
+    """An independent source: other people's copy of ROS's definitions."""
+    known = get_typestore(Stores[distribution]).fielddefs
+    names = [n for n in shipped_names() if "/msg/" in n and not n.startswith(ELSEWHERE)]
+    missing = {name for name in names if name not in known}
+    differing = set()
+    for name in set(names) - missing:
+        if described(name) != [(field, as_text(node)) for field, node in known[name][1]]:
+            differing.add(name)
+
+    assert differing == OTHER[distribution]
+    assert missing == MISSING[distribution]
+
+
+def test_a_type_is_written_as_in_a_definition() -> None:
+    """What the comparison above stands on."""
+    header = get_message("std_msgs/msg/Header")
+
+    assert type_name(header) == "std_msgs/msg/Header"
+    assert str(FieldType("message", header, None, "array", 3)) == "std_msgs/Header[3]"
+    assert str(FieldType("string", None, 10, "bounded", 2)) == "string<=10[<=2]"
