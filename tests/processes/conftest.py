@@ -1,0 +1,14 @@
+"""What tests with several processes share."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.peers import isolated_environment
+
+
+@pytest.fixture(autouse=True)
+def isolated(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Processes started in a test hear each other, and nothing else that runs on the machine."""
+    for name, value in isolated_environment().items():
+        monkeypatch.setenv(name, value)

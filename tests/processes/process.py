@@ -1,0 +1,126 @@
+"""Starts programs of this repository and waits for what they print."""
+
+from __future__ import annotations
+
+import os
+import queue
+import signal
+import subprocess
+import sys
+import threading
+import time  # noqa: TID251  # how long a process takes is what is tested
+from pathlib import Path
+from typing import TYPE_CHECKING, Self
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from types import TracebackType
+
+__all__ = ["ROOT", "Process", "member"]
+
+ROOT = Path(__file__).parent.parent.parent
+PATIENCE_S = 20.0
+
+
+class Process:
+    """A Python program whose lines can be waited for; killed in the end if it still runs.
+
+    Attributes:
+        started_s: When it was started, by `time.monotonic`.
+        lines: Each line so far, with when it came.
+    """
+
+    def __init__(self, *arguments: str, env: dict[str, str] | None = None) -> None:
+        self.started_s = time.monotonic()
+        self.lines: list[tuple[float, str]] = []
+        self._queue: queue.SimpleQueue[tuple[float, str]] = queue.SimpleQueue()
+        self._popen = subprocess.Popen(
+            [sys.executable, *arguments],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            cwd=ROOT,
+            env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHONUNBUFFERED": "1", **(env or {})},
+        )
+        self._reader = threading.Thread(target=self._read)
+        self._reader.start()
+
+    @property
+    def pid(self) -> int:
+        """Its process id."""
+        return self._popen.pid
+
+    def _read(self) -> None:
+        assert self._popen.stdout is not None
+        for line in self._popen.stdout:
+            self._queue.put((time.monotonic(), line.rstrip("\n")))
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.send(signal.SIGCONT)
+        self._popen.kill()
+        self._popen.wait()
+        self._reader.join()
+        for stream in (self._popen.stdin, self._popen.stdout):
+            if stream is not None:
+                stream.close()
+        if error is not None:
+            error.add_note(f"{self._popen.args}: {[line for _, line in self.lines]}")
+
+    def expect(self, *texts: str) -> float:
+        """Wait until each of `texts` began a line; return how long after the start the last came.
+
+        Raises:
+            TimeoutError: one did not come.
+        """
+        missing = set(texts)
+        last_s = 0.0
+        for when_s, line in self._all_lines():
+            for text in [text for text in missing if line.startswith(text)]:
+                missing.discard(text)
+                last_s = max(last_s, when_s)
+            if not missing:
+                return last_s - self.started_s
+        raise TimeoutError(f"{missing} did not come, only {[line for _, line in self.lines]}")
+
+    def _all_lines(self) -> Iterator[tuple[float, str]]:
+        yield from list(self.lines)
+        ends_s = time.monotonic() + PATIENCE_S
+        while (left_s := ends_s - time.monotonic()) > 0:
+            try:
+                entry = self._queue.get(timeout=left_s)
+            except queue.Empty:
+                return
+            self.lines.append(entry)
+            yield entry
+
+    def write(self, line: str) -> None:
+        """Send it a line."""
+        assert self._popen.stdin is not None
+        self._popen.stdin.write(line + "\n")
+        self._popen.stdin.flush()
+
+    def send(self, number: signal.Signals) -> None:
+        """Send it a signal, if it still runs."""
+        if self._popen.poll() is None:
+            self._popen.send_signal(number)
+
+    def stop(self, number: signal.Signals = signal.SIGINT) -> tuple[float, int]:
+        """End it with a signal; return how long that took, in seconds, and its status."""
+        began_s = time.monotonic()
+        self.send(number)
+        status = self._popen.wait(PATIENCE_S)
+        return time.monotonic() - began_s, status
+
+
+def member(name: str) -> Process:
+    """Return a member of the group that hear each other."""
+    return Process("tests/processes/member.py", name)

@@ -1,0 +1,203 @@
+"""Processes find each other, whoever comes, goes or hangs."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import time  # noqa: TID251  # how long a process takes is what is tested
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+from tests.peers import ros_router, ros_session
+from tests.processes.process import Process, member
+
+ATTEMPTS = 4
+
+
+def group(stack: ExitStack, *names: str) -> list[Process]:
+    """Start members one after the other, each when those before it are open."""
+    members = []
+    for name in names:
+        each = stack.enter_context(member(name))
+        each.expect("open")
+        members.append(each)
+    return members
+
+
+def heard_within(stack: ExitStack, limit_s: float, *others: str) -> None:
+    """Start newcomers until one hears all others soon enough after its modules are loaded.
+
+    More than one, because a loaded machine may take its time for any single one.
+    """
+    took = []
+    for number in range(ATTEMPTS):
+        newcomer = stack.enter_context(member(f"newcomer{number}"))
+        began_s = newcomer.expect("started")
+        took.append(newcomer.expect(*(f"heard {name}" for name in others)) - began_s)
+        if took[-1] < limit_s:
+            return
+    pytest.fail(f"newcomers took {took} s to hear {others}; {limit_s} s is the limit")
+
+
+def stop_within_a_second(*members: Process) -> None:
+    """End each with Ctrl-C."""
+    for each in members:
+        took_s, status = each.stop()
+        assert status == 0, each.lines
+        assert took_s < 1.0
+
+
+@pytest.mark.parametrize("first", ["talker", "listener"])
+def test_two_terminals_hear_each_other_in_either_order(first: str) -> None:
+    """The tutorial: two commands, no configuration."""
+    second = "listener" if first == "talker" else "talker"
+    with Process(f"examples/{first}.py") as one, Process(f"examples/{second}.py") as two:
+        listener = one if first == "listener" else two
+        listener.expect("I heard: Hello")
+        stop_within_a_second(one, two)
+
+
+def test_the_second_process_hears_the_first_soon_after_its_start() -> None:
+    """From exec to the first message in 300 ms; a loaded machine gets several attempts."""
+    with member("first") as first:
+        first.expect("open")
+        took = []
+        for number in range(8):
+            with member(f"second{number}") as second:
+                took.append(second.expect("heard first"))
+            if took[-1] < 0.3:
+                return
+    pytest.fail(f"from exec to the first message it took {took} s")
+
+
+def test_a_dozen_started_at_once_all_hear_all() -> None:
+    """They race for the meeting ports; whoever loses is introduced by the others."""
+    names = [f"m{number}" for number in range(12)]
+    with ExitStack() as stack:
+        members = [stack.enter_context(member(name)) for name in names]
+        for each in members:
+            each.expect(*(f"heard {name}" for name in names))
+
+
+def test_nothing_listens_beyond_loopback() -> None:
+    """Nobody on the network can reach a node unless its user asks for it."""
+    with ExitStack() as stack:
+        for each in group(stack, "a", "b"):
+            addresses = listening_addresses(each.pid)
+            assert addresses
+            assert all(address.startswith("127.") for address in addresses)
+
+
+def test_a_killed_process_leaves_the_graph_and_ends_its_calls() -> None:
+    """Within a second, and whoever waits for an answer is told."""
+    with ExitStack() as stack:
+        one, two, three = group(stack, "one", "two", "three")
+        one.expect("heard three")
+        two.write("call three -1")
+        three.expect("asked")
+        killed_s = time.monotonic()
+        three.send(signal.SIGKILL)
+        for each in (one, two):
+            gone_s = each.expect("gone three") + each.started_s
+            assert gone_s - killed_s < 1.0
+        ended_s = two.expect("error ServiceUnavailableError: /add_three: the server went away")
+        assert ended_s + two.started_s - killed_s < 1.0
+        two.write("call one 5")
+        two.expect("sum 5")
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
+def test_newcomers_hear_everyone_when_the_holder_of_the_meeting_port_is_gone(
+    number: signal.Signals,
+) -> None:
+    """The first process holds the first port: nobody may depend on it."""
+    with ExitStack() as stack:
+        holder, *others = group(stack, "holder", "one", "two", "three")
+        others[-1].expect("heard holder", "heard one", "heard two")
+        holder.send(number)
+        heard_within(stack, 0.5, "one", "two", "three")
+        stop_within_a_second(*others)
+
+
+def test_newcomers_hear_everyone_when_all_holders_are_killed() -> None:
+    """Whoever is left has no meeting port, and dials them."""
+    with ExitStack() as stack:
+        *holders, last = group(stack, "h1", "h2", "h3", "last")
+        last.expect("heard h1", "heard h2", "heard h3")
+        for holder in holders:
+            holder.send(signal.SIGKILL)
+        last.expect("gone h1", "gone h2", "gone h3")
+        newcomer = stack.enter_context(member("newcomer"))
+        newcomer.expect("heard last")
+        last.expect("heard newcomer")
+        stop_within_a_second(last, newcomer)
+
+
+def test_the_others_do_not_notice_when_the_holder_goes() -> None:
+    """Those who know each other are linked directly."""
+    with ExitStack() as stack:
+        holder, one, two = group(stack, "holder", "one", "two")
+        one.expect("heard two")
+        holder.send(signal.SIGSTOP)
+        one.write("call two 4")
+        one.expect("sum 4")
+        stop_within_a_second(one, two)
+
+
+@pytest.mark.parametrize("order", ["router first", "ours first"])
+def test_ros_nodes_and_ours_see_each_other_through_a_router(order: str) -> None:
+    """With rmw_zenoh's own configuration, in whatever order they start."""
+    with ExitStack() as stack:
+        if order == "router first":
+            stack.callback(ros_router().close)
+        ours = stack.enter_context(member("ours"))
+        ours.expect("open")
+        ros = ros_session()
+        stack.callback(ros.close)
+        if order == "ours first":
+            stack.callback(ros_router().close)
+        later = stack.enter_context(member("later"))
+        key = "42/hello/std_msgs::msg::dds_::String_/RIHS01_" + STRING_HASH
+        heard = []
+        subscriber = ros.declare_subscriber(key, lambda s: heard.append(s.payload.to_bytes()))
+        publisher = ros.declare_publisher(key)
+        ends_s = time.monotonic() + 15
+        while time.monotonic() < ends_s:
+            publisher.put(b"\0\1\0\0\x04\0\0\0ros\0", attachment=bytes(16) + b"\x10" + bytes(16))
+            if {b"ours", b"later"} <= {payload[8:-1] for payload in heard}:
+                break
+            time.sleep(0.02)
+        assert {b"ours", b"later"} <= {payload[8:-1] for payload in heard}
+        # Seen by the ROS side: now the other way.
+        with contextlib.ExitStack() as puts:
+            puts.callback(subscriber.undeclare)
+            for each in (ours, later):
+                each.expect("heard ros")
+
+
+STRING_HASH = "df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
+
+
+def listening_addresses(pid: int) -> list[str]:
+    """Return the addresses on which a process accepts connections or packets."""
+    inodes = set()
+    for descriptor in Path(f"/proc/{pid}/fd").iterdir():
+        with contextlib.suppress(OSError):
+            inodes.add(str(descriptor.readlink()).removeprefix("socket:[").removesuffix("]"))
+    found = []
+    for table, state in (("tcp", "0A"), ("tcp6", "0A"), ("udp", "07"), ("udp6", "07")):
+        path = Path(f"/proc/{pid}/net/{table}")
+        for line in path.read_text().splitlines()[1:] if path.exists() else ():
+            fields = line.split()
+            if fields[3] == state and fields[9] in inodes:
+                found.append(readable(fields[1].split(":")[0]))
+    return found
+
+
+def readable(address: str) -> str:
+    """Return an address of /proc/net as people write it, IPv6 as it is."""
+    if len(address) != 8:
+        return address
+    return ".".join(str(byte) for byte in reversed(bytes.fromhex(address)))
