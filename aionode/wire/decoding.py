@@ -39,6 +39,14 @@ MISFITS = (Misfit, struct.error, IndexError, ValueError)
 PLACES = 8
 """Places that differ in alignment."""
 
+HEADER_LAYOUT = "<Hxx"
+
+UNKNOWN = ()
+"""Stands for the text before the first one. Of no prefixes, none fits: bytes never begin so."""
+
+SKIPPED = 31
+"""Messages whose text is not compared with the last known one after it was another."""
+
 LONGEST_KEPT = 256
 """Bytes of a string that is kept, in case that the next message has the same."""
 
@@ -121,7 +129,7 @@ class Decoding:
             source.line(f"if data.__class__ is not bytes: return {name}(data)")
         with source.block("try:"):
             self._magic = source.local("magic")
-            self._value("Hxx", 1, self._magic)
+            self._value(HEADER_LAYOUT[1:], 1, self._magic)
             result = self._message(self._cls)
             self._flush()
             source.line(f"return {result}")
@@ -170,36 +178,59 @@ class Decoding:
 
     def _text(self, kind: FieldType, local: str) -> None:
         source = self._source
-        size = self._count(kind)
         if kind.kind == "wstring":
+            size = self._count(kind)
             start = self._skip(f"4 * {size}", COUNT_SIZE)
             source.require("pos <= len(data)")
             source.line(f"{local} = {source.constant('wide', wide_text)}(data[{start}:pos])")
+        elif self._has_view or not self._of_bytes:
+            self._new_text(local, self._skip(self._count(kind), 1))
         else:
-            start = self._skip(size, 1)
-            self._narrow_text(local, start, size)
+            self._repeated_text(kind, local)
         if kind.string_bound is not None:
             source.require(f"len({local}) <= {kind.string_bound}")
 
-    def _narrow_text(self, local: str, start: str, size: str) -> None:
+    def _repeated_text(self, kind: FieldType, local: str) -> None:
+        """Read a text that is probably the same as in the last message.
+
+        Frame ids, encodings and the like are: what is known need not be checked, nor made again. It
+        is compared together with its length, and at the start of a message with the header too, so
+        that data that ends early equals nothing known. After a text that was another, some are not
+        compared, so that texts that always change cost little more.
+        """
         source = self._source
-        if not self._of_bytes or self._has_view:
-            source.line("if data[pos - 1]: raise Misfit")
-            text = f"data[{start}:pos - 1]"
-            # The first form is faster, and slices of bytes only have it.
-            made = f"{text}.decode()" if self._of_bytes else f"str({text}, 'utf-8')"
-            source.line(f"{local} = {made}")
-            return
-        # Frame ids, encodings and the like are the same in every message of a stream. The length
-        # is compared with the text, so that data that ends early equals nothing known.
-        last = source.variable("last", (b"", ""))
-        raw, known = source.local("raw"), source.local("known")
-        source.line(f"{raw} = data[{start} - {COUNT_SIZE}:pos]")
+        last, skip = source.variable("last", (UNKNOWN, "")), source.variable("skip", 0)
+        known = source.local("known")
         source.line(f"{known}, {local} = {last}")
-        with source.block(f"if {raw} != {known}:"):
-            source.line(f"if len({raw}) != {size} + {COUNT_SIZE} or {raw}[-1]: raise Misfit")
-            source.line(f"{local} = {raw}[{COUNT_SIZE}:-1].decode()")
-            source.line(f"if {size} <= {LONGEST_KEPT}: {last} = {raw}, {local}")
+        if self._layout == HEADER_LAYOUT:
+            with source.block(f"if {skip} or not data.startswith({known}):"):
+                size = self._count(kind)
+                start = self._skip(size, 1)
+                self._new_text(local, start)
+                self._remember(skip, size, f"{last} = data[:pos], {local}")
+            source.position(f"else: pos = len({known})")
+            return
+        size = self._count(kind)
+        start = self._skip(size, 1)
+        raw = f"data[{start} - {COUNT_SIZE}:pos]"
+        with source.block(f"if {skip} or {raw} != {known}:"):
+            self._new_text(local, start)
+            self._remember(skip, size, f"{last} = {raw}, {local}")
+
+    def _remember(self, skip: str, size: str, statement: str) -> None:
+        """Keep a new text, unless it is one of those that are passed over."""
+        self._source.line(f"if {skip} > 0: {skip} -= 1")
+        with self._source.block("else:"):
+            self._source.line(f"{skip} = {SKIPPED}")
+            self._source.line(f"if {size} <= {LONGEST_KEPT}: {statement}")
+
+    def _new_text(self, local: str, start: str) -> None:
+        """Make a text, if it ends with its NUL inside the data."""
+        self._source.line("if data[pos - 1]: raise Misfit")
+        text = f"data[{start}:pos - 1]"
+        # The first form is faster, and only slices of bytes have it.
+        made = f"{text}.decode()" if self._of_bytes else f"str({text}, 'utf-8')"
+        self._source.line(f"{local} = {made}")
 
     def _texts(self, kind: FieldType, local: str) -> None:
         source = self._source

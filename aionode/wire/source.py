@@ -45,7 +45,8 @@ class Source:
 
     def variable(self, hint: str, value: object) -> str:
         """Return the name of a variable that the function keeps from call to call."""
-        name = self.constant(hint, value)
+        name = f"{hint}{len(self.namespace)}"
+        self.namespace[name] = value
         self._kept.append(name)
         return name
 

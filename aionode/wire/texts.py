@@ -71,14 +71,15 @@ class TextsReader:
             raise Misfit
         texts = []
         end = pos
+        of_bytes = data.__class__ is bytes
         for _ in range(count):
-            end += -end % COUNT_SIZE
-            (size,) = COUNT.unpack_from(data, end)
-            start = end + COUNT_SIZE
+            start = (end + 3 & -4) + COUNT_SIZE
+            (size,) = COUNT.unpack_from(data, start - COUNT_SIZE)
             end = start + size
             if data[end - 1]:
                 raise Misfit
-            texts.append(str(data[start : end - 1], "utf-8"))
+            text = data[start : end - 1]
+            texts.append(text.decode() if of_bytes else str(text, "utf-8"))
         if end - pos <= LARGEST_KEPT:
             self._last = count, bytes(data[pos:end]), texts.copy()
         return texts, end
