@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from aionode import Context, Node
 
 ROOT = Path(__file__).parent.parent
-ENDING = ["pubsub", "service", "timers", "overload"]
+ENDING = ["fibonacci", "overload", "pubsub", "service", "timers"]
 ENDLESS = sorted(
     path.name
     for path in (ROOT / "examples").glob("*.py")
@@ -128,6 +128,18 @@ def test_a_service_answers_together_what_is_asked_together() -> None:
     assert "ValueError: only counts, please" in text
     assert "no server is matched" in text
     assert "Traceback" not in text
+    assert program.process.returncode == 0
+
+
+def test_a_goal_is_awaited_watched_and_cancelled() -> None:
+    """The three things that one does with a goal."""
+    with running("-m", "aionode.examples.fibonacci") as program:
+        text = program.rest()
+
+    assert "called:    [0, 1, 1, 2, 3, 5]" in text
+    assert text.count("feedback:") == 4
+    assert "result:    [0, 1, 1, 2, 3, 5], SUCCEEDED" in text
+    assert "cancelled: CANCELED" in text
     assert program.process.returncode == 0
 
 
@@ -244,6 +256,47 @@ def test_the_word_counter_counts_what_the_publisher_says(domain: int) -> None:
         line = counter.line_with("has")
 
     assert line.endswith(" has 7 words")
+
+
+def test_the_robot_drives_where_a_client_in_another_process_tells_it(domain: int) -> None:
+    """Feedback comes on the way, the result at the end."""
+    program = "examples/navigate.py"
+    with running(program, domain=domain) as robot:
+        robot.wait_until_running()
+        asking = ["-p", "mode:=client", "-p", "x:=0.3", "-p", "y:=0.4"]
+        with running(program, "--ros-args", *asking, domain=domain) as client:
+            text = client.rest()
+
+    assert [float(left) for left in re.findall(r"Feedback: (.*) m left", text)] == [0.3, 0.1, 0.0]
+    assert "Result: 0.5 m travelled" in text
+    assert client.process.returncode == 0
+
+
+def test_ctrl_c_at_the_client_stops_the_robot(domain: int) -> None:
+    """Who gives up a goal cancels it, so nothing drives on that nobody waits for."""
+    program = "examples/navigate.py"
+    with running(program, domain=domain) as robot:
+        asking = ["--ros-args", "-p", "mode:=client", "-p", "x:=1000.0"]
+        with running(program, *asking, domain=domain) as client:
+            client.line_with("Feedback")
+            status, text = client.end_with(signal.SIGINT)
+        robot.line_with("Stopped")
+
+    assert status == 0
+    assert "Traceback" not in text
+
+
+def test_ctrl_c_while_a_goal_is_worked_on_ends_cleanly(domain: int) -> None:
+    """The goal is aborted, and no traceback is printed."""
+    program = "examples/navigate.py"
+    with running(program, domain=domain) as robot:
+        asking = ["--ros-args", "-p", "mode:=client", "-p", "x:=1000.0"]
+        with running(program, *asking, domain=domain) as client:
+            client.line_with("Feedback")
+            status, text = robot.end_with(signal.SIGINT)
+
+    assert status == 0
+    assert "Traceback" not in text
 
 
 def test_a_wrong_mode_is_one_line_and_status_1() -> None:
