@@ -41,54 +41,52 @@ class NavigateTo(ActionType, typename="tutorial_interfaces/action/NavigateTo"):
 Handle = ServerGoalHandle[NavigateTo.Goal, NavigateTo.Result, NavigateTo.Feedback]
 
 
-class Navigate(Node):
-    """A robot that drives where it is told to, or a client that tells it."""
-
-    def __init__(self) -> None:
-        super().__init__("navigate")
-        if self.declare_parameter("mode", "server").value == "client":
-            x = self.declare_parameter("x", 3.0).value
-            y = self.declare_parameter("y", 4.0).value
-            self.goal = NavigateTo.Goal(x=x, y=y)
-            self.client = self.create_action_client(NavigateTo, "/navigate_to")
-            self.timer = self.create_timer(0.0, self.send)
+async def main() -> None:
+    """Be the robot, or a client that sends it somewhere, as the parameter `mode` says."""
+    async with Node("navigate") as node:
+        if node.declare_parameter("mode", "server").value == "client":
+            await send(node)
         else:
-            self.server = self.create_action_server(
-                NavigateTo,
-                "/navigate_to",
-                self.drive,
-                cancel_callback=lambda _handle: CancelResponse.ACCEPT,
-            )
-            self.get_logger().info("Action server ready: /navigate_to")
+            await serve(node)
 
-    async def drive(self, handle: Handle) -> NavigateTo.Result:
+
+async def serve(node: Node) -> None:
+    """Be a robot that drives where it is told to, until Ctrl-C."""
+
+    async def drive(handle: Handle) -> NavigateTo.Result:
         """Drive there in a straight line, and tell how far it still is."""
-        distance = math.hypot(handle.request.x, handle.request.y)
-        left = distance
+        distance = left = math.hypot(handle.request.x, handle.request.y)
         try:
             while left > 0:
-                await self.get_clock().sleep(STEP_SEC)
+                await node.get_clock().sleep(STEP_SEC)
                 left = max(0.0, left - SPEED * STEP_SEC)
                 handle.publish_feedback(NavigateTo.Feedback(distance_left=left))
         except asyncio.CancelledError:
-            self.get_logger().info(f"Stopped {left:.1f} m before the goal")
+            node.get_logger().info(f"Stopped {left:.1f} m before the goal")
             raise
         handle.succeed()
-        self.get_logger().info("Arrived")
+        node.get_logger().info("Arrived")
         return NavigateTo.Result(travelled=distance)
 
-    async def send(self) -> None:
-        """Send the goal, log the progress and the result, and end."""
-        self.timer.cancel()
-        await self.client.wait_for_server()
-        result = await self.client.call(self.goal, feedback_callback=self.progress)
-        self.get_logger().info(f"Result: {result.travelled:.1f} m travelled")
-        self.destroy_node()
+    node.create_action_server(
+        NavigateTo, "/navigate_to", drive, cancel_callback=lambda _handle: CancelResponse.ACCEPT
+    )
+    node.get_logger().info("Action server ready: /navigate_to")
+    await asyncio.Event().wait()
 
-    def progress(self, message: NavigateTo.Impl.FeedbackMessage) -> None:
-        """Log one feedback; the message also says which goal it is about, as in rclpy."""
-        self.get_logger().info(f"Feedback: {message.feedback.distance_left:.1f} m left")
+
+async def send(node: Node) -> None:
+    """Send the goal, and log the progress and the result; Ctrl-C cancels the goal."""
+    x = node.declare_parameter("x", 3.0).value
+    y = node.declare_parameter("y", 4.0).value
+    client = node.create_action_client(NavigateTo, "/navigate_to")
+    await client.wait_for_server()
+    goal = await client.send_goal(NavigateTo.Goal(x=x, y=y))
+    async for feedback in goal:
+        node.get_logger().info(f"Feedback: {feedback.distance_left:.1f} m left")
+    outcome = await goal.result()
+    node.get_logger().info(f"Result: {outcome.result.travelled:.1f} m travelled")
 
 
 if __name__ == "__main__":
-    aionode.run(Navigate)
+    aionode.run(main)
