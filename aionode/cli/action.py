@@ -24,7 +24,7 @@ from aionode.message import to_builtins, to_yaml
 from aionode.node_graph import actions_among
 
 if TYPE_CHECKING:
-    from aionode.action import ActionClient, ClientGoalHandle
+    from aionode.action import ActionClient, ActionResult, ClientGoalHandle
     from aionode.cli.output import Output
     from aionode.node import Node
 
@@ -152,11 +152,12 @@ async def send_goal(
     output.text(f"Goal accepted with ID: {handle.text}\n")
     try:
         # Shielded, as cancelling the wait would cancel the goal before anything is said of it.
-        return await asyncio.shield(watch(handle, output, feedback=feedback))
+        outcome = await asyncio.shield(watch(handle, output, feedback=feedback))
     except asyncio.CancelledError:
         if not handle.done:
             await cancel(handle, output)
         raise
+    return say_outcome(handle, outcome, output)
 
 
 def class_of(node: Node, name: str, action_type: str) -> Any:
@@ -196,19 +197,26 @@ async def wait_for_server(
         )
 
 
-async def watch(handle: ClientGoalHandle[Any, Any], output: Output, *, feedback: bool) -> int:
-    """Print the feedback of a goal if asked to, and how it ends; return the exit status."""
+async def watch(
+    handle: ClientGoalHandle[Any, Any], output: Output, *, feedback: bool
+) -> ActionResult[Any]:
+    """Print the feedback of a goal if asked to, and return how it ends."""
     if feedback:
         async for part in handle:
             output.item(
                 f"Feedback:\n    {to_yaml(part)}",
                 {"goal_id": handle.text, "feedback": to_builtins(part)},
             )
-    outcome = await handle.result()
+    return await handle.result()
+
+
+def say_outcome(
+    handle: ClientGoalHandle[Any, Any], outcome: ActionResult[Any], output: Output
+) -> int:
+    """Print how a goal ended, and return the exit status."""
     status = outcome.status.name
-    output.text(f"Result:\n    {to_yaml(outcome.result)}")
     output.item(
-        f"Goal finished with status: {status}",
+        f"Result:\n    {to_yaml(outcome.result)}\nGoal finished with status: {status}",
         {"goal_id": handle.text, "status": status, "result": to_builtins(outcome.result)},
     )
     if outcome.error_text:

@@ -40,11 +40,16 @@ class Follower:
         *,
         raw: bool = False,
     ) -> Subscription[Any]:
-        """Call `take` with each message of `topic`, or with its bytes if `raw`."""
+        """Call `take` with each message of `topic` until the end, or with its bytes if `raw`."""
+
+        def take_until_end(msg: Any, info: MessageInfo) -> None:
+            if not self._done.done():
+                take(msg, info)
+
         subscription: Subscription[Any] = self._node.create_subscription(
             msg_type,
             topic,
-            take,
+            take_until_end,
             qos,
             raw=raw,  # type: ignore[call-overload]  # known only at run time
             on_error=self.fail,

@@ -20,6 +20,7 @@ __all__ = [
     "close_to",
     "endpoints",
     "interface_class",
+    "is_own",
     "names_and_types",
     "node_infos",
     "topic_type",

@@ -30,6 +30,7 @@ __all__ = [
     "qos_from",
     "qos_options",
     "ros2_options",
+    "sim_time_option",
     "stdin_text",
     "timeout_option",
     "window_option",
@@ -69,10 +70,15 @@ def hidden_option(*names: str, what: str) -> Callable[[CommandT], CommandT]:
 
 def ros2_options(command: CommandT) -> CommandT:
     """Accept options of ros2 that mean nothing here, so that its users' scripts run."""
-    for names in (("--no-daemon",), ("--spin-time",), ("-s", "--use-sim-time")):
-        is_flag = names != ("--spin-time",)
-        command = click.option(*names, hidden=True, is_flag=is_flag, expose_value=False)(command)
+    for name in ("--no-daemon", "--spin-time"):
+        is_flag = name == "--no-daemon"
+        command = click.option(name, hidden=True, is_flag=is_flag, expose_value=False)(command)
     return command
+
+
+sim_time_option = click.option(
+    "-s", "--use-sim-time", is_flag=True, help="Take the time from /clock, as a simulation has it."
+)
 
 
 # Interfaces

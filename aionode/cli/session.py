@@ -11,6 +11,7 @@ import click
 from aionode.cli.output import Output
 from aionode.errors import AionodeError
 from aionode.node import Node
+from aionode.parameter import Parameter
 from aionode.runner import best_loop_factory, signals_to
 
 if TYPE_CHECKING:
@@ -28,13 +29,17 @@ UNLIMITED_MS = 3_600_000.0
 """How long a command may block its own loop: nothing else runs there, and terminals are slow."""
 
 
-def make_node(context: Context | None = None, node_name: str | None = None) -> Node:
-    """Return the node of a command: hidden, and without anything that others would see."""
+def make_node(
+    context: Context | None = None, node_name: str | None = None, *, use_sim_time: bool = False
+) -> Node:
+    """Return the node of a command: hidden, and with nothing that others could use."""
+    settings = {"start_type_description_service": False, "use_sim_time": use_sim_time}
     return Node(
         node_name or f"_aionode_cli_{os.getpid()}",
         context=context,
         enable_rosout=False,
         start_parameter_services=False,
+        parameter_overrides=[Parameter(name, value=value) for name, value in settings.items()],
         callback_budget_ms=UNLIMITED_MS,
     )
 
@@ -44,6 +49,7 @@ def run_verb(
     *,
     json: bool = False,
     node_name: str | None = None,
+    use_sim_time: bool = False,
     endless: bool = False,
     busy: bool = False,
 ) -> None:
@@ -53,6 +59,7 @@ def run_verb(
         verb: Called with a running node and the output; it may return an exit status.
         json: Whether to print records.
         node_name: Name of the node; a hidden one without it.
+        use_sim_time: Whether the node's time is that of ``/clock``.
         endless: Whether Ctrl-C is the usual end, with status 0, and not an interruption (130).
         busy: Whether many messages are expected, so that the faster loop is worth its import.
 
@@ -63,7 +70,7 @@ def run_verb(
     output = Output(json=json)
 
     async def work() -> int | None:
-        async with make_node(node_name=node_name) as node:
+        async with make_node(node_name=node_name, use_sim_time=use_sim_time) as node:
             return await verb(node, output)
 
     status = run_until_stopped(work(), loop_factory=best_loop_factory() if busy else None)

@@ -17,6 +17,7 @@ from aionode.cli.options import (
     qos_from,
     qos_options,
     ros2_options,
+    sim_time_option,
     stdin_text,
     window_option,
 )
@@ -254,9 +255,12 @@ def find_command(message_type: str, json: bool, **options: Any) -> None:
 @click.option("-c", "--clear", is_flag=True, help="Clear the screen before each message.")
 @click.option("-n", "--node-name", help="Name of the node that listens (default: a hidden one).")
 @json_option
+@sim_time_option
 @interfaces_option
 @ros2_options
-def echo_command(json: bool, node_name: str | None, once: bool, **options: Any) -> None:
+def echo_command(
+    json: bool, node_name: str | None, once: bool, use_sim_time: bool, **options: Any
+) -> None:
     """Print each message of a topic, as YAML, CSV or JSON."""
     from aionode.cli.echo import echo
 
@@ -267,6 +271,7 @@ def echo_command(json: bool, node_name: str | None, once: bool, **options: Any) 
         lambda node, output: echo(node, qos=qos, once=once, output=output, **options),
         json=json,
         node_name=node_name,
+        use_sim_time=use_sim_time,
         endless=not once,
         busy=True,
     )
@@ -304,11 +309,13 @@ def echo_command(json: bool, node_name: str | None, once: bool, **options: Any) 
 @click.option("-n", "--node-name", help="Name of the node that publishes (default: a hidden one).")
 @qos_options("default")
 @json_option
+@sim_time_option
 @interfaces_option
 @ros2_options
 def pub_command(
     json: bool,
     node_name: str | None,
+    use_sim_time: bool,
     values: str | None,
     stdin: bool,
     once: bool,
@@ -347,6 +354,7 @@ def pub_command(
         ),
         json=json,
         node_name=node_name,
+        use_sim_time=use_sim_time,
         endless=times == 0,
         busy=True,
     )
@@ -358,13 +366,17 @@ def pub_command(
 @click.option("--filter", "filter_text", metavar="EXPR", help="Count messages for which it is so.")
 @click.option("--wall-time", is_flag=True, help="Count with this machine's time, not ROS time.")
 @json_option
+@sim_time_option
 @interfaces_option
 @ros2_options
-def hz_command(json: bool, topic_names: tuple[str, ...], **options: Any) -> None:
+def hz_command(
+    json: bool, use_sim_time: bool, topic_names: tuple[str, ...], **options: Any
+) -> None:
     """Print how often messages come, once a second."""
     from aionode.cli.measure import hz
 
-    measure(functools.partial(hz, topic_names=topic_names, **options), json=json)
+    verb = functools.partial(hz, topic_names=topic_names, **options)
+    measure(verb, json=json, use_sim_time=use_sim_time)
 
 
 @topic.command("bw")
@@ -387,15 +399,22 @@ def bw_command(json: bool, **options: Any) -> None:
 @topic_argument
 @window_option
 @json_option
+@sim_time_option
 @interfaces_option
 @ros2_options
-def delay_command(json: bool, **options: Any) -> None:
+def delay_command(json: bool, use_sim_time: bool, **options: Any) -> None:
     """Print how old messages are when they come, by the stamp of their header."""
     from aionode.cli.measure import delay
 
-    measure(functools.partial(delay, **options), json=json)
+    measure(functools.partial(delay, **options), json=json, use_sim_time=use_sim_time)
 
 
-def measure(verb: Any, *, json: bool) -> None:
+def measure(verb: Any, *, json: bool, use_sim_time: bool = False) -> None:
     """Run a verb that prints figures until Ctrl-C."""
-    run_verb(lambda node, output: verb(node, output=output), json=json, endless=True, busy=True)
+    run_verb(
+        lambda node, output: verb(node, output=output),
+        json=json,
+        use_sim_time=use_sim_time,
+        endless=True,
+        busy=True,
+    )

@@ -30,7 +30,9 @@ def plain_values(text: str, what: str) -> dict[str, Any]:
         values = yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # noqa: S506  # both are safe
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
-        where = f" at line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+        where = "" if mark is None else f" at line {mark.line + 1}, column {mark.column + 1}"
+        if mark is not None and mark.line >= len(text.splitlines()):
+            where = " at its end"
         problem = getattr(error, "problem", None) or str(error).splitlines()[0]
         raise CommandError(
             f"The passed value is no YAML: {shortened(text)}{where}: {problem}; {what} fits"

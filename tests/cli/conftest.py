@@ -1,0 +1,70 @@
+"""A hidden node as the command line makes it, in a context without network, and what it prints."""
+
+from __future__ import annotations
+
+import asyncio
+import io
+import json
+from collections.abc import AsyncIterator, Callable, Coroutine
+from contextlib import AbstractAsyncContextManager, asynccontextmanager
+from typing import Any
+
+import pytest
+
+from aionode import Node
+from aionode.cli.output import Output
+from aionode.testing import settle
+
+Running = Callable[[Coroutine[Any, Any, Any]], AbstractAsyncContextManager[asyncio.Task[Any]]]
+
+
+class Screen:
+    """What a command has printed."""
+
+    def __init__(self) -> None:
+        self.stdout = io.StringIO()
+        self.stderr = io.StringIO()
+        self.output = Output(self.stdout, self.stderr)
+        self.json_output = Output(self.stdout, self.stderr, json=True)
+
+    @property
+    def text(self) -> str:
+        """All of stdout."""
+        return self.stdout.getvalue()
+
+    @property
+    def errors(self) -> str:
+        """All of stderr."""
+        return self.stderr.getvalue()
+
+    @property
+    def records(self) -> list[Any]:
+        """Each line of stdout as JSON."""
+        return [json.loads(line) for line in self.text.splitlines()]
+
+
+@pytest.fixture
+def screen() -> Screen:
+    """Where the command under test prints to."""
+    return Screen()
+
+
+@pytest.fixture
+async def tool(node_factory: Callable[..., Node]) -> Node:
+    """The node of a command."""
+    return node_factory("_aionode_cli_1", enable_rosout=False, start_parameter_services=False)
+
+
+@pytest.fixture
+def running() -> Running:
+    """Run a verb beside the test, and cancel it at the end of the block."""
+
+    @asynccontextmanager
+    async def run(work: Coroutine[Any, Any, Any]) -> AsyncIterator[asyncio.Task[Any]]:
+        async with asyncio.TaskGroup() as tasks:
+            task = tasks.create_task(work)
+            await settle()
+            yield task
+            task.cancel()
+
+    return run

@@ -1,0 +1,171 @@
+"""``aionode action``."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from aionode import Node
+from aionode.action import ActionServer, CancelResponse, GoalResponse
+from aionode.cli.action import find, info, list_actions, send_goal, type_of_action
+from aionode.errors import CommandError
+from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.testing import settle
+
+FIBONACCI = "example_interfaces/action/Fibonacci"
+
+
+async def execute(goal_handle: Any) -> Fibonacci.Result:
+    """Compute at once; with order 0 never, and with a negative one fail."""
+    order = goal_handle.request.order
+    if order == 0:
+        await asyncio.get_running_loop().create_future()
+    sequence = [0, 1]
+    for _ in range(1, order):
+        sequence.append(sequence[-1] + sequence[-2])
+        goal_handle.publish_feedback(Fibonacci.Feedback(sequence=sequence))
+        await settle()
+    if order < 0:
+        goal_handle.abort()
+    else:
+        goal_handle.succeed()
+    return Fibonacci.Result(sequence=sequence)
+
+
+@pytest.fixture
+async def server(node_factory: Callable[..., Node]) -> Node:
+    """A node that serves /fibonacci, but no order above 100."""
+
+    def welcome(goal: Fibonacci.Goal) -> GoalResponse:
+        return GoalResponse.REJECT if goal.order > 100 else GoalResponse.ACCEPT
+
+    made = node_factory("fib_server")
+    ActionServer(
+        made,
+        Fibonacci,
+        "/fibonacci",
+        execute,
+        goal_callback=welcome,
+        cancel_callback=lambda goal: CancelResponse.ACCEPT,
+    )
+    return made
+
+
+async def test_send_goal_prints_what_ros2_prints(tool: Node, server: Node, screen: Any) -> None:
+    """Recorded with ros2, but for the id."""
+    status = await send_goal(
+        tool, "/fibonacci", FIBONACCI, values="{order: 3}", feedback=True, output=screen.output
+    )
+
+    head, _, rest = screen.text.partition("Goal accepted with ID: ")
+    assert status == 0
+    assert head == (
+        "Waiting for an action server to become available...\nSending goal:\n     order: 3\n\n"
+    )
+    assert len(rest.partition("\n")[0]) == 32
+    assert rest.partition("\n")[2] == (
+        "\n"
+        "Feedback:\n    sequence:\n- 0\n- 1\n- 1\n\n"
+        "Feedback:\n    sequence:\n- 0\n- 1\n- 1\n- 2\n\n"
+        "Result:\n    sequence:\n- 0\n- 1\n- 1\n- 2\n\n"
+        "Goal finished with status: SUCCEEDED\n"
+    )
+
+
+async def test_json_prints_feedback_and_result(tool: Node, server: Node, screen: Any) -> None:
+    """One record for each, the goal's id in all."""
+    await send_goal(
+        tool, "/fibonacci", FIBONACCI, values="{order: 2}", feedback=True,
+        output=screen.json_output,
+    )  # fmt: skip
+
+    first, last = screen.records
+    assert first["feedback"] == {"sequence": [0, 1, 1]}
+    assert last["status"] == "SUCCEEDED"
+    assert first["goal_id"] == last["goal_id"]
+
+
+async def test_a_rejected_goal_is_said(tool: Node, server: Node, screen: Any) -> None:
+    """ros2 returns 0; a script should not think that it was done."""
+    status = await send_goal(
+        tool, "/fibonacci", FIBONACCI, values="{order: 101}", output=screen.output
+    )
+
+    assert status == 1
+    assert screen.text.endswith("Goal was rejected.\n")
+
+
+async def test_an_aborted_goal_is_no_success(tool: Node, server: Node, screen: Any) -> None:
+    """The result is printed all the same."""
+    status = await send_goal(
+        tool, "/fibonacci", FIBONACCI, values="{order: -1}", output=screen.output
+    )
+
+    assert status == 1
+    assert screen.text.endswith("Goal finished with status: ABORTED\n")
+
+
+async def test_an_interrupted_wait_cancels_the_goal(
+    running: Any, tool: Node, server: Node, screen: Any
+) -> None:
+    """Ctrl-C must not leave a robot driving."""
+    async with running(send_goal(tool, "/fibonacci", FIBONACCI, output=screen.output)) as task:
+        assert screen.text.count("Goal accepted") == 1
+        task.cancel()
+        await settle()
+
+    assert screen.text.endswith("\nCanceling goal...\nGoal canceled.\n")
+
+
+@pytest.mark.parametrize(
+    ("action_type", "values", "says"),
+    [
+        ("example_interfaces/action/Fibonaci", "{}", f"did you mean {FIBONACCI}?"),
+        ("std_msgs/msg/String", "{}", "not an action"),
+        (FIBONACCI, "{ordr: 1}", "Failed to populate field: example_interfaces/action/Fibonacci"),
+        (FIBONACCI, "{order: x}", "order: 'x'"),
+    ],
+)
+async def test_what_does_not_fit_is_refused_before_it_waits(
+    action_type: str, values: str, says: str, tool: Node, server: Node, screen: Any
+) -> None:
+    """What was given and what fits."""
+    with pytest.raises(CommandError) as raised:
+        await send_goal(tool, "/fibonacci", action_type, values=values, output=screen.output)
+
+    assert says in str(raised.value)
+
+
+async def test_a_limited_wait_says_what_may_be_meant(tool: Node, server: Node, screen: Any) -> None:
+    """ros2 waits for ever."""
+    with pytest.raises(CommandError, match="Nobody served '/fibonaci'"):
+        await send_goal(tool, "/fibonaci", FIBONACCI, timeout=0.001, output=screen.output)
+
+    assert screen.errors == "Nobody serves '/fibonaci'. Did you mean '/fibonacci'?\n"
+
+
+async def test_list_info_type_and_find(tool: Node, server: Node, screen: Any) -> None:
+    """Recorded with ros2."""
+    await list_actions(tool, types=True, output=screen.output)
+    await info(tool, "/fibonacci", types=True, output=screen.output)
+    await info(tool, "/fibonacci", count=True, output=screen.output)
+    await type_of_action(tool, "/fibonacci", output=screen.output)
+    await find(tool, FIBONACCI, output=screen.output)
+
+    assert screen.text == (
+        f"/fibonacci [{FIBONACCI}]\n"
+        "Action: /fibonacci\nAction clients: 0\nAction servers: 1\n"
+        f"    /fib_server [{FIBONACCI}]\n"
+        "Action: /fibonacci\nAction clients: 0\nAction servers: 1\n"
+        f"{FIBONACCI}\n"
+        "/fibonacci\n"
+    )
+
+
+async def test_an_unknown_action_is_named(tool: Node, server: Node, screen: Any) -> None:
+    """ros2 shows one without clients and servers."""
+    with pytest.raises(CommandError, match=r"Unknown action '/fibonaci'\. Did you mean"):
+        await info(tool, "/fibonaci", output=screen.output)

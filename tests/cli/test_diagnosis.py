@@ -1,0 +1,211 @@
+"""``aionode doctor``: what is found wrong, and what is not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from aionode import Node, QoSProfile, ReliabilityPolicy
+from aionode.cli.diagnosis import likeness
+from aionode.cli.doctor import doctor, network_findings
+from aionode.errors import CommandError
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.std_msgs.msg import Int8, String
+from aionode.message import Message, int32
+from aionode.transport.zenoh_config import network_from
+
+
+@pytest.fixture
+async def talker(node_factory: Callable[..., Node]) -> Node:
+    """A node that publishes /chatter."""
+    made = node_factory("talker")
+    made.create_publisher(String, "/chatter", 10)
+    return made
+
+
+async def findings(tool: Node, screen: Any, *names: str) -> tuple[int, list[dict[str, str]]]:
+    """Return the exit status and what was found, without what is about the network."""
+    status = await doctor(tool, names, output=screen.json_output)
+    about_nodes = [r for r in screen.records[1:] if r["subject"] != "discovery range"]
+    return status, about_nodes
+
+
+async def test_a_sound_system_has_no_problem(
+    tool: Node, talker: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """Nothing is said of what is as it should be; the status is that of success."""
+    node_factory("listener").create_subscription(String, "/chatter", lambda msg: None)
+
+    status, found = await findings(tool, screen)
+
+    assert (status, found) == (0, [])
+    assert screen.records[0]["nodes"] == 2
+
+
+async def test_two_types_do_not_talk(
+    tool: Node, talker: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """Both are named, with who uses them."""
+    node_factory("listener").create_subscription(Int8, "/chatter", lambda msg: None)
+
+    status, (found,) = await findings(tool, screen)
+
+    assert status == 1
+    assert found["severity"] == "problem"
+    assert found["subject"] == "topic /chatter"
+    assert "publisher of /talker and subscription of /listener do not talk" in found["text"]
+    assert "std_msgs/msg/String there, std_msgs/msg/Int8 here" in found["text"]
+
+
+async def test_two_definitions_of_one_type_do_not_talk(
+    tool: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """The hashes differ, which no other tool says."""
+
+    class Words(Message, typename="tutorial/msg/Words"):
+        text: str
+
+    class Other(Message, typename="tutorial/msg/Words"):
+        number: int32
+
+    node_factory("talker").create_publisher(Words, "/words", 1)
+    node_factory("listener").create_subscription(Other, "/words", lambda msg: None)
+
+    _, (found,) = await findings(tool, screen)
+
+    assert "their definitions of tutorial/msg/Words differ" in found["text"]
+
+
+async def test_qos_that_does_not_fit_is_explained(
+    tool: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """Offered and requested, in words."""
+    weak = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+    node_factory("talker").create_publisher(String, "/chatter", weak)
+    node_factory("listener").create_subscription(String, "/chatter", lambda msg: None)
+
+    _, (found,) = await findings(tool, screen)
+
+    assert "QoS reliability: offered best_effort, requested reliable" in found["text"]
+
+
+async def test_nearly_equal_names_are_found(
+    tool: Node, talker: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """The most common reason of all, and the remedy as it is typed."""
+    node_factory("listener").create_subscription(String, "/robot/chatter", lambda msg: None)
+
+    status, (found,) = await findings(tool, screen)
+
+    assert status == 1
+    assert (
+        "subscription of /listener waits, while the publisher of /talker uses /chatter"
+        in (found["text"])
+    )
+    assert found["remedy"] == "rename one: --ros-args -r /robot/chatter:=/chatter"
+
+
+async def test_a_client_without_a_server_is_a_hint(
+    tool: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """It may come later, so the status is still that of success."""
+    node_factory("client").create_client(AddTwoInts, "/add_two_ints")
+
+    status, (found,) = await findings(tool, screen)
+
+    assert status == 0
+    assert found["severity"] == "hint"
+    assert found["text"] == "the client of /client waits: nobody serves it"
+
+
+async def test_two_nodes_of_one_name_are_a_hint(
+    tool: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """Their parameters cannot be told apart."""
+    node_factory("twin")
+    node_factory("twin")
+
+    _, (found,) = await findings(tool, screen)
+
+    assert found["subject"] == "/twin"
+
+
+async def test_names_narrow_the_view(
+    tool: Node, talker: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """In a large system one wants to know about one topic, and who it was meant for."""
+    node_factory("listener").create_subscription(String, "/chater", lambda msg: None)
+    node_factory("client").create_client(AddTwoInts, "/add_two_ints")
+
+    _, (found,) = await findings(tool, screen, "/chatter")
+
+    assert found["subject"] == "topic /chater"
+
+
+async def test_an_unknown_name_is_an_error(tool: Node, talker: Node, screen: Any) -> None:
+    """Nothing found is not the same as nothing wrong."""
+    with pytest.raises(CommandError, match="No node, topic or service '/chattr'"):
+        await doctor(tool, ["/chattr"], output=screen.output)
+
+
+async def test_text_has_a_summary_and_an_arrow_for_each_remedy(
+    tool: Node, talker: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """For people."""
+    node_factory("listener").create_subscription(Int8, "/chatter", lambda msg: None)
+
+    await doctor(tool, output=screen.output)
+
+    assert screen.text.startswith("Domain: ")
+    assert "\nproblem: topic /chatter: " in screen.text
+    assert "\n  -> use one type on both sides" in screen.text
+    assert "\n1 problem(s), " in screen.text
+
+
+@pytest.mark.parametrize(
+    ("environ", "state", "subject"),
+    [
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}, {}, "discovery range"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT"}, {}, "router"),
+        ({}, {"alone": True}, "discovery range"),
+        ({}, {"alone": True, "domains": [5]}, "domain"),
+        ({"RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"}, {}, "RMW_IMPLEMENTATION"),
+    ],
+)
+def test_what_keeps_nodes_from_being_found(
+    environ: dict[str, str], state: dict[str, Any], subject: str
+) -> None:
+    """Settings are the reason when nothing is seen at all."""
+    options: dict[str, Any] = {"has_router": False, "domains": [], "alone": False, **state}
+
+    (found,) = network_findings(network_from(environ), environ, **options)
+
+    assert found.subject == subject
+
+
+def test_a_normal_network_is_not_remarked_on() -> None:
+    """Nor the RMW that aionode talks to."""
+    environ = {"RMW_IMPLEMENTATION": "rmw_zenoh_cpp"}
+
+    found = network_findings(
+        network_from(environ), environ, has_router=False, domains=[], alone=False
+    )
+
+    assert found == []
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "alike"),
+    [
+        ("/chatter", "/Chatter", True),
+        ("/chatter", "/robot/chatter", True),
+        ("/word_count", "/word_counts", True),
+        ("/chatter", "/odom", False),
+        ("/left/image", "/left/depth", False),
+    ],
+)
+def test_names_that_are_alike(one: str, other: str, alike: bool) -> None:
+    """Different words are no misspelling."""
+    assert (likeness(one, other) >= 0.8) is alike

@@ -1,0 +1,276 @@
+"""``aionode param``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from aionode import Node
+from aionode.cli.param import (
+    delete,
+    describe,
+    dump,
+    get,
+    list_parameters,
+    load,
+    set_parameter,
+)
+from aionode.errors import CommandError, ParameterFileError
+from aionode.interfaces.rcl_interfaces.msg import (
+    FloatingPointRange,
+    ParameterDescriptor,
+)
+
+
+@pytest.fixture
+async def owner(node_factory: Callable[..., Node]) -> Node:
+    """A node with the parameters of the recorded session."""
+    made = node_factory("param_node")
+    made.declare_parameter("name", "bob")
+    made.declare_parameter("speed", 1.5)
+    return made
+
+
+async def test_list_prints_names_indented(tool: Node, owner: Node, screen: Any) -> None:
+    """Of one node, without its name."""
+    await list_parameters(tool, "/param_node", output=screen.output)
+
+    assert screen.text == "  name\n  speed\n  start_type_description_service\n  use_sim_time\n"
+
+
+async def test_list_of_all_prints_the_nodes(
+    tool: Node, owner: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """Nodes without parameters are passed over, not waited for."""
+    node_factory("add_server")
+    node_factory("silent", start_parameter_services=False)
+
+    await list_parameters(tool, output=screen.output)
+
+    assert screen.text == (
+        "/add_server:\n"
+        "  start_type_description_service\n"
+        "  use_sim_time\n"
+        "/param_node:\n"
+        "  name\n"
+        "  speed\n"
+        "  start_type_description_service\n"
+        "  use_sim_time\n"
+    )
+
+
+async def test_list_can_be_narrowed(tool: Node, owner: Node, screen: Any) -> None:
+    """By a regular expression, and with types."""
+    await list_parameters(tool, "param_node", pattern="s.*ed$", types=True, output=screen.output)
+
+    assert screen.text == "  speed (type: double)\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "shown"),
+    [
+        ("text", "bob", "String value is: bob"),
+        ("switch", False, "Boolean value is: False"),
+        ("number", 3, "Integer value is: 3"),
+        ("speed2", 1.5, "Double value is: 1.5"),
+        ("data", b"\x01\x02", "Byte values are: [1, 2]"),
+        ("switches", [True, False], "Boolean values are: [True, False]"),
+        ("numbers", [1, 2], "Integer values are: [1, 2]"),
+        ("speeds", [0.5], "Double values are: [0.5]"),
+        ("texts", ["a", "b"], "String values are: ['a', 'b']"),
+    ],
+)
+async def test_get_prints_type_and_value(
+    name: str, value: Any, shown: str, tool: Node, owner: Node, screen: Any
+) -> None:
+    """In ros2's words."""
+    owner.declare_parameter(name, value)
+
+    await get(tool, "/param_node", name, output=screen.output)
+
+    assert screen.text == f"{shown}\n"
+
+
+async def test_get_can_print_the_value_alone(tool: Node, owner: Node, screen: Any) -> None:
+    """For shell variables; programs have --json."""
+    await get(tool, "/param_node", "name", hide_type=True, output=screen.output)
+    await get(tool, "/param_node", "speed", output=screen.json_output)
+
+    assert screen.text == (
+        'bob\n{"node":"/param_node","name":"speed","type":"double","value":1.5}\n'
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "value"),
+    [("speed", "2.5", 2.5), ("name", "alice", "alice"), ("name", "'5'", "5")],
+)
+async def test_set_says_that_it_is_done(
+    name: str, text: str, value: Any, tool: Node, owner: Node, screen: Any
+) -> None:
+    """The value is YAML, so a string that looks like a number needs quotes."""
+    status = await set_parameter(tool, "/param_node", name, text, output=screen.output)
+
+    assert status == 0
+    assert screen.text == "Set parameter successful\n"
+    assert owner.get_parameter(name).value == value
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        ("name", "Wrong parameter type, expected 'Type.STRING' got 'Type.INTEGER'"),
+        ("nope", "Invalid access to undeclared parameter(s): ['nope']"),
+    ],
+)
+async def test_a_failed_set_is_an_error(
+    name: str, reason: str, tool: Node, owner: Node, screen: Any
+) -> None:
+    """ros2 returns 0 here, so that scripts go on with the old value."""
+    status = await set_parameter(tool, "/param_node", name, "5", output=screen.output)
+
+    assert status == 1
+    assert screen.text == ""
+    assert screen.errors == f"Setting parameter failed: {reason}\n"
+
+
+async def test_malformed_yaml_is_no_string(tool: Node, owner: Node, screen: Any) -> None:
+    """A forgotten bracket would else be stored as it stands."""
+    with pytest.raises(ParameterFileError, match=r"value '\[1, 2'.*not YAML"):
+        await set_parameter(tool, "/param_node", "name", "[1, 2", output=screen.output)
+
+
+async def test_an_undeclared_parameter_is_named(tool: Node, owner: Node, screen: Any) -> None:
+    """ros2 says only that it is not set."""
+    with pytest.raises(
+        CommandError, match=r"Parameter not set: no parameter 'sped'\. Did you mean"
+    ):
+        await get(tool, "/param_node", "sped", output=screen.output)
+    with pytest.raises(CommandError, match="no parameter 'nope'"):
+        await describe(tool, "/param_node", ["name", "nope"], output=screen.output)
+
+
+async def test_an_unknown_node_is_named(tool: Node, owner: Node, screen: Any) -> None:
+    """After the time that it was waited for."""
+    with pytest.raises(CommandError, match=r"Node not found: '/param_nod'\. Did you mean"):
+        await get(tool, "param_nod", "name", timeout=0.001, output=screen.output)
+
+
+async def test_a_node_without_parameters_is_told(
+    tool: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """Not a wait for ever."""
+    node_factory("silent", start_parameter_services=False)
+
+    with pytest.raises(CommandError, match="Node '/silent' offers no parameters"):
+        await get(tool, "/silent", "name", timeout=0.001, output=screen.output)
+
+
+async def test_describe_prints_constraints(tool: Node, owner: Node, screen: Any) -> None:
+    """Type, text, range and step."""
+    owner.declare_parameter(
+        "gain",
+        0.5,
+        ParameterDescriptor(
+            description="How much",
+            read_only=True,
+            floating_point_range=[FloatingPointRange(from_value=0.0, to_value=1.0, step=0.5)],
+        ),
+    )
+
+    await describe(tool, "/param_node", ["name", "gain"], output=screen.output)
+
+    assert screen.text == (
+        "Parameter name: name\n"
+        "  Type: string\n"
+        "  Constraints:\n"
+        "Parameter name: gain\n"
+        "  Type: double\n"
+        "  Description: How much\n"
+        "  Constraints:\n"
+        "    Read only: true\n"
+        "    Min value: 0.0\n"
+        "    Max value: 1.0\n"
+        "    Step: 0.5\n"
+    )
+
+
+async def test_dump_prints_a_parameter_file(tool: Node, owner: Node, screen: Any) -> None:
+    """Sorted, nested names below each other, as ros2 does."""
+    owner.declare_parameter("camera.frame", "front")
+
+    await dump(tool, "/param_node", output=screen.output)
+
+    assert screen.text == (
+        "/param_node:\n"
+        "  ros__parameters:\n"
+        "    camera:\n"
+        "      frame: front\n"
+        "    name: bob\n"
+        "    speed: 1.5\n"
+        "    start_type_description_service: true\n"
+        "    use_sim_time: false\n"
+        "\n"
+    )
+
+
+async def test_what_dump_prints_load_reads(
+    tool: Node, owner: Node, tmp_path: Path, screen: Any
+) -> None:
+    """A parameter file goes round, wildcards included unless they are refused."""
+    file = tmp_path / "values.yaml"
+    file.write_text(
+        "/**:\n  ros__parameters:\n    name: alice\n"
+        "/param_node:\n  ros__parameters:\n    speed: 3.0\n"
+    )
+
+    status = await load(tool, "/param_node", file, output=screen.output)
+
+    assert status == 0
+    assert screen.text == "Set parameter name successful\nSet parameter speed successful\n"
+    assert owner.get_parameter("name").value == "alice"
+
+    owner.set_parameters([type(owner.get_parameter("name"))("name", value="bob")])
+    await load(tool, "/param_node", file, wildcards=False, output=screen.output)
+    assert owner.get_parameter("name").value == "bob"
+
+
+async def test_load_says_what_failed(tool: Node, owner: Node, tmp_path: Path, screen: Any) -> None:
+    """One line for each parameter, and one status for all."""
+    file = tmp_path / "values.yaml"
+    file.write_text("/param_node:\n  ros__parameters:\n    name: 5\n    speed: 3.0\n")
+
+    status = await load(tool, "/param_node", file, output=screen.output)
+
+    assert status == 1
+    assert screen.text == "Set parameter speed successful\n"
+    assert screen.errors.startswith("Set parameter name failed: Wrong parameter type")
+
+
+async def test_load_of_a_file_for_others_is_an_error(
+    tool: Node, owner: Node, tmp_path: Path, screen: Any
+) -> None:
+    """Setting nothing is not what was meant."""
+    file = tmp_path / "values.yaml"
+    file.write_text("/other:\n  ros__parameters:\n    name: a\n")
+
+    with pytest.raises(ParameterFileError, match="nothing for /param_node; it has /other"):
+        await load(tool, "/param_node", file, output=screen.output)
+    with pytest.raises(ParameterFileError, match="cannot be read"):
+        await load(tool, "/param_node", tmp_path / "nope.yaml", output=screen.output)
+
+
+async def test_delete_undeclares_a_dynamic_parameter(tool: Node, owner: Node, screen: Any) -> None:
+    """A static one stays, and the status says so."""
+    owner.declare_parameter("extra", 1, ParameterDescriptor(dynamic_typing=True))
+
+    gone = await delete(tool, "/param_node", "extra", output=screen.output)
+    kept = await delete(tool, "/param_node", "name", output=screen.output)
+
+    assert (gone, kept) == (0, 1)
+    assert screen.text == "Deleted parameter successfully\n"
+    assert screen.errors.startswith("Deleting parameter failed: ")
+    assert not owner.has_parameter("extra")

@@ -1,0 +1,155 @@
+"""``aionode service``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from aionode import Node
+from aionode.cli.service import call, find, info, list_services, type_of_service
+from aionode.errors import CommandError, ServiceError
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.testing import ManualClock, settle
+
+ADD = "example_interfaces/srv/AddTwoInts"
+
+
+def add(request: AddTwoInts.Request, response: AddTwoInts.Response) -> AddTwoInts.Response:
+    """Answer with the sum."""
+    response.sum = request.a + request.b
+    return response
+
+
+@pytest.fixture
+async def server(node_factory: Callable[..., Node]) -> Node:
+    """A node that adds, and has no parameters, so that the list is short."""
+    made = node_factory("add_server", start_parameter_services=False)
+    made.create_service(AddTwoInts, "/add_two_ints", add)
+    return made
+
+
+async def test_call_prints_request_and_response(tool: Node, server: Node, screen: Any) -> None:
+    """The tutorial's output, empty lines included."""
+    await call(tool, "/add_two_ints", ADD, values="{a: 42, b: 58}", output=screen.output)
+
+    assert screen.text == (
+        "requester: making request: example_interfaces.srv.AddTwoInts_Request(a=42, b=58)\n"
+        "\n"
+        "response:\n"
+        "example_interfaces.srv.AddTwoInts_Response(sum=100)\n"
+        "\n"
+    )
+
+
+async def test_json_call_prints_the_response_only(tool: Node, server: Node, screen: Any) -> None:
+    """``aionode service call … --json | jq .sum``."""
+    await call(tool, "/add_two_ints", ADD, values="{a: 1, b: 2}", output=screen.json_output)
+
+    assert screen.records == [{"sum": 3}]
+
+
+async def test_call_repeats_at_a_rate(
+    running: Any, tool: Node, server: Node, manual_clock: ManualClock, screen: Any
+) -> None:
+    """Until Ctrl-C."""
+    async with running(call(tool, "/add_two_ints", ADD, rate=10.0, output=screen.output)):
+        await manual_clock.advance(0.35)
+
+    assert screen.text.count("response:") == 4
+
+
+async def test_call_waits_for_the_service_and_says_so(
+    running: Any, tool: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """A server is often started second."""
+    async with running(call(tool, "/add_two_ints", ADD, output=screen.output)) as task:
+        assert screen.text == "waiting for service to become available...\n"
+        node_factory("late").create_service(AddTwoInts, "/add_two_ints", add)
+        await settle()
+        assert task.done()
+
+    assert "response:" in screen.text
+
+
+async def test_waiting_says_what_may_be_meant(tool: Node, server: Node, screen: Any) -> None:
+    """ros2 waits for ever without a word on what is missing."""
+    with pytest.raises(CommandError, match=r"Nobody served '/add_two_int' in 0\.001 s"):
+        await call(tool, "/add_two_int", ADD, timeout=0.001, output=screen.output)
+
+    assert screen.errors == "Nobody serves '/add_two_int'. Did you mean '/add_two_ints'?\n"
+
+
+@pytest.mark.parametrize(
+    ("service_type", "values", "says"),
+    [
+        ("example_interfaces/srv/AddTwo", "{}", "did you mean example_interfaces/srv/AddTwoInts?"),
+        ("std_msgs/msg/String", "{}", "not a service"),
+        ("std_srvs/srv/Empty", "{}", f"'/add_two_ints' has type {ADD}, not std_srvs/srv/Empty"),
+        (ADD, "{c: 42}", "Failed to populate field: example_interfaces/srv/AddTwoInts_Request.c"),
+        (ADD, "{a: 1.5}", "AddTwoInts_Request.a: 1.5"),
+        (ADD, "{a: [", "no YAML"),
+    ],
+)
+async def test_what_does_not_fit_is_refused_before_the_call(
+    service_type: str, values: str, says: str, tool: Node, server: Node, screen: Any
+) -> None:
+    """What was given and what fits."""
+    with pytest.raises(CommandError) as raised:
+        await call(tool, "/add_two_ints", service_type, values=values, output=screen.output)
+
+    assert says in str(raised.value)
+    assert screen.text == ""
+
+
+async def test_a_failing_handler_is_an_error_with_its_text(
+    tool: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """The command ends at once, with what the server says."""
+
+    def fail(request: Any, response: Any) -> Any:
+        raise ValueError("no such number")
+
+    server = node_factory("server")
+    server.create_service(AddTwoInts, "/add", fail, on_error=lambda error, context: None)
+
+    with pytest.raises(ServiceError, match="/add: ValueError: no such number"):
+        await call(tool, "/add", ADD, output=screen.output)
+
+
+async def test_list_prints_names_and_types(tool: Node, server: Node, screen: Any) -> None:
+    """Every node has the service of its types besides."""
+    await list_services(tool, types=True, output=screen.output)
+
+    assert screen.text == (
+        "/add_server/get_type_description [type_description_interfaces/srv/GetTypeDescription]\n"
+        "/add_two_ints [example_interfaces/srv/AddTwoInts]\n"
+    )
+
+
+async def test_info_prints_type_and_counts(tool: Node, server: Node, screen: Any) -> None:
+    """The command's own client does not count."""
+    tool.create_client(AddTwoInts, "/add_two_ints")
+
+    await info(tool, "/add_two_ints", output=screen.output)
+
+    assert screen.text == f"Type: {ADD}\nClients count: 0\nServices count: 1\n"
+
+
+async def test_type_and_find_are_inverse(tool: Node, server: Node, screen: Any) -> None:
+    """From the name to the type, and back."""
+    await type_of_service(tool, "/add_two_ints", output=screen.output)
+    await find(tool, ADD, output=screen.output)
+    await find(tool, ADD, count=True, output=screen.output)
+
+    assert screen.text == f"{ADD}\n/add_two_ints\n1\n"
+
+
+@pytest.mark.parametrize("verb", [info, type_of_service])
+async def test_an_unknown_service_is_named(
+    verb: Callable[..., Any], tool: Node, server: Node, screen: Any
+) -> None:
+    """With one like it."""
+    with pytest.raises(CommandError, match="Unknown service '/add'"):
+        await verb(tool, "/add", output=screen.output)
