@@ -1,0 +1,216 @@
+"""The main program: help, wrong arguments, errors in one line, output that nobody reads."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+
+import click
+import pytest
+
+from aionode.cli import command
+from aionode.cli.command import NOUNS, main, one_line, root
+from aionode.errors import AionodeError, CommandError, InvalidTopicNameException
+
+VERBS = {
+    "action": {"find", "info", "list", "send_goal", "type"},
+    "interface": {"generate", "list", "package", "packages", "proto", "show"},
+    "node": {"info", "list"},
+    "param": {"delete", "describe", "dump", "get", "list", "load", "set"},
+    "service": {"call", "find", "info", "list", "type"},
+    "topic": {"bw", "delay", "echo", "find", "hz", "info", "list", "pub", "type"},
+}
+
+
+def commands() -> list[tuple[str, click.Command]]:
+    """Return every command with its words."""
+    found: list[tuple[str, click.Command]] = []
+    context = click.Context(root)
+    for noun in NOUNS:
+        made = root.get_command(context, noun)
+        assert made is not None
+        if isinstance(made, click.Group):
+            found += [(f"{noun} {verb}", one) for verb, one in made.commands.items()]
+        else:
+            found.append((noun, made))
+    return found
+
+
+def test_every_verb_of_ros2_is_there() -> None:
+    """Fingers that know ros2 find what they type."""
+    words = {words for words, _ in commands()}
+
+    for noun, verbs in VERBS.items():
+        assert {f"{noun} {verb}" for verb in verbs} <= words
+
+
+@pytest.mark.parametrize("words", [words for words, _ in commands()])
+def test_every_command_has_help(words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """Both -h and --help, and a sentence about what it does."""
+    assert main([*words.split(), "-h"]) == 0
+
+    help_text = capsys.readouterr().out
+    assert help_text.startswith(f"Usage: aionode {words} ")
+    assert len(help_text.splitlines()[2].strip()) > 10
+
+
+def test_every_command_that_prints_data_has_json() -> None:
+    """Only running nodes and the shells' scripts have no records."""
+    without = {
+        words
+        for words, one in commands()
+        if "--json" not in [name for parameter in one.params for name in parameter.opts]
+    }
+
+    assert without == {"completion", "run"}
+
+
+def test_help_imports_neither_numpy_nor_zenoh() -> None:
+    """It is what a person waits for most often."""
+    program = (
+        "import sys; from aionode.cli import main; main(['--help']); "
+        "print([name for name in ('numpy', 'zenoh', 'rich', 'uvloop') if name in sys.modules])"
+    )
+
+    printed = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    ).stdout
+
+    assert printed.splitlines()[-1] == "[]"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["topic", "list", "--nope"], "aionode topic list: No such option '--nope'"),
+        (["topic", "lst"], "aionode topic: No such command 'lst'"),
+        (["topc"], "aionode: No such command 'topc'"),
+        (["topic", "echo"], "aionode topic echo: Missing argument 'TOPIC_NAME'"),
+        (["topic", "hz"], "aionode topic hz: Missing argument"),
+        (["topic", "pub", "/a", "b", "-r", "0"], "aionode topic pub: Invalid value for '-r'"),
+        (["topic", "pub", "/a", "b", "-1", "-t", "2"], "Give --once or --times, not both."),
+        (["topic", "pub", "/a", "b", "--max-wait-time-secs", "2"], "--wait-matching-subs"),
+        (["topic", "pub", "/a", "b", "{}", "--stdin"], "Give the values or --stdin, not both."),
+        (["topic", "echo", "/a", "--qos-reliability", "much"], "'best_effort'"),
+        (["interface", "show", "a/b", "--interfaces", "/no/folder"], "does not exist"),
+        (["completion", "cmd"], "is not one of 'bash', 'zsh', 'fish'"),
+    ],
+)
+def test_wrong_arguments_are_one_line_and_status_two(
+    arguments: list[str], says: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With the command whose help tells what fits."""
+    assert main(arguments) == 2
+
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert len(printed.err.splitlines()) == 1
+    assert says in printed.err
+    assert "--help'." in printed.err
+
+
+@pytest.fixture
+def failing(monkeypatch: pytest.MonkeyPatch) -> Callable[[BaseException], None]:
+    """Let ``interface packages`` raise an error."""
+
+    def fail_with(error: BaseException) -> None:
+        def packages(**_: object) -> None:
+            raise error
+
+        monkeypatch.setattr("aionode.cli.interface.packages", packages)
+
+    return fail_with
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "line"),
+    [
+        (CommandError("Unknown topic '/a'"), 1, "Unknown topic '/a'"),
+        (CommandError("no", status=3), 3, "no"),
+        (AionodeError("two\n  lines"), 1, "two; lines"),
+        (
+            InvalidTopicNameException("a b", "must not contain a blank", 1),
+            1,
+            "Invalid topic name 'a b': must not contain a blank, at character 2 (' ')",
+        ),
+    ],
+)
+def test_an_error_is_one_line_on_stderr(
+    error: AionodeError,
+    status: int,
+    line: str,
+    failing: Callable[[BaseException], None],
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """No traceback, nothing on stdout."""
+    failing(error)
+
+    assert main(["interface", "packages"]) == status
+    assert capsys.readouterr() == ("", f"{line}\n")
+
+
+def test_an_index_behind_the_end_is_left_out() -> None:
+    """An empty name has no character at fault."""
+    text = one_line(InvalidTopicNameException("", "must not be empty", 0))
+
+    assert text == "Invalid topic name '': must not be empty"
+
+
+def test_ctrl_c_before_the_loop_runs_is_an_interruption(
+    failing: Callable[[BaseException], None], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Status 130, and no traceback."""
+    failing(KeyboardInterrupt())
+
+    assert main(["interface", "packages"]) == 130
+    assert capsys.readouterr().err.strip() == ""
+
+
+def test_a_bug_is_not_hidden(failing: Callable[[BaseException], None]) -> None:
+    """A traceback is what one needs then."""
+    failing(ZeroDivisionError())
+
+    with pytest.raises(ZeroDivisionError):
+        main(["interface", "packages"])
+
+
+def test_a_reader_that_goes_away_ends_a_command_quietly(
+    failing: Callable[[BaseException], None],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """``| head`` is no error."""
+    silenced: list[bool] = []
+    monkeypatch.setattr(command, "silence_stdout", lambda: silenced.append(True))
+    failing(BrokenPipeError())
+
+    assert main(["interface", "packages"]) == 0
+    assert capsys.readouterr().err == ""
+    assert silenced == [True]
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_completion_prints_the_script_of_a_shell(
+    shell: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With how to make it permanent."""
+    assert main(["completion", shell]) == 0
+
+    script = capsys.readouterr().out
+    assert f"_AIONODE_COMPLETE={shell}_complete" in script
+    assert script.startswith("# Put the following into ~/")
+
+
+def test_the_shell_is_offered_types(monkeypatch: pytest.MonkeyPatch) -> None:
+    """First packages, then what is in them: all at once would be hundreds."""
+    context = click.Context(root)
+    made = root.get_command(context, "interface")
+    assert isinstance(made, click.Group)
+    (argument,) = (p for p in made.commands["show"].params if p.name == "type_name")
+
+    packages = [item.value for item in argument.shell_complete(context, "std_s")]
+    types = [item.value for item in argument.shell_complete(context, "std_srvs/srv/S")]
+
+    assert packages == ["std_srvs/"]
+    assert types == ["std_srvs/srv/SetBool"]

@@ -1,0 +1,117 @@
+"""``aionode interface``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from aionode.cli.command import main
+from aionode.cli.interface import list_interfaces, package, packages, proto, show
+from aionode.errors import CommandError, InterfaceNotFoundError
+
+
+def test_show_prints_a_service(screen: Any) -> None:
+    """Recorded with ros2."""
+    show("example_interfaces/srv/AddTwoInts", output=screen.output)
+
+    assert screen.text == "int64 a\nint64 b\n---\nint64 sum\n"
+
+
+def test_show_indents_what_is_inside(screen: Any) -> None:
+    """With tabs, as ros2."""
+    show("geometry_msgs/msg/Twist", output=screen.output)
+
+    vector = "\tfloat64 x\n\tfloat64 y\n\tfloat64 z\n"
+    assert screen.text == f"Vector3 linear\n{vector}Vector3 angular\n{vector}"
+
+
+def test_proto_prints_what_can_be_filled_in(screen: Any) -> None:
+    """Recorded with ros2, quotes included."""
+    proto("geometry_msgs/msg/Twist", output=screen.output)
+
+    vector = "  x: 0.0\n  y: 0.0\n  z: 0.0\n"
+    assert screen.text == f'"linear:\n{vector}angular:\n{vector}"\n'
+
+
+def test_proto_of_a_service_is_its_request(screen: Any) -> None:
+    """That is what one types for ``service call``."""
+    proto("example_interfaces/srv/AddTwoInts", quotes=False, output=screen.output)
+
+    assert screen.text == "a: 0\nb: 0\n\n"
+
+
+def test_package_lists_the_types_of_one(screen: Any) -> None:
+    """By name; kinds can be chosen."""
+    package("std_srvs", output=screen.output)
+    package("std_srvs", kinds=("msg",), output=screen.output)
+
+    assert screen.text == "std_srvs/srv/Empty\nstd_srvs/srv/SetBool\nstd_srvs/srv/Trigger\n"
+
+
+def test_an_unknown_package_is_named_with_one_like_it(screen: Any) -> None:
+    """What was given and what fits."""
+    with pytest.raises(
+        CommandError, match=r"Unknown package 'std_msg'\. Did you mean 'std_msgs'\?"
+    ):
+        package("std_msg", output=screen.output)
+
+
+def test_packages_can_be_chosen_by_kind(screen: Any) -> None:
+    """Few packages have actions."""
+    packages(kinds=("action",), output=screen.output)
+
+    assert "example_interfaces\n" in screen.text
+    assert "std_msgs\n" not in screen.text
+
+
+def test_list_has_a_heading_for_each_kind(screen: Any) -> None:
+    """As ros2's; programs get one record for each type."""
+    list_interfaces(output=screen.output)
+
+    lines = screen.text.splitlines()
+    assert [line for line in lines if not line.startswith(" ")] == [
+        "Messages:",
+        "Services:",
+        "Actions:",
+    ]
+    assert "    std_msgs/msg/String" in lines
+
+
+def test_an_unknown_type_is_named_with_one_like_it(screen: Any) -> None:
+    """The error of the lookup says it."""
+    with pytest.raises(InterfaceNotFoundError, match="did you mean std_msgs/msg/String"):
+        show("std_msgs/msg/Strng", output=screen.output)
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Path:
+    """A folder with a package of the user's own."""
+    folder = tmp_path / "tutorial_cli_msgs" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "Words.msg").write_text("string text\nfloat32[] scores\n")
+    return tmp_path
+
+
+def test_own_definitions_are_loaded_on_request(
+    workspace: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Without a build step."""
+    status = main(
+        ["interface", "show", "tutorial_cli_msgs/msg/Words", "--interfaces", str(workspace)]
+    )
+
+    assert (status, capsys.readouterr().out) == (0, "string text\nfloat32[] scores\n")
+
+
+def test_generate_writes_modules(
+    workspace: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """And says which."""
+    status = main(["interface", "generate", str(workspace), str(tmp_path / "out")])
+
+    files = [Path(line) for line in capsys.readouterr().out.splitlines()]
+    assert status == 0
+    assert (tmp_path / "out/tutorial_cli_msgs/msg.py").resolve() in files
+    assert all(file.is_file() for file in files)

@@ -1,0 +1,111 @@
+"""``aionode run``: finding what to run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from aionode import Node
+from aionode.cli import run as run_module
+from aionode.cli.command import main
+from aionode.cli.run import node_maker
+from aionode.errors import CommandError
+
+SOURCE = """
+from aionode import Node
+
+class Talker(Node):
+    def __init__(self):
+        super().__init__("talker")
+
+class Listener(Node):
+    def __init__(self):
+        super().__init__("listener")
+
+def make():
+    return Talker()
+
+NUMBER = 5
+"""
+
+
+@pytest.fixture
+def program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A file with two node classes."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    file = tmp_path / "cli_run_nodes.py"
+    file.write_text(SOURCE)
+    return file
+
+
+@pytest.mark.parametrize("source", ["cli_run_nodes", "cli_run_nodes.py"])
+@pytest.mark.parametrize("name", ["Talker", "make"])
+def test_a_class_or_function_is_found_in_a_module_or_file(
+    source: str, name: str, program: Path
+) -> None:
+    """Installed or lying around."""
+    found = node_maker(f"{source}:{name}")
+
+    assert callable(found)
+    assert found.__name__ == name
+
+
+@pytest.mark.parametrize(
+    ("spec", "says"),
+    [
+        ("cli_run_nodes:Nope", "nothing of that name in cli_run_nodes; its node classes: Talker"),
+        ("cli_run_nodes:NUMBER", "no node class, and no function"),
+        ("cli_run_nodes", "say which class: cli_run_nodes:NAME; there are Talker, Listener"),
+        ("no_such_module:Talker", "no module no_such_module here"),
+        ("nope.py:Talker", "no file nope.py here"),
+        (":Talker", "no module; MODULE:CLASS fits"),
+    ],
+)
+def test_what_cannot_be_run_is_explained(spec: str, says: str, program: Path) -> None:
+    """What was given and what fits."""
+    with pytest.raises(CommandError) as raised:
+        node_maker(spec)
+
+    assert says in str(raised.value)
+
+
+def test_a_module_that_needs_a_missing_one_names_that(tmp_path: Path) -> None:
+    """The missing one is not the one that was asked for."""
+    file = tmp_path / "cli_run_broken.py"
+    file.write_text("import no_such_thing\n")
+
+    with pytest.raises((CommandError, ModuleNotFoundError), match="no_such_thing"):
+        node_maker(f"{file}:Talker")
+
+
+def test_classes_and_arguments_are_told_apart(
+    program: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What follows --ros-args goes to the nodes, whatever it looks like."""
+    ran: list[Any] = []
+
+    def run(*nodes: Any, args: list[str]) -> None:
+        ran.append(([node.__name__ for node in nodes], args))
+
+    monkeypatch.setattr("aionode.runner.run", run)
+
+    status = main(
+        ["run", "cli_run_nodes:Talker", "cli_run_nodes:Listener", "--ros-args", "-p", "a:=1"]
+    )
+
+    assert status == 0
+    assert ran == [(["Talker", "Listener"], ["--ros-args", "-p", "a:=1"])]
+    assert issubclass(run_module.Node, Node)
+
+
+def test_an_option_before_the_arguments_is_an_error(
+    program: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Otherwise it would be taken for a module."""
+    status = main(["run", "cli_run_nodes:Talker", "-p", "a:=1"])
+
+    assert status == 2
+    assert "No such option '-p': arguments begin with --ros-args." in capsys.readouterr().err
