@@ -22,8 +22,14 @@ COUNT = struct.Struct("<I")
 LARGEST_KEPT = 4096
 """Bytes of strings that are kept for the next message; longer ones do not repeat."""
 
-ENDS = (b"\0", b"\0\0\0\0", b"\0\0\0", b"\0\0")
-"""The NUL of a string and the padding after it, by the string's size modulo four, NUL included."""
+
+def gap_after(size: int) -> int:
+    """Return the padding between a string of `size` bytes and the next one's length."""
+    return -size % COUNT_SIZE
+
+
+PACKS = [struct.Struct(f"<I{size}s{gap_after(size)}x").pack for size in range(64)]
+"""What packs a short string with its length, NUL and padding, by its size, NUL included."""
 
 
 class TextsWriter:
@@ -45,12 +51,16 @@ class TextsWriter:
         if texts == known:
             return block
         parts: list[bytes] = []
+        size = COUNT_SIZE
         for data in map(str.encode, texts):
             size = len(data) + 1
-            parts += (COUNT.pack(size), data, ENDS[size % COUNT_SIZE])
-        if self._exact and parts:
-            parts[-1] = ENDS[0]
+            if size < len(PACKS):
+                parts.append(PACKS[size](size, data))
+            else:
+                parts.append(COUNT.pack(size) + data + bytes(1 + gap_after(size)))
         block = b"".join(parts)
+        if self._exact:
+            block = block[: len(block) - gap_after(size)]
         if len(block) <= LARGEST_KEPT:
             self._last = texts.copy(), block
         return block
