@@ -27,7 +27,7 @@ from aionode.logging import LoggingSeverity, get_logger_level, set_logger_level
 from aionode.message import type_name
 from aionode.parameter import Parameter, parameter_services
 from aionode.qos import QoSProfile, ReliabilityPolicy
-from aionode.wire.typedescription import description_message, used_by
+from aionode.wire.typedescription import description_message, parts
 from aionode.wire.typehash import type_hash
 
 if TYPE_CHECKING:
@@ -175,7 +175,7 @@ def serve_type_descriptions(node: Node) -> None:
         response.successful = True
         response.type_description = description_message(kind)
         if request.include_type_sources:
-            response.type_sources = [source_of(part) for part in (kind, *used_by(kind))]
+            response.type_sources = [source_of(part) for part in (kind, *parts(kind))]
         return response
 
     node.create_service(GetTypeDescription, "~/get_type_description", describe)
@@ -189,7 +189,7 @@ def types_of(node: Node) -> Iterator[Any]:
     kinds += [client.srv_type for client in node.clients]
     for kind in dict.fromkeys(kinds):
         yield kind
-        yield from used_by(kind)
+        yield from parts(kind)
 
 
 def source_of(kind: Any) -> TypeSource:

@@ -18,7 +18,15 @@ if TYPE_CHECKING:
         TypeDescription,
     )
 
-__all__ = ["Description", "Individual", "Member", "MemberType", "describe", "description_message"]
+__all__ = [
+    "Description",
+    "Individual",
+    "Member",
+    "MemberType",
+    "describe",
+    "description_message",
+    "parts",
+]
 
 TYPE_IDS = {
     "message": 1,
