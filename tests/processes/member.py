@@ -26,7 +26,7 @@ class Member(Node):
     """One of a group."""
 
     def __init__(self, name: str) -> None:
-        super().__init__(name)
+        super().__init__(name, enable_rosout=False, start_parameter_services=False)
         self.heard: set[str] = set()
         self.publisher = self.create_publisher(String, "/hello", 10)
         self.create_subscription(String, "/hello", self.hear, 100)

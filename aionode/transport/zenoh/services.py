@@ -73,8 +73,7 @@ class ZenohServer(Entity):
         super().__init__(link, endpoint_token(link.domain_id, endpoint))
         self.endpoint = endpoint
         self.key = data_key(link.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
-        self.encode = cdr.encoder(srv_type.Response)
-        self._decode = cdr.decoder(srv_type.Request)
+        self.srv_type = srv_type
         self._serve = serve
         self._queryable: zenoh.Queryable[None] | None = None
         self._lane = link.lane(self._take, WAITING_REQUESTS)
@@ -119,7 +118,9 @@ class ZenohServer(Entity):
             origin = Origin(NOBODY, 0, 0, True)
         payload = query.payload
         try:
-            message = self._decode(b"" if payload is None else payload.to_bytes())
+            message = cdr.decode(
+                self.srv_type.Request, b"" if payload is None else payload.to_bytes()
+            )
         except DecodeError as error:
             self.link.note_garbage(self.key, str(error))
             problem = error_payload("DecodeError", str(error))
@@ -160,7 +161,7 @@ class ZenohRequest(Request):
 
     def reply(self, response: Any) -> None:
         """Send the response, with the client's own number."""
-        payload = self._server.encode(response)
+        payload = cdr.encoder(self._server.srv_type.Response)(response)
         if not self._finish():
             return
         query = self._query
@@ -197,8 +198,7 @@ class ZenohRequester(Entity, Requester):
         super().__init__(link, endpoint_token(link.domain_id, endpoint))
         self.endpoint = endpoint
         self.key = data_key(link.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
-        self._encode = cdr.encoder(srv_type.Request)
-        self.decode = cdr.decoder(srv_type.Response)
+        self.srv_type = srv_type
         self.unanswered: set[ZenohCall] = set()
         link.add(self)
 
@@ -232,7 +232,7 @@ class ZenohRequester(Entity, Requester):
 
     def send(self, request: Any, origin: Origin, reply_to: ReplyTo) -> Call:
         """Send `request` to every server of other contexts."""
-        payload = self._encode(request)
+        payload = cdr.encoder(self.srv_type.Request)(request)
         extra = attachment.pack(origin.sequence, origin.source_ns, self.gid)
         call = ZenohCall(self, reply_to, origin.sequence)
         session = self.link.session
@@ -303,7 +303,7 @@ class ZenohCall:
             )
             return
         try:
-            response = self._requester.decode(sample.payload.to_bytes())
+            response = cdr.decode(self._requester.srv_type.Response, sample.payload.to_bytes())
         except DecodeError as decode_error:
             # Another server may answer in a better form; else the caller gets to know this.
             self._requester.link.note_garbage(self._requester.key, str(decode_error))

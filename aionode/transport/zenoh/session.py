@@ -44,7 +44,7 @@ FIRST_LINK_S = 1.0
 NEXT_LINK_S = 0.3
 """How long it waits for each further one."""
 
-QUIET_S = 0.03
+QUIET_S = 0.015
 """For so long nobody new has come when everybody is there: the first ones introduce the others."""
 
 CLOSE_S = 0.8

@@ -89,7 +89,9 @@ class ZenohWriter(Entity, Writer):
         self.endpoint = endpoint
         qos = endpoint.qos
         self._key = data_key(link.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
-        self._encode = cdr.encoder(msg_type)
+        self._msg_type = msg_type
+        # Codecs are made when they are used first: the many services of a node mostly never are.
+        self._encode: Callable[[Any], bytes] | None = None
         self._publisher: zenoh.Publisher | ext.AdvancedPublisher | None = None
         self._matching: zenoh.MatchingListener[None] | None = None
         self._matching_changed = link.lane(self._update_with, limit=1)
@@ -166,7 +168,10 @@ class ZenohWriter(Entity, Writer):
 
     def write(self, msg: Any, origin: Origin) -> None:
         """Send `msg`."""
-        payload = self._encode(msg)
+        encode = self._encode
+        if encode is None:
+            encode = self._encode = cdr.encoder(self._msg_type)
+        payload = encode(msg)
         extra = attachment.pack(origin.sequence, origin.source_ns, self.gid)
         publisher = self._publisher
         if publisher is None:
@@ -232,7 +237,9 @@ class ZenohReader(Entity):
         self._transient = transient
         self._deliver = reader.deliver
         self._reject = reader.reject
-        self._decode: Callable[[bytes], Any] | None = None if reader.raw else cdr.decoder(msg_type)
+        self._raw = reader.raw
+        self._msg_type = msg_type
+        self._decode: Callable[[bytes], Any] | None = None
         depth = depth_of(endpoint.qos)
         # A few hundred images waiting for a busy loop would take all memory; what is small may
         # wait for its turn in the subscription's own queue, where it is counted if dropped.
@@ -290,11 +297,14 @@ class ZenohReader(Entity):
         elif origin.gid in self.link.own_gids:
             return  # a late subscription asks the publishers of its own context for history too
         payload = sample.payload.to_bytes()
-        if self._decode is None:
+        if self._raw:
             self._deliver(payload, origin)
             return
+        decode = self._decode
+        if decode is None:
+            decode = self._decode = cdr.decoder(self._msg_type)
         try:
-            msg = self._decode(payload)
+            msg = decode(payload)
         except DecodeError as error:
             self.link.note_garbage(self._key, str(error))
             self._reject(error)

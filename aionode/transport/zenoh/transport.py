@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.transport.base import Transport
 from aionode.transport.zenoh.link import Link
+from aionode.transport.zenoh.neighbours import Neighbours
 from aionode.transport.zenoh.services import ZenohRequester, ZenohServer
 from aionode.transport.zenoh.session import Links, close_session, open_session
 from aionode.transport.zenoh.tokens import NodeEntity, Watcher
@@ -36,12 +37,16 @@ class ZenohTransport(Transport):
     Args:
         participant: Id of the context and of its Zenoh session: hexadecimal, no leading zeros.
         network: Domain, discovery and peers.
+
+    Attributes:
+        neighbours: Who is there, for links beside this transport.
     """
 
     def __init__(self, participant: str, network: Network) -> None:
         self.network = network
         self._link = Link(participant, network.domain_id)
         self._watcher = Watcher(self._link)
+        self.neighbours = Neighbours(self._link)
 
     def __repr__(self) -> str:
         state = "closed" if self._link.session is None else "open"
@@ -64,6 +69,7 @@ class ZenohTransport(Transport):
             # Before waiting for others, so that who comes meanwhile sees everything.
             self._link.connect(session, graph)
             self._watcher.start(session)
+            self.neighbours.start(session)
             await links.settle(neighbours)
             answered: asyncio.Future[None] = asyncio.get_running_loop().create_future()
             self._watcher.ask(session, answered)
@@ -79,6 +85,7 @@ class ZenohTransport(Transport):
         with suppress(TimeoutError):
             async with asyncio.timeout(FLUSH_S):
                 await link.flush()
+        self.neighbours.stop()
         self._watcher.stop()
         session = link.disconnect()
         if session is not None:
