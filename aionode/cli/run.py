@@ -66,6 +66,11 @@ def module_in_file(path: Path, spec: str) -> ModuleType:
     """Return the module that a file makes; it may import its neighbours, as a program may."""
     if not path.is_file():
         raise CommandError(f"{spec}: no file {path} here ({Path.cwd()}); {FITS}")
+    loaded = sys.modules.get(path.stem)
+    if loaded is not None and loaded.__spec__ is not None:
+        origin = loaded.__spec__.origin
+        if origin is not None and Path(origin).resolve() == path.resolve():
+            return loaded
     sys.path.insert(0, str(path.parent.resolve()))
     found = importlib.util.spec_from_file_location(path.stem, path)
     assert found is not None  # noqa: S101  # its name ends in .py

@@ -7,8 +7,6 @@ from typing import Any
 
 import pytest
 
-from aionode import Node
-from aionode.cli import run as run_module
 from aionode.cli.command import main
 from aionode.cli.run import node_maker
 from aionode.errors import CommandError
@@ -98,7 +96,6 @@ def test_classes_and_arguments_are_told_apart(
 
     assert status == 0
     assert ran == [(["Talker", "Listener"], ["--ros-args", "-p", "a:=1"])]
-    assert issubclass(run_module.Node, Node)
 
 
 def test_an_option_before_the_arguments_is_an_error(

@@ -1,0 +1,295 @@
+"""The tutorial's second terminal: real processes in real pseudo-terminals."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.peers import isolated_environment
+
+pexpect = pytest.importorskip("pexpect", reason="pseudo-terminals are of Unix")
+
+ROBOT = Path(__file__).with_name("robot.py")
+AIONODE = [sys.executable, "-m", "aionode"]
+STARTED_S = 20.0
+
+pytestmark = pytest.mark.filterwarnings("ignore:This process .* is multi-threaded")
+
+
+class Terminals:
+    """Opens terminals that hear the robot, and nothing else on the machine."""
+
+    def __init__(self) -> None:
+        self.env = {
+            **os.environ,
+            **isolated_environment(),
+            "TERM": "xterm",
+            "COLUMNS": "200",
+            "PYTHONUNBUFFERED": "1",
+        }
+
+    def open(self, *arguments: str) -> Any:
+        """Start a command in a terminal of its own."""
+        return pexpect.spawn(
+            AIONODE[0],
+            [*AIONODE[1:], *arguments],
+            env=self.env,
+            encoding="utf-8",
+            timeout=STARTED_S,
+            dimensions=(50, 200),
+        )
+
+    def shown(self, *arguments: str) -> tuple[str, int]:
+        """Return what a command shows in a terminal until its end, and its status."""
+        child = self.open(*arguments)
+        child.expect(pexpect.EOF)
+        child.close()
+        return child.before.replace("\r\n", "\n"), child.exitstatus
+
+    def run(self, *arguments: str, **env: str) -> subprocess.CompletedProcess[str]:
+        """Return what a command prints into pipes."""
+        return subprocess.run(
+            [*AIONODE, *arguments],
+            env=self.env | env,
+            capture_output=True,
+            text=True,
+            timeout=STARTED_S,
+            check=False,
+        )
+
+
+@pytest.fixture(scope="module")
+def terminals() -> Iterator[Terminals]:
+    """Terminals, and the robot's nodes running in one of them."""
+    opened = Terminals()
+    classes = ("Talker", "AddServer", "ParamNode", "FibServer")
+    robot = opened.open("run", *(f"{ROBOT}:{name}" for name in classes))
+    robot.expect("the robot is ready")
+    yield opened
+    robot.sendintr()
+    robot.expect(pexpect.EOF)
+    robot.close()
+    assert "Traceback" not in robot.before
+    assert robot.exitstatus == 0
+
+
+# What the tutorial types
+
+
+def test_topic_list(terminals: Terminals) -> None:
+    """All topics at the first answer: no daemon has to learn of them."""
+    assert terminals.shown("topic", "list") == (
+        "/chatter\n/parameter_events\n/rosout\n/stamped\n",
+        0,
+    )
+
+
+def test_node_list(terminals: Terminals) -> None:
+    """Composed into one process, and still four nodes."""
+    assert terminals.shown("node", "list") == (
+        "/add_server\n/fib_server\n/param_node\n/talker\n",
+        0,
+    )
+
+
+def test_topic_info(terminals: Terminals) -> None:
+    """Type and counts."""
+    assert terminals.shown("topic", "info", "/chatter") == (
+        "Type: std_msgs/msg/String\nPublisher count: 1\nSubscription count: 0\n",
+        0,
+    )
+
+
+def test_topic_echo_once(terminals: Terminals) -> None:
+    """One message, then the prompt again."""
+    assert terminals.shown("topic", "echo", "--once", "/chatter") == ("data: Hello\n---\n", 0)
+
+
+def test_service_call(terminals: Terminals) -> None:
+    """Word for word the tutorial's."""
+    request = ("example_interfaces/srv/AddTwoInts", "{a: 42, b: 58}")
+
+    text, status = terminals.shown("service", "call", "/add_two_ints", *request)
+
+    assert status == 0
+    assert text == (
+        "requester: making request: example_interfaces.srv.AddTwoInts_Request(a=42, b=58)\n"
+        "\n"
+        "response:\n"
+        "example_interfaces.srv.AddTwoInts_Response(sum=100)\n"
+        "\n"
+    )
+
+
+def test_parameters_are_set_and_read_back(terminals: Terminals) -> None:
+    """And what does not fit is refused, with a status that says so."""
+    node = "/param_node"
+
+    assert terminals.shown("param", "get", node, "name") == ("String value is: bob\n", 0)
+    assert terminals.shown("param", "set", node, "speed", "2.5") == (
+        "Set parameter successful\n",
+        0,
+    )
+    assert terminals.shown("param", "get", node, "speed") == ("Double value is: 2.5\n", 0)
+    text, status = terminals.shown("param", "set", node, "name", "5")
+    assert text.startswith("Setting parameter failed: Wrong parameter type, expected 'Type.STRING'")
+    assert status == 1
+
+
+def test_an_action_goal_is_sent(terminals: Terminals) -> None:
+    """Feedback on the way, the result at the end."""
+    goal = ("/fibonacci", "example_interfaces/action/Fibonacci", "{order: 3}")
+
+    text, status = terminals.shown("action", "send_goal", "-f", *goal)
+
+    assert status == 0
+    assert text.count("Feedback:") == 2
+    assert text.endswith("\nGoal finished with status: SUCCEEDED\n")
+
+
+def test_what_one_terminal_publishes_another_one_shows(terminals: Terminals) -> None:
+    """``--once`` waits for the subscription, so that nothing is lost."""
+    listener = terminals.open("topic", "echo", "/golden", "std_msgs/msg/String")
+    listener.expect("does not appear to be published yet")
+
+    text, status = terminals.shown(
+        "topic", "pub", "-1", "/golden", "std_msgs/msg/String", "data: hi"
+    )
+    listener.expect("data: hi\r\n---\r\n")
+    listener.sendintr()
+    listener.expect(pexpect.EOF)
+    listener.close()
+
+    assert "publishing #1: std_msgs.msg.String(data='hi')" in text
+    assert (status, listener.exitstatus) == (0, 0)
+
+
+# Ctrl-C
+
+ADD = "example_interfaces/srv/AddTwoInts"
+FIBONACCI = "example_interfaces/action/Fibonacci"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "when", "status"),
+    [
+        ("topic echo /chatter", "data: Hello", 0),
+        ("topic hz /chatter", "average rate: ", 0),
+        ("topic hz /chatter /stamped", "min_delta", 0),
+        ("topic bw /chatter", "/s from", 0),
+        ("topic delay /stamped", "average delay: 0.00", 0),
+        ("topic pub /out std_msgs/msg/String", "publishing #1", 0),
+        ("topic pub -1 /out std_msgs/msg/String", "Waiting for at least 1", 130),
+        ("topic hz /nobody", "does not appear to be published yet", 0),
+        (f"service call /nobody {ADD}", "waiting for service to become available", 130),
+        (f"action send_goal /fibonacci {FIBONACCI}", "Goal accepted", 130),
+        (f"action send_goal /nobody {FIBONACCI}", "Waiting for an action server", 130),
+        ("router -l tcp/127.0.0.1:0", "Router is listening", 0),
+    ],
+)
+def test_ctrl_c_ends_a_command_without_a_traceback(
+    arguments: str, when: str, status: int, terminals: Terminals
+) -> None:
+    """0 where Ctrl-C is the usual end, 130 where something was left undone."""
+    child = terminals.open(*arguments.split())
+    child.expect_exact(when)
+    child.sendintr()
+    child.expect(pexpect.EOF)
+    child.close()
+
+    assert "Traceback" not in child.before
+    assert child.exitstatus == status
+    if "Goal" in when:
+        assert "Canceling goal...\r\nGoal canceled.\r\n" in child.before
+
+
+def test_a_reader_that_has_enough_is_no_error(terminals: Terminals) -> None:
+    """``| head`` is how one looks at a topic."""
+    command = f"{' '.join(AIONODE)} topic echo /chatter | head -n 1; echo ${{PIPESTATUS[0]}}"
+
+    done = subprocess.run(
+        ["bash", "-c", command],
+        env=terminals.env,
+        capture_output=True,
+        text=True,
+        timeout=STARTED_S,
+        check=True,
+    )
+
+    assert (done.stdout, done.stderr) == ("data: Hello\n0\n", "")
+
+
+# Bad input
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["topic", "info", "/chater"], "Unknown topic '/chater'. Did you mean '/chatter'?"),
+        (["topic", "echo", "/chater"], "Could not determine the type for the passed topic"),
+        (["topic", "echo", "no blanks"], "Invalid topic name 'no blanks'"),
+        (["topic", "pub", "/a", "std_msgs/msg/Strin"], "did you mean std_msgs/msg/String?"),
+        (["topic", "pub", "/a", "std_msgs/msg/Int8", "{data: 300}"], "-128 to 127"),
+        (["topic", "pub", "/a", "std_msgs/msg/String", "{data: "], "no YAML"),
+        (["service", "call", "/add_two_ints", ADD, "{c: 1}"], "has a, b"),
+        (["param", "get", "/param_node", "nope"], "Parameter not set: no parameter 'nope'"),
+        (["param", "get", "/nope", "name"], "Node not found: '/nope'"),
+        (["node", "info", "/nope"], "Unable to find node '/nope'"),
+    ],
+)
+def test_bad_input_is_one_line_on_stderr(
+    arguments: list[str], says: str, terminals: Terminals
+) -> None:
+    """What was given, where, and what would do; a status that is not 0; no traceback."""
+    done = terminals.run(*arguments)
+
+    assert done.returncode == 1
+    assert done.stdout == ""
+    assert len(done.stderr.splitlines()) == 1
+    assert says in done.stderr
+
+
+def test_a_domain_that_cannot_be_is_said(terminals: Terminals) -> None:
+    """The environment is input, too."""
+    done = terminals.run("topic", "list", ROS_DOMAIN_ID="many")
+
+    assert done.returncode == 1
+    assert re.fullmatch(r"ROS_DOMAIN_ID: 'many' given; .*\n", done.stderr)
+
+
+# The shell and other programs
+
+
+def test_the_shell_is_offered_names_on_the_network(terminals: Terminals) -> None:
+    """Topics, nodes and services of this moment."""
+    done = terminals.run(
+        _AIONODE_COMPLETE="bash_complete", COMP_WORDS="aionode topic info /ch", COMP_CWORD="3"
+    )
+
+    assert done.stdout == "plain,/chatter\n"
+
+
+def test_programs_get_one_record_for_each_line(terminals: Terminals) -> None:
+    """Nothing else is on stdout."""
+    done = terminals.run("topic", "list", "--json")
+
+    assert done.stdout.splitlines()[0] == (
+        '{"name":"/chatter","types":["std_msgs/msg/String"],"publishers":1,"subscriptions":0}'
+    )
+
+
+def test_the_doctor_finds_a_sound_robot_sound(terminals: Terminals) -> None:
+    """It sees all nodes of the other process, and a router only if there is one."""
+    text, status = terminals.shown("doctor")
+
+    assert status == 0
+    assert "Nodes: 4\n" in text
+    assert "none" in text
+    assert "0 problem(s), 0 hint(s)" in text
