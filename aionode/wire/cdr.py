@@ -92,13 +92,11 @@ def new_encoder(cls: type[Message]) -> Callable[[Any], bytes]:
         taken = take(msg)
         try:
             return fast(taken, True)
+        except struct.error as error:
+            raise MessageError(type_name(cls), f"too large to be sent ({error})") from None
         except MISFITS:
-            pass
-        try:
             # Arrays with gaps between their elements, which a snapshot may share.
             return fast(copy.deepcopy(taken), True)
-        except struct.error as error:
-            raise MessageError(type_name(cls), f"too large to be sent ({error})") from error
 
     fast = generate_encoder(cls, encode_unusual)
     return fast

@@ -381,10 +381,9 @@ class Encoding:
         else:
             self._source.position(f"pos = {self._offset} + {size}")
             self._offset = None
-        known = min(alignment, self._modulus)
-        while self._residue % known != len(HEADER) % known:
-            known //= 2
-        self._modulus, self._residue = known, len(HEADER) % known
+        # It started aligned, as far as that is known.
+        self._modulus = min(alignment, self._modulus)
+        self._residue = len(HEADER) % self._modulus
 
     def _flush(self) -> None:
         """Pack the run collected so far."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import mmap
 from decimal import Decimal
 from fractions import Fraction
 from types import new_class
@@ -146,11 +147,47 @@ def test_an_array_on_disk_is_encoded(tmp_path: Path) -> None:
     assert cdr.encode(Mixed(numbers=array)) == cdr.encode(Mixed(numbers=[0, 0, 0]))
 
 
-def test_numbers_of_numpy_are_numbers() -> None:
-    """They come out of every computation with arrays."""
-    message = Mixed(number=np.int64(5), real=np.float32(0.5), short=np.float64(2), flag=np.True_)  # type: ignore[arg-type] # at run time it fits
+@pytest.mark.parametrize(
+    ("field", "given", "usual"),
+    [
+        ("number", np.int64(5), 5),
+        ("real", np.float32(0.5), 0.5),
+        ("real", np.float64(0.5), 0.5),
+        ("real", 2, 2.0),
+        ("short", Fraction(1, 2), 0.5),
+        ("flag", np.True_, True),
+    ],
+)
+def test_other_numbers_that_fit_are_encoded(field: str, given: Any, usual: Any) -> None:
+    """Those of numpy come out of every computation with arrays."""
+    assert cdr.encode(Mixed(**{field: given})) == cdr.encode(Mixed(**{field: usual}))
 
-    assert cdr.encode(message) == cdr.encode(Mixed(number=5, real=0.5, short=2.0, flag=True))
+
+class Words(Message, typename="test/msg/Words"):
+    """Strings, and after them nothing that is aligned."""
+
+    texts: Sequence[str] = DEFAULT
+
+
+@pytest.mark.parametrize("size", [0, 1, 2, 3, 4, 62, 63, 64, 65, 66, 5000])
+def test_texts_of_any_length_are_written_to_the_byte(size: int) -> None:
+    """Padding between them belongs to the next one: after the last there is none."""
+    message = Words(texts=["ab", "x" * size])
+
+    encoded = cdr.encode(message)
+
+    assert len(encoded) == 4 + 4 + (4 + 3 + 1) + (4 + size + 1)
+    assert cdr.decode(Words, encoded) == message
+    assert cdr.decode(Words, encoded) == message
+
+
+def test_more_bytes_than_a_length_can_say_are_a_message_error() -> None:
+    """A message has room for 4 GiB less one; the memory here is never touched."""
+    with mmap.mmap(-1, 2**32, prot=mmap.PROT_READ) as huge:
+        view: Any = memoryview(huge)
+        with pytest.raises(MessageError, match="too large"):
+            cdr.encode(Mixed(octets=view))
+        view.release()
 
 
 def test_a_nul_inside_a_text_is_kept() -> None:
