@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import os
+import queue
 import signal
+import threading
 import time  # noqa: TID251  # how long a process takes is what is tested
 from contextlib import ExitStack
 from pathlib import Path
@@ -199,3 +202,25 @@ def readable(address: str) -> str:
     if len(address) != 8:
         return address
     return ".".join(str(byte) for byte in reversed(bytes.fromhex(address)))
+
+
+def test_our_router_introduces_ros_nodes_to_each_other() -> None:
+    """`aionode router` is for those who have no rmw_zenohd."""
+    endpoint = f"tcp/127.0.0.1:{os.environ['AIONODE_ROUTER_PORT']}"
+    with ExitStack() as stack:
+        router = stack.enter_context(Process("-m", "aionode", "router", "--listen", endpoint))
+        one, two = ros_session(), ros_session()
+        stack.callback(one.close)
+        stack.callback(two.close)
+        heard: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+        subscriber = two.declare_subscriber("key", lambda s: heard.put(s.payload.to_bytes()))
+        stack.callback(subscriber.undeclare)
+        publisher = one.declare_publisher("key")
+        linked = threading.Event()
+        publisher.declare_matching_listener(lambda s: linked.set() if s.matching else None)
+        if publisher.matching_status.matching:
+            linked.set()
+        assert linked.wait(15), router.lines
+        publisher.put(b"hello")
+        assert heard.get(timeout=5) == b"hello"
+        stop_within_a_second(router)
