@@ -17,33 +17,39 @@ Exceptions are in `aionode.errors`, quality-of-service presets in `aionode.qos`,
 `aionode.interfaces`, helpers for tests in `aionode.testing`.
 """
 
-from aionode.action import (
-    ActionClient,
-    ActionResult,
-    ActionServer,
-    CancelResponse,
-    ClientGoalHandle,
-    GoalResponse,
-    GoalStatus,
-    ServerGoalHandle,
-)
-from aionode.clock import Clock, ClockType, Duration, Time
-from aionode.context import Context
-from aionode.endpoints.dispatch import CallbackContext
-from aionode.endpoints.rate import Rate
-from aionode.endpoints.service import Client, Service
-from aionode.endpoints.timer import Timer, TimerInfo
-from aionode.endpoints.topic import MessageInfo, Publisher, Subscription
-from aionode.node import Node
-from aionode.parameter import Parameter
-from aionode.qos import (
-    DurabilityPolicy,
-    HistoryPolicy,
-    LivelinessPolicy,
-    QoSProfile,
-    ReliabilityPolicy,
-)
-from aionode.runner import run
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from aionode.action import (
+        ActionClient,
+        ActionResult,
+        ActionServer,
+        CancelResponse,
+        ClientGoalHandle,
+        GoalResponse,
+        GoalStatus,
+        ServerGoalHandle,
+    )
+    from aionode.clock import Clock, ClockType, Duration, Time
+    from aionode.context import Context
+    from aionode.endpoints.dispatch import CallbackContext
+    from aionode.endpoints.rate import Rate
+    from aionode.endpoints.service import Client, Service
+    from aionode.endpoints.timer import Timer, TimerInfo
+    from aionode.endpoints.topic import MessageInfo, Publisher, Subscription
+    from aionode.node import Node
+    from aionode.parameter import Parameter
+    from aionode.qos import (
+        DurabilityPolicy,
+        HistoryPolicy,
+        LivelinessPolicy,
+        QoSProfile,
+        ReliabilityPolicy,
+    )
+    from aionode.runner import run
 
 __all__ = [
     "ActionClient",
@@ -77,3 +83,60 @@ __all__ = [
     "TimerInfo",
     "run",
 ]
+
+HOMES = {
+    "ActionClient": "aionode.action",
+    "ActionResult": "aionode.action",
+    "ActionServer": "aionode.action",
+    "CallbackContext": "aionode.endpoints.dispatch",
+    "CancelResponse": "aionode.action",
+    "Client": "aionode.endpoints.service",
+    "ClientGoalHandle": "aionode.action",
+    "Clock": "aionode.clock",
+    "ClockType": "aionode.clock",
+    "Context": "aionode.context",
+    "DurabilityPolicy": "aionode.qos",
+    "Duration": "aionode.clock",
+    "GoalResponse": "aionode.action",
+    "GoalStatus": "aionode.action",
+    "HistoryPolicy": "aionode.qos",
+    "LivelinessPolicy": "aionode.qos",
+    "MessageInfo": "aionode.endpoints.topic",
+    "Node": "aionode.node",
+    "Parameter": "aionode.parameter",
+    "Publisher": "aionode.endpoints.topic",
+    "QoSProfile": "aionode.qos",
+    "Rate": "aionode.endpoints.rate",
+    "ReliabilityPolicy": "aionode.qos",
+    "ServerGoalHandle": "aionode.action",
+    "Service": "aionode.endpoints.service",
+    "Subscription": "aionode.endpoints.topic",
+    "Time": "aionode.clock",
+    "Timer": "aionode.endpoints.timer",
+    "TimerInfo": "aionode.endpoints.timer",
+    "run": "aionode.runner",
+}
+"""Where each name is defined; it is imported when it is first used, so that ``aionode --help`` and
+programs that need few of them start at once."""
+
+
+def __getattr__(name: str) -> Any:
+    """Return a public name, or a module of the package, and keep it for the next time."""
+    try:
+        value = getattr(import_module(HOMES[name]), name) if name in HOMES else submodule(name)
+    except ModuleNotFoundError as error:
+        if error.name != f"{__name__}.{name}":
+            raise
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}") from None
+    globals()[name] = value
+    return value
+
+
+def submodule(name: str) -> Any:
+    """Return a module of the package: ``aionode.qos`` works without an import of its own."""
+    return import_module(f"{__name__}.{name}")
+
+
+def __dir__() -> list[str]:
+    """Return the public names, used or not."""
+    return sorted({*globals(), *__all__})
