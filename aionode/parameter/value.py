@@ -203,7 +203,14 @@ class Parameter:
 
     def get_parameter_value(self) -> rcl_msg.ParameterValue:
         """Return type and value as a message."""
-        message = rcl_msg.ParameterValue(type=int(self._type))
+        # Empty tuples in place of the arrays that are the defaults: those need numpy, which takes
+        # longer to import than a node to start, and most parameters hold no array.
+        message = rcl_msg.ParameterValue(
+            type=int(self._type),
+            bool_array_value=(),
+            integer_array_value=(),
+            double_array_value=(),
+        )
         if self._type is ParameterType.BYTE_ARRAY:
             message.byte_array_value = b"".join(
                 bytes([each]) if isinstance(each, int) else each for each in self._value
