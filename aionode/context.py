@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from aionode.arguments import Arguments
 from aionode.clock import MachineTime
 from aionode.endpoints.mismatch import MismatchReport
-from aionode.errors import EntityDestroyedError
+from aionode.errors import ConfigurationError, EntityDestroyedError
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from aionode.message import type_name
 from aionode.transport.base import Transport
@@ -31,6 +31,27 @@ if TYPE_CHECKING:
 
 __all__ = ["Context"]
 
+LINK_VARIABLE = "AIONODE_LINK"
+LINK_WORDS = {"on": True, "off": False, "": False}
+
+
+def wants_link(asked: bool | None, environ: Mapping[str, str]) -> bool:
+    """Return whether processes of this host are to be linked, and can be.
+
+    Raises:
+        ConfigurationError: the variable says neither on nor off.
+    """
+    if asked is None:
+        word = environ.get(LINK_VARIABLE, "")
+        if word not in LINK_WORDS:
+            raise ConfigurationError(LINK_VARIABLE, word, "on and off fit")
+        asked = LINK_WORDS[word]
+    if not asked:
+        return False
+    from aionode.transport.link import available
+
+    return available()
+
 
 class Context:
     """What the nodes of one participant share: transports, graph, domain and time.
@@ -49,6 +70,9 @@ class Context:
         static_peers: Hosts to connect to; ``ROS_STATIC_PEERS`` without it.
         config: Path of a Zenoh configuration file in place of ``ZENOH_SESSION_CONFIG_URI``, or
             single settings by their key path.
+        link: Whether other processes of this user on this host are reached through a Unix socket
+            in the event loop, where the system has what it needs; ``AIONODE_LINK`` (``on`` or
+            ``off``) without it, and off without that.
 
     Attributes:
         network: Domain, discovery and peers, from the arguments and the environment.
@@ -74,6 +98,7 @@ class Context:
         discovery_range: str | None = None,
         static_peers: Sequence[str] | None = None,
         config: str | Path | Mapping[str, Any] | None = None,
+        link: bool | None = None,
     ) -> None:
         # Zenoh writes ids without leading zeros, and every peer has to see the same text.
         self.participant = secrets.token_hex(16).lstrip("0") or "1"
@@ -87,7 +112,7 @@ class Context:
             static_peers=static_peers,
             config=config,
         )
-        self._transports = self._make_transports(transport)
+        self._transports = self._make_transports(transport, link)
         self.arguments = Arguments()
         self._nodes: dict[Node, None] = {}
         self._ids = 0
@@ -101,7 +126,7 @@ class Context:
         return f"<Context domain={self.network.domain_id} {state} nodes={len(self._nodes)}>"
 
     def _make_transports(
-        self, transport: str | Transport | Sequence[Transport]
+        self, transport: str | Transport | Sequence[Transport], link: bool | None
     ) -> tuple[Transport, ...]:
         if isinstance(transport, Transport):
             return (transport,)
@@ -113,7 +138,15 @@ class Context:
             # Imported here, because it is large and a context without network does not need it.
             from aionode.transport.zenoh import ZenohTransport
 
-            return (LocalTransport(), ZenohTransport(self.participant, self.network))
+            zenoh = ZenohTransport(self.participant, self.network)
+            if not wants_link(link, os.environ):
+                return (LocalTransport(), zenoh)
+            from aionode.transport.link import LinkTransport
+
+            linked = LinkTransport(
+                self.participant, self.network.domain_id, zenoh, zenoh.neighbours
+            )
+            return (LocalTransport(), linked)
         raise ValueError(f'Context: transport={transport!r} is unknown; use "zenoh" or "local"')
 
     # Lifetime

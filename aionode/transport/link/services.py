@@ -1,0 +1,312 @@
+"""Servers and clients, each with two ways to the other end.
+
+A request takes the links only if they reach every server of its service, because over Zenoh it goes
+to all of them. While a request of a client is under way over Zenoh, the next ones take the same
+way, so that none overtakes another.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import msgspec
+
+from aionode.errors import DecodeError, FrameError, ServiceError
+from aionode.graph import EndpointKind
+from aionode.transport.base import Announcement, Origin, Request, Requester
+from aionode.transport.link.memory import SHARED_FROM
+from aionode.wire import cdr
+from aionode.wire.frame import GID_SIZE, Kind
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.graph import EndpointInfo
+    from aionode.transport.base import Call, ReplyTo
+    from aionode.transport.link.connection import Connection
+    from aionode.transport.link.hub import Hub
+    from aionode.wire.cdr import Data
+    from aionode.wire.frame import Frame
+
+__all__ = ["LinkCall", "LinkRequester", "LinkServer", "server_of"]
+
+ERROR: Final = msgspec.json.Decoder(tuple[str, str])
+
+
+# Servers
+
+
+class LinkServer(Announcement):
+    """A server.
+
+    Args:
+        hub: The links of this context.
+        endpoint: The server.
+        srv_type: Its service.
+        serve: Takes its requests.
+        zenoh: Its other way.
+    """
+
+    def __init__(
+        self,
+        hub: Hub,
+        endpoint: EndpointInfo,
+        srv_type: Any,
+        serve: Callable[[Request], None],
+        zenoh: Announcement,
+    ) -> None:
+        self.endpoint = endpoint
+        self.srv_type = srv_type
+        self.unanswered: dict[tuple[bytes, int], LinkRequest] = {}
+        self.now_ns = hub.now_ns
+        self._serve = serve
+        self._zenoh = zenoh
+        self._hub = hub
+        hub.servers[endpoint.gid] = self
+
+    def take(self, connection: Connection, one: Frame, payload: Data) -> None:
+        """Take a request."""
+        origin = Origin(one.gid, one.sequence, one.source_ns, True)
+        try:
+            message = cdr.decode(self.srv_type.Request, payload)
+        except DecodeError as error:
+            fail(connection, one.sequence, one.gid, "DecodeError", str(error))
+            return
+        request = LinkRequest(message, origin, connection, self)
+        self.unanswered[origin.gid, origin.sequence] = request
+        self._serve(request)
+
+    def cancel(self, gid: bytes, sequence: int) -> None:
+        """Note that a client has given a request up."""
+        request = self.unanswered.get((gid, sequence))
+        if request is not None:
+            request.cancelled = True
+
+    def broken(self, connection: Connection) -> None:
+        """Forget the requests of `connection`: nobody waits for their answers."""
+        for key, request in list(self.unanswered.items()):
+            if request.connection is connection:
+                request.cancelled = True
+                del self.unanswered[key]
+
+    def close(self) -> None:
+        """Withdraw the server; requests that were not answered are given up."""
+        self._hub.servers.pop(self.endpoint.gid, None)
+        self._zenoh.close()
+        for request in list(self.unanswered.values()):
+            request.drop()
+
+
+def fail(
+    connection: Connection, sequence: int, gid: bytes, error_type: str, error_text: str
+) -> None:
+    """Send an error in place of a response."""
+    payload = msgspec.json.encode((error_type, error_text))
+    connection.send(Kind.FAIL, sequence, gid, payload)
+
+
+class LinkRequest(Request):
+    """One request that came over a link."""
+
+    def __init__(
+        self, message: Any, origin: Origin, connection: Connection, server: LinkServer
+    ) -> None:
+        self.message = message
+        self.origin = origin
+        self.connection = connection
+        self._server = server
+
+    def _finish(self) -> bool:
+        """Note that the request is done with; return whether it was not yet."""
+        key = (self.origin.gid, self.origin.sequence)
+        return self._server.unanswered.pop(key, None) is not None
+
+    def reply(self, response: Any) -> None:
+        """Send the response, with the client's own number."""
+        payload = cdr.encoder(self._server.srv_type.Response)(response)
+        if self._finish():
+            self.connection.send_large(
+                Kind.REPLY,
+                self.origin.sequence,
+                self.origin.gid,
+                payload,
+                self._server.now_ns(),
+                SHARED_FROM,
+            )
+
+    def fail(self, error_type: str, error_text: str) -> None:
+        """Send an error."""
+        if self._finish():
+            origin = self.origin
+            fail(self.connection, origin.sequence, origin.gid, error_type, error_text)
+
+    def drop(self) -> None:
+        """Tell the client that this server will not answer."""
+        if self._finish():
+            self.connection.send(Kind.END, self.origin.sequence, self.origin.gid)
+
+
+# Clients
+
+
+class LinkRequester(Requester):
+    """A client.
+
+    Args:
+        hub: The links of this context.
+        endpoint: The client.
+        srv_type: Its service.
+        zenoh: Its other way.
+    """
+
+    def __init__(self, hub: Hub, endpoint: EndpointInfo, srv_type: Any, zenoh: Requester) -> None:
+        self.endpoint = endpoint
+        self.srv_type = srv_type
+        self.over_zenoh: set[ZenohCall] = set()
+        self._hub = hub
+        self._zenoh = zenoh
+
+    @property
+    def servers(self) -> int:
+        """How many servers of other contexts are matched."""
+        return self._zenoh.servers
+
+    def send(self, request: Any, origin: Origin, reply_to: ReplyTo) -> Call:
+        """Send `request` to every server of other contexts."""
+        servers = [
+            server
+            for server in self._hub.remote(EndpointKind.SERVER, self.endpoint.name)
+            if self.endpoint.matches(server)
+        ]
+        ways = [self._hub.linked(server.node.participant) for server in servers]
+        if not ways or None in ways or self.over_zenoh:
+            return ZenohCall(self, request, origin, reply_to, self._zenoh)
+        payload = cdr.encoder(self.srv_type.Request)(request)
+        call = LinkCall(self._hub, self, origin.sequence, reply_to)
+        for server, way in zip(servers, ways, strict=True):
+            if way is not None:
+                call.ways.append(way)
+                way.send_large(
+                    Kind.REQUEST,
+                    origin.sequence,
+                    self.endpoint.gid,
+                    server.gid + payload,
+                    origin.source_ns,
+                    SHARED_FROM,
+                )
+        return call
+
+    def close(self) -> None:
+        """Withdraw the client."""
+        self._zenoh.close()
+        for call in list(self._hub.calls.values()):
+            if call.requester is self:
+                call.end_all()
+
+
+class ZenohCall:
+    """A call over Zenoh, counted while it is under way."""
+
+    def __init__(
+        self,
+        requester: LinkRequester,
+        request: Any,
+        origin: Origin,
+        reply_to: ReplyTo,
+        zenoh: Requester,
+    ) -> None:
+        self._under_way = requester.over_zenoh
+        self._reply_to = reply_to
+        self._under_way.add(self)
+        try:
+            self._call = zenoh.send(request, origin, self)
+        except BaseException:
+            self._under_way.discard(self)
+            raise
+
+    def reply(self, response: Any, origin: Origin) -> None:
+        """Pass on a response."""
+        self._under_way.discard(self)
+        self._reply_to.reply(response, origin)
+
+    def fail(self, error: ServiceError) -> None:
+        """Pass on an error."""
+        self._under_way.discard(self)
+        self._reply_to.fail(error)
+
+    def end(self) -> None:
+        """Pass on that nothing will come."""
+        self._under_way.discard(self)
+        self._reply_to.end()
+
+    def cancel(self) -> None:
+        """Forget the call."""
+        self._under_way.discard(self)
+        self._call.cancel()
+
+
+class LinkCall:
+    """A call over one or more links."""
+
+    def __init__(
+        self, hub: Hub, requester: LinkRequester, sequence: int, reply_to: ReplyTo
+    ) -> None:
+        self.requester = requester
+        self.ways: list[Connection] = []
+        self._calls = hub.calls
+        self._sequence = sequence
+        self._reply_to = reply_to
+        self._calls[requester.endpoint.gid, sequence] = self
+
+    def _finish(self) -> bool:
+        return self._calls.pop((self.requester.endpoint.gid, self._sequence), None) is not None
+
+    def replied(self, one: Frame, payload: Data) -> None:
+        """Take a response."""
+        service = self.requester.endpoint.name
+        try:
+            response = cdr.decode(self.requester.srv_type.Response, payload)
+        except DecodeError as error:
+            if self._finish():
+                self._reply_to.fail(ServiceError(service, f"the response is unreadable: {error}"))
+            return
+        if self._finish():
+            self._reply_to.reply(response, Origin(one.gid, one.sequence, one.source_ns, True))
+
+    def failed(self, payload: Data) -> None:
+        """Take a server's error."""
+        try:
+            error_type, error_text = ERROR.decode(payload)
+        except msgspec.MsgspecError as error:
+            raise FrameError(f"an error in no known form: {error}") from error
+        if self._finish():
+            self._reply_to.fail(ServiceError(self.requester.endpoint.name, error_text, error_type))
+
+    def ended(self, connection: Connection) -> None:
+        """Note that one server will not answer."""
+        if connection in self.ways:
+            self.ways.remove(connection)
+        if not self.ways:
+            self.end_all()
+
+    def end_all(self) -> None:
+        """Note that nothing will come any more."""
+        if self._finish():
+            self._reply_to.end()
+
+    def cancel(self) -> None:
+        """Forget the call, and tell the servers."""
+        if self._finish():
+            for way in self.ways:
+                way.send(Kind.CANCEL, self._sequence, self.requester.endpoint.gid)
+
+
+def server_of(payload: Data) -> tuple[bytes, Data]:
+    """Return whom a request is for, and the request itself.
+
+    Raises:
+        FrameError: it is too short.
+    """
+    if len(payload) < GID_SIZE:
+        raise FrameError("a request to nobody")
+    return bytes(payload[:GID_SIZE]), payload[GID_SIZE:]

@@ -1,0 +1,129 @@
+"""Zenoh, and links beside it: the contract of transports with two ways to each reader."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, Final, Protocol
+
+from aionode.errors import TransportError
+from aionode.transport.base import Transport
+from aionode.transport.link.hub import Hub
+from aionode.transport.link.meeting import Beacon, Meeting, meeting_folder
+from aionode.transport.link.services import LinkRequester, LinkServer
+from aionode.transport.link.topics import LinkReader, LinkWriter, Tap, can_link
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from aionode.graph import EndpointInfo, Graph, NodeInfo
+    from aionode.transport.base import Announcement, Reader, Request, Requester, Writer
+
+__all__ = ["LinkTransport", "Neighbours"]
+
+logger = logging.getLogger("aionode.transport.link")
+
+FLUSH_S: Final = 0.15
+"""How long `close` waits for what is still to be sent."""
+
+
+class Neighbours(Protocol):
+    """What the other transport knows of who is there, apart from the graph.
+
+    Attributes:
+        beacon: What it announces of this context; None for nothing.
+        on_beacon: Called with what another context announces, and whether it is there.
+        on_sessions: Called with the ids of all who are connected, when that has changed.
+    """
+
+    beacon: str | None
+    on_beacon: Callable[[str, bool], None]
+    on_sessions: Callable[[Iterable[str]], None]
+
+
+class LinkTransport(Transport):
+    """Uses links where there are some, and another transport for everything else.
+
+    Args:
+        participant: Id of the context: hexadecimal, no leading zeros.
+        domain_id: The ROS domain.
+        zenoh: The other transport.
+        neighbours: What it knows of who is there.
+    """
+
+    def __init__(
+        self, participant: str, domain_id: int, zenoh: Transport, neighbours: Neighbours
+    ) -> None:
+        self.zenoh = zenoh
+        self.hub = Hub(participant, domain_id)
+        self._neighbours = neighbours
+        self._graph: Graph | None = None
+
+    def __repr__(self) -> str:
+        return f"<LinkTransport links={len(self.hub.links)} beside {self.zenoh!r}>"
+
+    async def open(self, graph: Graph) -> None:
+        """Connect; without a folder to meet in, or descriptors, over the other transport only."""
+        try:
+            meeting = Meeting(meeting_folder(os.environ), self.hub.participant)
+        except TransportError as error:
+            logger.warning("%s; Zenoh is used between processes of this host as well", error)
+        else:
+            own = Beacon.own(self.hub.participant)
+            self.hub.open(graph, meeting)
+            self._neighbours.beacon = own.text()
+            self._neighbours.on_beacon = lambda text, present: self._on_beacon(own, text, present)
+            self._neighbours.on_sessions = self.hub.on_sessions
+            if self._graph is not graph:
+                self._graph = graph
+                graph.on_endpoint(self.hub.on_endpoint)
+        try:
+            await self.zenoh.open(graph)
+        except BaseException:
+            self.hub.close()
+            raise
+
+    def _on_beacon(self, own: Beacon, text: str, present: bool) -> None:
+        beacon = Beacon.parse(text)
+        if beacon is not None and own.is_near(beacon):
+            self.hub.on_beacon(beacon, present)
+
+    async def close(self) -> None:
+        """Withdraw everything and disconnect, within a second."""
+        with suppress(TimeoutError):
+            async with asyncio.timeout(FLUSH_S):
+                await self.hub.flush()
+        self.hub.close()
+        self._neighbours.beacon = None
+        await self.zenoh.close()
+
+    def create_node(self, node: NodeInfo) -> Announcement:
+        """Announce a node."""
+        return self.zenoh.create_node(node)
+
+    def create_writer(self, endpoint: EndpointInfo, msg_type: type[Any]) -> Writer:
+        """Announce a publisher."""
+        zenoh = self.zenoh.create_writer(endpoint, msg_type)
+        return LinkWriter(self.hub, endpoint, msg_type, zenoh) if can_link(endpoint) else zenoh
+
+    def create_reader(
+        self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
+    ) -> Announcement:
+        """Announce a subscription."""
+        tap = Tap(reader)
+        zenoh = self.zenoh.create_reader(endpoint, msg_type, tap)
+        return LinkReader(self.hub, msg_type, reader, tap, zenoh)
+
+    def create_server(
+        self, endpoint: EndpointInfo, srv_type: Any, serve: Callable[[Request], None]
+    ) -> Announcement:
+        """Announce a server."""
+        zenoh = self.zenoh.create_server(endpoint, srv_type, serve)
+        return LinkServer(self.hub, endpoint, srv_type, serve, zenoh)
+
+    def create_requester(self, endpoint: EndpointInfo, srv_type: Any) -> Requester:
+        """Announce a client."""
+        zenoh = self.zenoh.create_requester(endpoint, srv_type)
+        return LinkRequester(self.hub, endpoint, srv_type, zenoh)
