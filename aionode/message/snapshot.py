@@ -136,6 +136,9 @@ class Unrolling:
             line = f"{value} = {own}({fitting})" if self.copying else fitting
             if type_.form == "bytes" and type_.container == "unbounded":
                 line = f"if {value}.__class__ is not bytes: {line}"
+            elif not self.copying and type_.container != "array":
+                # An empty tuple always fits, and to see that needs no numpy.
+                line = f"if {value}.__class__ is not tuple or {value}: {line}"
             self.lines.append(line)
         return value
 
