@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 import zenoh
 from zenoh import ext
 
-from aionode.errors import DecodeError
+from aionode.errors import DecodeError, TransportError
 from aionode.message import fields
 from aionode.qos import DurabilityPolicy, HistoryPolicy, ReliabilityPolicy
 from aionode.transport.base import Origin, Writer
 from aionode.transport.sender import Sender
 from aionode.transport.wakeup import Lane, PatientLane
-from aionode.transport.zenoh.handlers import direct, translated
+from aionode.transport.zenoh.handlers import direct
 from aionode.transport.zenoh.link import Entity
 from aionode.wire import attachment, cdr
 from aionode.wire.keyexpr import buffer_key, data_key
@@ -181,8 +181,10 @@ class ZenohWriter(Entity, Writer):
             # Small ones wait behind a large one, so that the order stays.
             self._outlet.put(lambda: send(publisher, payload, extra))
         else:
-            with translated(self._key):
+            try:
                 publisher.put(payload, attachment=extra)
+            except zenoh.ZError as error:
+                raise TransportError(f"{self._key}: {error}") from error
 
     def has_room(self) -> bool:
         """Whether one more message can wait to be sent."""
@@ -316,5 +318,5 @@ def origin_of(extra: zenoh.ZBytes | None) -> Origin | None:
     """Return what an attachment says, or None when there is none in a known form."""
     if extra is None:
         return None
-    unpacked = attachment.unpack(extra.to_bytes())
-    return None if unpacked is None else Origin(unpacked[2], unpacked[0], unpacked[1], True)
+    fields = attachment.unpack_fields(extra.to_bytes())
+    return None if fields is None else Origin(fields[2], fields[0], fields[1], True)
