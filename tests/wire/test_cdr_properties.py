@@ -56,9 +56,8 @@ def test_what_was_decoded_is_encoded_the_same(cls: type[Message], data: st.DataO
     assert cdr.encode(cdr.decode(cls, encoded)) == encoded
 
 
-@every_class
-@few
-@given(data=st.data())
+@given(cls=any_class, data=st.data())
+@settings(few, max_examples=3 * EXAMPLES)
 def test_any_truncation_is_a_decode_error(cls: type[Message], data: st.DataObject) -> None:
     """A short read raises DecodeError and nothing else: the last byte is always needed."""
     whole = cdr.encode(data.draw(messages(cls)))
@@ -73,8 +72,17 @@ def test_any_truncation_is_a_decode_error(cls: type[Message], data: st.DataObjec
 
 
 @every_class
-@few
-@given(data=st.data())
+def test_a_message_cut_anywhere_is_a_decode_error(cls: type[Message]) -> None:
+    """At each of the first places, for every class as it is by default."""
+    whole = cdr.encode(cls())
+
+    for size in range(min(len(whole), 200)):
+        with pytest.raises(DecodeError):
+            cdr.decode(cls, whole[:size])
+
+
+@given(cls=any_class, data=st.data())
+@settings(few, max_examples=3 * EXAMPLES)
 def test_corrupted_data_is_decoded_as_it_stands_or_refused(
     cls: type[Message], data: st.DataObject
 ) -> None:
