@@ -172,7 +172,13 @@ def proto_command(type_name: str, no_quotes: bool, json: bool) -> None:
 
 @interface.command("generate")
 @click.argument("path", type=click.Path(exists=True, file_okay=False, path_type=Path))
-@click.argument("out_dir", type=click.Path(file_okay=False, path_type=Path))
+@click.option(
+    "-o",
+    "--out-dir",
+    required=True,
+    type=click.Path(file_okay=False, path_type=Path),
+    help="Where to write to; folders are made as needed.",
+)
 @json_option
 def generate_command(path: Path, out_dir: Path, json: bool) -> None:
     """Write the interfaces of a folder as Python modules with types and docstrings."""

@@ -10,14 +10,12 @@ import click
 
 from aionode.cli.output import Output
 from aionode.errors import AionodeError
-from aionode.node import Node
-from aionode.parameter import Parameter
-from aionode.runner import best_loop_factory, signals_to
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Coroutine
 
     from aionode.context import Context
+    from aionode.node import Node
     from aionode.runner import LoopFactory
 
 __all__ = ["make_node", "run_verb"]
@@ -33,6 +31,10 @@ def make_node(
     context: Context | None = None, node_name: str | None = None, *, use_sim_time: bool = False
 ) -> Node:
     """Return the node of a command: hidden, and with nothing that others could use."""
+    # Imported when a command runs: its help needs none of this.
+    from aionode.node import Node
+    from aionode.parameter import Parameter
+
     settings = {"start_type_description_service": False, "use_sim_time": use_sim_time}
     return Node(
         node_name or f"_aionode_cli_{os.getpid()}",
@@ -67,6 +69,8 @@ def run_verb(
         click.exceptions.Exit: always, with the status.
         AionodeError: the command cannot do what was asked.
     """
+    from aionode.runner import best_loop_factory
+
     output = Output(json=json)
 
     async def work() -> int | None:
@@ -96,6 +100,8 @@ def run_until_stopped(
 
 async def stoppable(work: Coroutine[None, None, int | None]) -> int | None:
     """Await `work`, and cancel it at the first SIGINT or SIGTERM."""
+    from aionode.runner import signals_to
+
     loop = asyncio.get_running_loop()
     task = asyncio.current_task()
     assert task is not None  # noqa: S101  # a coroutine runs in a task

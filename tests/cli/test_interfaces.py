@@ -109,7 +109,7 @@ def test_generate_writes_modules(
     workspace: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """And says which."""
-    status = main(["interface", "generate", str(workspace), str(tmp_path / "out")])
+    status = main(["interface", "generate", str(workspace), "-o", str(tmp_path / "out")])
 
     files = [Path(line) for line in capsys.readouterr().out.splitlines()]
     assert status == 0

@@ -293,3 +293,12 @@ def test_the_doctor_finds_a_sound_robot_sound(terminals: Terminals) -> None:
     assert "Nodes: 4\n" in text
     assert "none" in text
     assert "0 problem(s), 0 hint(s)" in text
+
+
+def test_the_doctor_sees_nodes_of_another_domain(terminals: Terminals) -> None:
+    """The most common reason why nothing at all is seen, and the remedy as it is typed."""
+    done = terminals.run("doctor", ROS_DOMAIN_ID="41")
+
+    assert done.returncode == 1
+    assert "problem: domain: there are nodes in domain 42, and this is domain 41" in done.stdout
+    assert "-> ROS_DOMAIN_ID=42" in done.stdout

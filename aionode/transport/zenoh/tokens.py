@@ -47,6 +47,7 @@ class Watcher:
         self._link = link
         self._known: dict[str, NodeInfo | EndpointInfo] = {}
         self._domains: set[int] = set()
+        self._opening = True
         self._subscriber: zenoh.Subscriber[None] | None = None
         self._lane = link.lane(self._take)
 
@@ -65,6 +66,13 @@ class Watcher:
             self._subscriber = None
         self._lane.clear()
         self._known.clear()
+        self._domains.clear()
+        self._opening = True
+
+    @property
+    def other_domains(self) -> frozenset[int]:
+        """The domains of nodes that were seen and are not heard."""
+        return frozenset(self._domains)
 
     def ask(self, session: zenoh.Session, answered: asyncio.Future[None]) -> None:
         """Resolve `answered` when the tokens of everyone connected now are in the graph."""
@@ -116,10 +124,23 @@ class Watcher:
             for update in self._link.on_reader.get(info.name, ()):
                 update()
 
+    def note_domains(self) -> None:
+        """Say whether there are nodes of other domains, now and when more come.
+
+        A warning if there is nobody else: then the domain is likely to be a mistake.
+        """
+        domains, self._domains = self._domains, set()
+        self._opening = False
+        for domain_id in sorted(domains):
+            self._note_domain(domain_id)
+
     def _note_domain(self, domain_id: int) -> None:
-        if domain_id not in self._domains:
-            self._domains.add(domain_id)
-            logger.info(
+        if domain_id in self._domains:
+            return
+        self._domains.add(domain_id)
+        if not self._opening:
+            logger.log(
+                logging.INFO if self._known else logging.WARNING,
                 "nodes of domain %d can be reached, but this is domain %d: they do not hear each "
                 "other; ROS_DOMAIN_ID or Context(domain_id=...) changes it",
                 domain_id,

@@ -60,14 +60,20 @@ class ZenohTransport(Transport):
         """How many samples in no known form came from the network, for each key."""
         return self._link.garbage
 
+    @property
+    def other_domains(self) -> frozenset[int]:
+        """The domains of nodes that can be reached, but do not hear this one."""
+        return self._watcher.other_domains
+
     async def open(self, graph: Graph) -> None:
         """Connect; return when those who are there are known, as far as can be told."""
         session, neighbours = await open_session(self.network, self._link.participant)
         self._link.wakeup.open(asyncio.get_running_loop())
+        # Before waiting for others, so that who comes meanwhile sees everything. What fails from
+        # here on is undone by `close`, which knows the session now.
+        self._link.connect(session, graph)
         links = Links(session, self._link.lane)
         try:
-            # Before waiting for others, so that who comes meanwhile sees everything.
-            self._link.connect(session, graph)
             self._watcher.start(session)
             self.neighbours.start(session)
             await links.settle(neighbours)
@@ -76,6 +82,7 @@ class ZenohTransport(Transport):
             with suppress(TimeoutError):
                 async with asyncio.timeout(KNOWN_S):
                     await answered
+            self._watcher.note_domains()
         finally:
             links.close()
 
