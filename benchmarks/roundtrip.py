@@ -1,9 +1,9 @@
 """How long a message takes to another process and back, against Zenoh alone.
 
-Two processes on loopback send one small message to and fro: with aionode (a `Node`, codec, callbacks
-and their statistics included), and with zenoh-python and one `call_soon_threadsafe` for each message
-into the same kind of event loop. Both are measured in turns in the same run, so that whatever else
-the machine does hits both.
+Two processes on loopback send one small message to and fro: with aionode (a `Node`, codec,
+callbacks and their statistics included), and with zenoh-python and one `call_soon_threadsafe` for
+each message into the same kind of event loop. Both are measured in turns in the same run, so that
+whatever else the machine does hits both.
 
 Run it with ``python benchmarks/roundtrip.py``. It prints a table and writes ``roundtrip.json`` to
 ``benchmarks/results/``; ``--quick`` takes a fifth of the time, for a first look.
@@ -174,7 +174,12 @@ def stdin_closed() -> Awaitable[None]:
     """Return what ends when the other process has ended, or wants this one to."""
     loop = asyncio.get_running_loop()
     closed: asyncio.Future[None] = loop.create_future()
-    loop.add_reader(sys.stdin, lambda: closed.done() or closed.set_result(None))
+
+    def end() -> None:
+        if not closed.done():
+            closed.set_result(None)
+
+    loop.add_reader(sys.stdin, end)
     return closed
 
 

@@ -102,6 +102,13 @@ class Process:
             self.lines.append(entry)
             yield entry
 
+    def rest(self) -> list[str]:
+        """Return everything that a process which has ended wrote."""
+        self._reader.join()
+        while not self._queue.empty():
+            self.lines.append(self._queue.get())
+        return [line for _, line in self.lines]
+
     def write(self, line: str) -> None:
         """Send it a line."""
         assert self._popen.stdin is not None

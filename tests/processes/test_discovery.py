@@ -48,7 +48,7 @@ def stop_within_a_second(*members: Process) -> None:
     """End each with Ctrl-C."""
     for each in members:
         took_s, status = each.stop()
-        assert status == 0, each.lines
+        assert status == 0, f"{status}: {each.rest()}"
         assert took_s < 1.0
 
 
@@ -209,6 +209,7 @@ def test_our_router_introduces_ros_nodes_to_each_other() -> None:
     endpoint = f"tcp/127.0.0.1:{os.environ['AIONODE_ROUTER_PORT']}"
     with ExitStack() as stack:
         router = stack.enter_context(Process("-m", "aionode", "router", "--listen", endpoint))
+        router.expect("Router is listening")
         one, two = ros_session(), ros_session()
         stack.callback(one.close)
         stack.callback(two.close)

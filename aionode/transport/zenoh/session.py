@@ -77,8 +77,13 @@ async def in_thread(work: Callable[[], T], late: Callable[[T], object] | None = 
         with suppress(RuntimeError):  # the loop was closed meanwhile
             loop.call_soon_threadsafe(deliver, result, error)
 
-    threading.Thread(target=run, name="aionode-zenoh", daemon=True).start()
-    return await done
+    thread = threading.Thread(target=run, name="aionode-zenoh", daemon=True)
+    thread.start()
+    try:
+        return await done
+    finally:
+        if done.done() and not done.cancelled():
+            thread.join()  # it has nothing left to do, and is gone when this returns
 
 
 def answering_ports(ports: Iterable[int]) -> list[int]:
