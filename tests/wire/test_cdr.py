@@ -574,6 +574,14 @@ def test_a_message_may_be_nested_a_hundred_times() -> None:
     assert decode_plainly(cls, memoryview(cdr.encode(message))) == message
 
 
+def test_no_name_of_a_class_gets_into_the_generated_code() -> None:
+    """Names of types and fields are checked; what a class is called in Python is not."""
+    cls: Any = type(Message)
+    odd = cls("x(); import os", (Message,), {"__annotations__": {"a": str}}, typename="test/msg/X")
+
+    assert cdr.decode(odd, cdr.encode(odd(a="b"))) == odd(a="b")
+
+
 def test_a_message_may_have_a_thousand_fields() -> None:
     """More than Python once allowed as arguments of a call."""
     cls = made("Large", {f"f{number}": (float64, str)[number % 2] for number in range(999)})

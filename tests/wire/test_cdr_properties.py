@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 from aionode.errors import DecodeError
 from aionode.message import Message, check
 from aionode.wire import cdr
+from aionode.wire.decoding import generate_decoder
+from aionode.wire.encoding import generate_encoder
 from aionode.wire.plain import decode_plainly
 from tests.strategies import message_classes, messages
 
@@ -45,6 +47,20 @@ def test_decode_undoes_encode(cls: type[Message], data: st.DataObject) -> None:
     assert cdr.decode(cls, memoryview(encoded)) == message
     assert decode_plainly(cls, memoryview(encoded)) == message
     check(cdr.decode(cls, encoded))
+
+
+@every_class
+def test_usual_messages_take_the_fast_way(cls: type[Message]) -> None:
+    """The generated functions do all that they can: else a codec would be right, and slow."""
+
+    def slow(_: Any) -> Any:
+        raise AssertionError
+
+    message = cls()
+    encoded = generate_encoder(cls, slow)(message)
+
+    assert generate_decoder(cls, slow, slow)(encoded) == message
+    assert generate_decoder(cls, slow)(memoryview(encoded)) == message
 
 
 @given(cls=any_class, data=st.data())
