@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
+import os
 import select
 import socket
 import threading
@@ -18,6 +19,7 @@ from aionode.errors import ConfigurationError, TransportError
 from aionode.transport.zenoh.handlers import direct
 from aionode.transport.zenoh_config import (
     LOOPBACK,
+    network_from,
     probed_ports,
     router_settings,
     session_settings,
@@ -113,7 +115,9 @@ def answering_ports(ports: Iterable[int]) -> list[int]:
     return answering
 
 
-def load_config(network: Network, settings: dict[str, Any], participant: str) -> zenoh.Config:
+def load_config(
+    network: Network, settings: dict[str, Any], participant: str | None = None
+) -> zenoh.Config:
     """Return Zenoh's own form of a configuration.
 
     Raises:
@@ -135,7 +139,8 @@ def load_config(network: Network, settings: dict[str, Any], participant: str) ->
         except zenoh.ZError as error:
             fits = f"key paths and values of Zenoh's configuration fit: {error}"
             raise ConfigurationError(network.override_source, f"{key}={text}", fits) from error
-    config.insert_json5("id", json.dumps(participant))
+    if participant is not None:
+        config.insert_json5("id", json.dumps(participant))
     return config
 
 
@@ -164,15 +169,18 @@ async def open_session(network: Network, participant: str) -> tuple[zenoh.Sessio
 async def open_router(listen: Iterable[str]) -> zenoh.Session:
     """Open a router for those who have no `rmw_zenohd`; `close_session` ends it.
 
+    ``ZENOH_CONFIG_OVERRIDE`` is honoured, for TLS and access control.
+
     Raises:
+        ConfigurationError: the override does not fit.
         TransportError: it cannot listen there, for example because another router does.
     """
     endpoints = list(listen)
+    name = "ZENOH_CONFIG_OVERRIDE"
+    network = network_from({name: os.environ.get(name, "")})
 
     def work() -> zenoh.Session:
-        config = zenoh.Config()
-        for key, value in router_settings(endpoints).items():
-            config.insert_json5(key, json.dumps(value))
+        config = load_config(network, router_settings(endpoints))
         try:
             return zenoh.open(config)
         except zenoh.ZError as error:
