@@ -1,7 +1,7 @@
 """One suite for every transport: a node in one process and its twin in another behave alike.
 
-`left` and `right` are two running nodes. With ``local`` they share a context, with ``zenoh`` each
-has its own, as two processes would.
+`left` and `right` are two running nodes. With ``local`` they share a context, with ``zenoh`` and
+``link`` each has its own, as two processes would.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class Pair(NamedTuple):
     beside_right: Context
 
 
-@pytest.fixture(params=["local", "zenoh"])
+@pytest.fixture(params=["local", "zenoh", "link"])
 async def pair(request: pytest.FixtureRequest) -> AsyncIterator[Pair]:
     """Two nodes that know each other."""
     async with AsyncExitStack() as stack, asyncio.timeout(30):
@@ -49,8 +49,8 @@ async def pair(request: pytest.FixtureRequest) -> AsyncIterator[Pair]:
             contexts = (context, context)
         else:
             contexts = (
-                await stack.enter_async_context(Context()),
-                await stack.enter_async_context(Context()),
+                await stack.enter_async_context(Context(link=request.param == "link")),
+                await stack.enter_async_context(Context(link=request.param == "link")),
             )
         left = await stack.enter_async_context(Node("left", context=contexts[0]))
         right = await stack.enter_async_context(Node("right", context=contexts[1]))

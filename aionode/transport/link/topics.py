@@ -69,30 +69,64 @@ class RemoteReader:
 
     __slots__ = ("switched", "used", "window")
 
-    def __init__(self, window: int, used: int, *, switched: bool) -> None:
+    def __init__(self, window: int, used: int) -> None:
         self.window = window
         self.used = used
-        self.switched = switched
+        self.switched = False
 
 
 class Route:
-    """The way from one publisher to the subscriptions of one other process."""
+    """The way from one publisher to the subscriptions of one other process.
 
-    __slots__ = ("connection", "readers", "sent", "stream")
+    What KEEP_ALL subscriptions there have no window for is parked here, and counts as waiting.
+    """
+
+    __slots__ = ("_parked", "_sent", "connection", "readers", "stream")
 
     def __init__(self, connection: Connection, depth: int, *, keep_all: bool) -> None:
         self.connection = connection
         self.stream = Stream(depth, keep_all=keep_all)
         self.readers: dict[bytes, RemoteReader] = {}
-        self.sent = 0
+        self._parked: deque[Packet] = deque()
+        self._sent = 0
+
+    def add(self, reader: bytes, window: int) -> None:
+        """Send to `reader` from now on; a window of 0 is without limit."""
+        self.readers[reader] = RemoteReader(window, self._sent)
+
+    def send(self, packet: Packet) -> None:
+        """Send a packet when everybody has a window for it."""
+        if self._parked or not self._has_window():
+            self._parked.append(packet)
+        else:
+            self._sent += 1
+            self.connection.put(packet, self.stream)
+
+    def go_on(self) -> None:
+        """Send what was parked, as far as there are windows now."""
+        while self._parked and self._has_window():
+            self._sent += 1
+            self.connection.put(self._parked.popleft(), self.stream)
+        self.connection.wake()
+
+    def end(self) -> None:
+        """Send what was parked, whoever has room for it."""
+        while self._parked:
+            self.connection.put(self._parked.popleft(), self.stream)
+
+    def _has_window(self) -> bool:
+        for reader in self.readers.values():
+            if reader.window and self._sent - reader.used >= reader.window:
+                return False
+        return True
 
     def has_room(self) -> bool:
-        """Whether nobody would lose one more message."""
-        return len(self.stream.waiting) < self.stream.depth and all(
-            self.sent - reader.used < reader.window
-            for reader in self.readers.values()
-            if reader.window
-        )
+        """Whether one more can wait."""
+        return len(self.stream.waiting) + len(self._parked) < self.stream.depth
+
+    def is_done(self) -> bool:
+        """Whether nothing waits here."""
+        return not self._parked and self.connection.idle
 
 
 class LinkWriter(Writer):
@@ -151,8 +185,7 @@ class LinkWriter(Writer):
             if len(payload) < SHARED_FROM:
                 packet = Packet(frame.pack(DATA, sequence, origin.source_ns, gid, payload))
                 for route in tuple(self._routes.values()):
-                    route.sent += 1
-                    route.connection.put(packet, route.stream)
+                    route.send(packet)
             else:
                 self._write_large(payload, origin)
         # Asked again each time, as somebody may have gone.
@@ -171,10 +204,9 @@ class LinkWriter(Writer):
         else:
             data = frame.pack(DATA, origin.sequence, origin.source_ns, gid, payload)
         for route in tuple(self._routes.values()):
-            route.sent += 1
             if memory is not None:
                 memory.users += 1
-            route.connection.put(Packet(data, memory), route.stream)
+            route.send(Packet(data, memory))
         if memory is not None:
             pool.release(memory)
 
@@ -186,11 +218,7 @@ class LinkWriter(Writer):
 
     async def drain(self) -> None:
         """Wait until `has_room`, and what was written has been handed on."""
-        while slow := [
-            route
-            for route in self._routes.values()
-            if not (route.connection.idle and route.has_room())
-        ]:
+        while slow := [route for route in self._routes.values() if not route.is_done()]:
             await slow[0].connection.progress()
         await self._zenoh.drain()
 
@@ -198,7 +226,8 @@ class LinkWriter(Writer):
         """Withdraw the publisher."""
         self._hub.writers.pop(self.endpoint.gid, None)
         self._zenoh.close()
-        for connection in self._routes:
+        for connection, route in self._routes.items():
+            route.end()
             connection.send(Kind.GONE, 0, self.endpoint.gid)
         self._routes.clear()
 
@@ -212,23 +241,23 @@ class LinkWriter(Writer):
             self._routes[connection] = route
         if not self.bounded:
             window = 0  # who drops its oldest waits for nobody
-        route.readers[reader] = RemoteReader(window, route.sent, switched=False)
+        route.add(reader, window)
         connection.send(Kind.OPENED, self._sequence, self.endpoint.gid, reader)
         self.update()
 
     def switched(self, connection: Connection, reader: bytes) -> None:
         """Note that `reader` needs Zenoh no longer."""
-        remote = self._remote(connection, reader)
-        if remote is not None:
-            remote.switched = True
+        route = self._routes.get(connection)
+        if route is not None and reader in route.readers:
+            route.readers[reader].switched = True
             self.update()
 
     def credit(self, connection: Connection, reader: bytes, used: int) -> None:
         """Note that `reader` has used `used` more messages."""
-        remote = self._remote(connection, reader)
-        if remote is not None:
-            remote.used += used
-            connection.wake()
+        route = self._routes.get(connection)
+        if route is not None and reader in route.readers:
+            route.readers[reader].used += used
+            route.go_on()
 
     def leave(self, connection: Connection, reader: bytes) -> None:
         """Send to `reader` no longer."""
@@ -236,19 +265,15 @@ class LinkWriter(Writer):
         if route is None:
             return
         route.readers.pop(reader, None)
+        route.go_on()
         if not route.readers:
             del self._routes[connection]
-        connection.wake()
         self.update()
 
     def broken(self, connection: Connection) -> None:
         """Send over Zenoh again: `connection` is closed."""
         if self._routes.pop(connection, None) is not None:
             self.update()
-
-    def _remote(self, connection: Connection, reader: bytes) -> RemoteReader | None:
-        route = self._routes.get(connection)
-        return None if route is None else route.readers.get(reader)
 
     def update(self) -> bool:
         """Find out whether somebody needs Zenoh: with a token, or a stranger without."""
