@@ -25,7 +25,7 @@ from aionode.wire.layout import (
 from aionode.wire.packing import TEXT, Item, lay_out
 from aionode.wire.source import Misfit
 from aionode.wire.texts import TextsWriter, wide_bytes, wide_texts
-from aionode.wire.usual import base_array, octets, real_numbers, whole_numbers
+from aionode.wire.usual import octets, real_numbers, usual_array, whole_numbers
 from aionode.wire.writing import Writing
 
 if TYPE_CHECKING:
@@ -234,9 +234,9 @@ class Encoding(Writing):
         primitive = PRIMITIVES[kind.kind]
         dtype = source.constant("dtype", np.dtype(f"<{primitive.dtype}"))
         array = source.constant("ndarray", np.ndarray)
-        base = source.constant("base_array", base_array)
+        closer = source.constant("usual", usual_array)
         unusual = f"{local}.__class__ is not {array} or {local}.dtype is not {dtype}"
-        source.line(f"if {unusual}: {local} = {base}({local}, {dtype})")
+        source.line(f"if {unusual}: {local} = {closer}({local}, {dtype}, {primitive.code!r})")
         source.require(f"{local}.ndim == 1")
         if kind.container == "array":
             source.require(f"len({local}) == {kind.size}")

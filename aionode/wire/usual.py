@@ -6,12 +6,16 @@ packed as it stands; a `Misfit` makes the encoder leave the message to a snapsho
 
 from __future__ import annotations
 
+import struct
 from numbers import Real
 from typing import Any
 
 from aionode.wire.source import Misfit
 
-__all__ = ["base_array", "octets", "real_numbers", "whole_numbers"]
+__all__ = ["octets", "real_numbers", "usual_array", "whole_numbers"]
+
+CLASSES: dict[str, set[type]] = {"b": {bool}, "i": {int}, "u": {int}, "f": {float, int}}
+"""Classes of the numbers in a list that need no closer look, by kind of dtype."""
 
 
 def octets(value: object) -> Any:
@@ -31,14 +35,29 @@ def whole_numbers(*values: object) -> None:
 
 def real_numbers(*values: object) -> None:
     """Raise where a value only behaves like a number, as a bool, a Decimal or an array do."""
-    if not all(isinstance(value, Real) and not isinstance(value, bool) for value in values):
-        raise Misfit
+    for value in values:
+        # The first question is the quick one; numpy's float64 is a float.
+        if not isinstance(value, float) and (
+            isinstance(value, bool) or not isinstance(value, int | Real)
+        ):
+            raise Misfit
 
 
-def base_array(value: object, dtype: Any) -> Any:
-    """Return what is an ndarray of this dtype, but of a subclass such as memmap, as an ndarray."""
+def usual_array(value: object, dtype: Any, code: str) -> Any:
+    """Return a list of Python's own numbers, or an array of a subclass of ndarray, as an ndarray.
+
+    Args:
+        value: What stands where an array is expected.
+        dtype: The array's.
+        code: The letter of its elements for `struct`.
+    """
     import numpy as np
 
-    if not isinstance(value, np.ndarray) or value.dtype != dtype:
+    if isinstance(value, np.ndarray):
+        if value.dtype != dtype:
+            raise Misfit
+        return value.view(np.ndarray)
+    if not isinstance(value, list | tuple) or not set(map(type, value)) <= CLASSES[dtype.kind]:
         raise Misfit
-    return value.view(np.ndarray)
+    # struct knows the ranges.
+    return np.frombuffer(struct.pack(f"<{len(value)}{code}", *value), dtype)
