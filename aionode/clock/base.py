@@ -56,15 +56,11 @@ class TimeBase(ABC):
 
 
 class MachineTime(TimeBase):
-    """The clocks of the machine."""
+    """The clocks of the machine: UTC, and the time since some moment before this process began."""
 
-    def system_ns(self) -> int:
-        """Return the machine's idea of UTC, in nanoseconds since 1970."""
-        return time.time_ns()
-
-    def steady_ns(self) -> int:
-        """Return nanoseconds since some moment before this process began."""
-        return time.monotonic_ns()
+    # Python's own functions: each message is stamped with one, and a method would double its cost.
+    system_ns = staticmethod(time.time_ns)
+    steady_ns = staticmethod(time.monotonic_ns)
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
         """Have the running loop call `callback` at `steady_ns`.

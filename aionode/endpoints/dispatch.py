@@ -120,12 +120,20 @@ class Dispatch:
         Raises:
             Exception: what the callback raised, where `on_error` says so.
         """
+        if self._offload:
+            return self._finish(_Offloaded(self, args))
+        # `enter` written out: a call less for each message
+        began_ns = perf_ns()
         try:
-            outcome = self.enter(*args)
+            outcome = self.callback(*args)
         except Exception as error:  # noqa: BLE001  # the policy decides, see `fail`
+            self._record_sync(perf_ns() - began_ns)
             self.fail(error)
             return None
-        return None if outcome is None else self._finish(outcome)
+        if outcome is not None and isinstance(outcome, Awaitable):
+            return self._finish(_Measured(self, outcome))
+        self._record_sync(perf_ns() - began_ns)
+        return None
 
     async def _finish(self, outcome: Any) -> None:
         try:
@@ -190,8 +198,8 @@ class Dispatch:
             self._on_error(error, self._context)
 
     def _record_sync(self, took_ns: int) -> None:
-        self.stats.run_time.record(took_ns)
-        self.stats.blocking.record(took_ns)
+        stats = self.stats
+        stats.run_time.record_for_both(stats.blocking, took_ns)
         if took_ns > self.budget_ns:
             self.report_blocking(took_ns)
 
@@ -340,10 +348,11 @@ async def pump(
 async def _pump_in_order(
     inbox: Inbox[T], handle: Callable[[int, T], Coroutine[Any, Any, None] | None]
 ) -> None:
+    queue = inbox.queue  # asking the inbox itself costs a call for each item
     while True:
         await inbox.wait()
         turn_ends_ns = perf_ns() + SLICE_NS
-        while inbox:
+        while queue:
             rest = handle(*inbox.pop())
             if rest is not None:
                 await rest

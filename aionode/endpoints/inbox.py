@@ -23,24 +23,30 @@ class Inbox(Generic[T]):
 
     With KEEP_LAST a full inbox drops its oldest item, with KEEP_ALL it refuses the newest; both are
     counted in `stats.dropped`. Putting never waits and needs no running loop.
+
+    Attributes:
+        depth: How many items it holds at most.
+        keep_all: Whether a full one refuses the newest item.
+        stats: Where dropped items are counted.
+        queue: The items with the `perf_ns` of their arrival, to be looked at only.
     """
 
-    __slots__ = ("_queue", "_readers", "_writers", "depth", "keep_all", "stats")
+    __slots__ = ("_readers", "_writers", "depth", "keep_all", "queue", "stats")
 
     def __init__(self, depth: int, stats: CallbackStats, *, keep_all: bool = False) -> None:
         self.depth = depth
         self.keep_all = keep_all
         self.stats = stats
-        self._queue: deque[tuple[int, T]] = deque()
+        self.queue: deque[tuple[int, T]] = deque()
         self._readers: list[asyncio.Future[None]] = []
         self._writers: list[asyncio.Future[None]] = []
 
     def __len__(self) -> int:
-        return len(self._queue)
+        return len(self.queue)
 
     def put(self, item: T) -> None:
         """Add `item`, and wake whoever waits for it."""
-        queue = self._queue
+        queue = self.queue
         if len(queue) >= self.depth:
             self.stats.dropped += 1
             if self.keep_all:
@@ -52,18 +58,18 @@ class Inbox(Generic[T]):
 
     def pop(self) -> tuple[int, T]:
         """Take the oldest item, with the `perf_ns` of its arrival; IndexError when empty."""
-        entry = self._queue.popleft()
+        entry = self.queue.popleft()
         if self._writers:
             _wake(self._writers)
         return entry
 
     def has_room(self) -> bool:
         """Whether an item can be added without losing one that should be kept."""
-        return not self.keep_all or len(self._queue) < self.depth
+        return not self.keep_all or len(self.queue) < self.depth
 
     async def wait(self) -> None:
         """Wait until there is an item, or until woken by `wake`. Cancelling loses nothing."""
-        if not self._queue:
+        if not self.queue:
             await _sleep_in(self._readers)
 
     async def wait_for_room(self) -> None:
@@ -79,9 +85,9 @@ class Inbox(Generic[T]):
 
     def discard(self) -> list[T]:
         """Remove and count what was not taken, and return it."""
-        unread = [item for _, item in self._queue]
+        unread = [item for _, item in self.queue]
         self.stats.dropped += len(unread)
-        self._queue.clear()
+        self.queue.clear()
         return unread
 
     def wake(self) -> None:

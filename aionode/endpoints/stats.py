@@ -35,12 +35,30 @@ class Distribution:
 
     def record(self, duration_ns: int) -> None:
         """Add one duration, which must not be negative."""
-        self.max_ns = max(self.max_ns, duration_ns)
+        if duration_ns > self.max_ns:  # noqa: PLR1730  # max() is a call, on the path of messages
+            self.max_ns = duration_ns
         shifted = duration_ns + _OFFSET
         octave = shifted.bit_length() - _SUB_BUCKETS_LOG2 - 1
         bucket = (octave << _SUB_BUCKETS_LOG2) + (shifted >> octave)
-        buckets = self._buckets
-        buckets[bucket] = buckets.get(bucket, 0) + 1
+        try:
+            self._buckets[bucket] += 1
+        except KeyError:
+            self._buckets[bucket] = 1
+
+    def record_for_both(self, other: Distribution, duration_ns: int) -> None:
+        """Do `record` for this and for `other`, in less time than twice."""
+        if duration_ns > self.max_ns:  # noqa: PLR1730  # as above
+            self.max_ns = duration_ns
+        if duration_ns > other.max_ns:  # noqa: PLR1730  # as above
+            other.max_ns = duration_ns
+        shifted = duration_ns + _OFFSET
+        octave = shifted.bit_length() - _SUB_BUCKETS_LOG2 - 1
+        bucket = (octave << _SUB_BUCKETS_LOG2) + (shifted >> octave)
+        for buckets in (self._buckets, other._buckets):
+            try:
+                buckets[bucket] += 1
+            except KeyError:
+                buckets[bucket] = 1
 
     @property
     def count(self) -> int:
