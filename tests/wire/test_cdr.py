@@ -549,6 +549,22 @@ def test_a_whole_character_beyond_16_bits_is_read_too() -> None:
     assert cdr.decode(WString, encoded) == WString(data="\N{ROBOT FACE}")
 
 
+class WideWords(Message, typename="test/msg/WideWords"):
+    """Several of them."""
+
+    texts: Sequence[wstring] = DEFAULT
+
+
+@pytest.mark.parametrize("data", ["ffffffff", "02000000 01000000 61000000 02000000 62000000"])
+def test_wide_strings_that_are_not_there_are_a_decode_error(data: str) -> None:
+    """More are announced than there are bytes, or the last one is cut."""
+    message = WideWords(texts=["a", "bc", ""])
+    assert cdr.decode(WideWords, cdr.encode(message)) == message
+
+    with pytest.raises(DecodeError, match="texts"):
+        cdr.decode(WideWords, bytes.fromhex("00010000" + data))
+
+
 # Unusual types.
 
 
