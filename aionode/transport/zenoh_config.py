@@ -66,6 +66,7 @@ class Network:
         discovery_range: How far it looks for others.
         static_peers: Zenoh endpoints that it dials besides, such as ``tcp/10.0.0.7:7447``.
         config_file: A Zenoh configuration that takes the place of aionode's own.
+        config_source: Where its path comes from, for error texts.
         overrides: Settings that win over all others: key path and JSON5 text.
         override_source: Where the overrides come from, for error texts.
         meeting_ports: Ports on which processes of one machine meet.
@@ -76,6 +77,7 @@ class Network:
     discovery_range: DiscoveryRange = DiscoveryRange.LOCALHOST
     static_peers: tuple[str, ...] = ()
     config_file: str | None = None
+    config_source: str = "ZENOH_SESSION_CONFIG_URI"
     overrides: tuple[tuple[str, str], ...] = ()
     override_source: str = "config"
     meeting_ports: tuple[int, ...] = MEETING_PORTS
@@ -110,12 +112,14 @@ def network_from(
     )
     overrides = parse_overrides(environ.get("ZENOH_CONFIG_OVERRIDE", ""))
     override_source = "ZENOH_CONFIG_OVERRIDE"
-    config_file = environ.get("ZENOH_SESSION_CONFIG_URI") or None
+    config_source = "ZENOH_SESSION_CONFIG_URI"
+    config_file = environ.get(config_source) or None
     if isinstance(config, Mapping):
         overrides += tuple((key, json.dumps(value)) for key, value in config.items())
         override_source = "config"
     elif config is not None:
         config_file = str(config)
+        config_source = "config"
     if static_peers is None:
         peers_source = "ROS_STATIC_PEERS"
         static_peers = environ.get(peers_source, "").split(";")
@@ -133,6 +137,7 @@ def network_from(
             for endpoint in peer_endpoints(peer.strip(), peers_source, (router_port, *ports))
         ),
         config_file=config_file,
+        config_source=config_source,
         overrides=overrides,
         override_source=override_source,
         meeting_ports=ports,

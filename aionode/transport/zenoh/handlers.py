@@ -10,9 +10,14 @@ import zenoh
 
 from aionode.errors import TransportError
 
-__all__ = ["direct", "translated"]
+__all__ = ["direct", "reason", "translated"]
 
 T = TypeVar("T")
+
+
+def reason(error: zenoh.ZError) -> str:
+    """Return what went wrong, without the place in Zenoh's own source."""
+    return str(error).partition(" at /")[0]
 
 
 @contextmanager
@@ -21,7 +26,7 @@ def translated(what: str) -> Iterator[None]:
     try:
         yield
     except zenoh.ZError as error:
-        raise TransportError(f"{what}: {error}") from error
+        raise TransportError(f"{what}: {reason(error)}") from error
 
 
 def direct(

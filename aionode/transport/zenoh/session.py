@@ -16,7 +16,7 @@ import zenoh
 
 from aionode.clock import perf_ns
 from aionode.errors import ConfigurationError, TransportError
-from aionode.transport.zenoh.handlers import direct
+from aionode.transport.zenoh.handlers import direct, reason
 from aionode.transport.zenoh_config import (
     LOOPBACK,
     network_from,
@@ -129,15 +129,15 @@ def load_config(
         try:
             config = zenoh.Config.from_file(path)
         except zenoh.ZError as error:
-            fits = f"the path of a Zenoh configuration (JSON5) fits: {error}"
-            raise ConfigurationError("ZENOH_SESSION_CONFIG_URI", path, fits) from error
+            fits = f"the path of a Zenoh configuration (JSON5) fits: {reason(error)}"
+            raise ConfigurationError(network.config_source, path, fits) from error
     for key, value in settings.items():
         config.insert_json5(key, json.dumps(value))
     for key, text in network.overrides:
         try:
             config.insert_json5(key, text)
         except zenoh.ZError as error:
-            fits = f"key paths and values of Zenoh's configuration fit: {error}"
+            fits = f"key paths and values of Zenoh's configuration fit: {reason(error)}"
             raise ConfigurationError(network.override_source, f"{key}={text}", fits) from error
     if participant is not None:
         config.insert_json5("id", json.dumps(participant))
@@ -156,12 +156,15 @@ async def open_session(network: Network, participant: str) -> tuple[zenoh.Sessio
         answering = answering_ports(probed_ports(network))
         config = load_config(network, session_settings(network, answering), participant)
         try:
-            return zenoh.open(config), len(answering)
+            session = zenoh.open(config)
         except zenoh.ZError as error:
             raise TransportError(
-                f"Zenoh: no session could be opened: {error}; look at "
+                f"Zenoh: no session could be opened: {reason(error)}; look at "
                 "ZENOH_SESSION_CONFIG_URI, ZENOH_CONFIG_OVERRIDE and Context(config=...)"
             ) from error
+        # Whoever was configured is hoped for, but may not be there.
+        configured = bool(network.static_peers or network.config_file)
+        return session, len(answering) + configured
 
     return await in_thread(work, late=lambda opened: opened[0].close())
 
@@ -185,7 +188,8 @@ async def open_router(listen: Iterable[str]) -> zenoh.Session:
             return zenoh.open(config)
         except zenoh.ZError as error:
             raise TransportError(
-                f"router on {', '.join(endpoints)}: {error}; is another router running there?"
+                f"router on {', '.join(endpoints)}: {reason(error)}; "
+                "is another router running there?"
             ) from error
 
     return await in_thread(work, late=lambda session: session.close())

@@ -15,7 +15,7 @@ from aionode.qos import DurabilityPolicy, HistoryPolicy, ReliabilityPolicy
 from aionode.transport.base import Origin, Writer
 from aionode.transport.sender import Sender
 from aionode.transport.wakeup import Lane, PatientLane
-from aionode.transport.zenoh.handlers import direct
+from aionode.transport.zenoh.handlers import direct, reason
 from aionode.transport.zenoh.link import Entity
 from aionode.wire import attachment, cdr
 from aionode.wire.keyexpr import buffer_key, data_key
@@ -36,7 +36,7 @@ logger = logging.getLogger("aionode.transport.zenoh")
 KEEP_ALL_DEPTH = 10_000
 """How many messages a KEEP_ALL publisher holds that are not sent yet, or are kept for late ones."""
 
-BACKLOG = 1_000
+BACKLOG = 10_000
 """How many small messages wait for the loop at least, before the oldest are dropped."""
 
 BULK_BYTES = 60_000
@@ -184,7 +184,7 @@ class ZenohWriter(Entity, Writer):
             try:
                 publisher.put(payload, attachment=extra)
             except zenoh.ZError as error:
-                raise TransportError(f"{self._key}: {error}") from error
+                raise TransportError(f"{self._key}: {reason(error)}") from error
 
     def has_room(self) -> bool:
         """Whether one more message can wait to be sent."""
