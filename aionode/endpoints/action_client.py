@@ -10,7 +10,7 @@ from uuid import uuid4
 
 from aionode.endpoints.action_server import expect_action_type, reason_id
 from aionode.endpoints.client_goal import ActionResult, ClientGoalHandle
-from aionode.endpoints.dispatch import accepts, pump
+from aionode.endpoints.dispatch import accepts, give_way, pump
 from aionode.endpoints.entity import Entity
 from aionode.endpoints.inbox import Inbox
 from aionode.endpoints.stats import CallbackStats
@@ -46,6 +46,12 @@ ANSWER_LIMIT_S = 1.0
 """How long an answer is waited for that should come at once, in seconds of the machine."""
 
 UNLIMITED = 2**63 - 1
+
+TURNS_FOR_FEEDBACK = 10
+"""For how many turns of the loop a goal outlives its result.
+
+Feedback that was sent before the result has arrived then, but may wait in other queues.
+"""
 
 FEEDBACK_QOS = QoSProfile(depth=100)
 """Of the feedback of all goals together, as much as one goal keeps."""
@@ -192,13 +198,23 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         try:
             async with asyncio.timeout(timeout_sec):
                 while not self.server_is_ready():
-                    wait = self._graph.changed()
-                    self._waits.add(wait)
-                    wait.add_done_callback(self._waits.discard)
-                    await wait
+                    await self._change()
         except TimeoutError:
             return self.server_is_ready()
         return True
+
+    async def _change(self) -> None:
+        """Wait until endpoints come or go.
+
+        Raises:
+            CancelledError: the client was destroyed meanwhile.
+        """
+        wait = self._graph.changed()
+        self._waits.add(wait)
+        wait.add_done_callback(self._waits.discard)
+        await wait
+        if self.destroyed:  # in the same moment as the change, too late to cancel the wait
+            raise asyncio.CancelledError(f"{self.subject}: destroyed")
 
     # Goals
 
@@ -311,6 +327,8 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         self, goal: ClientGoalHandle[ResultT, FeedbackT], timeout_sec: float | None = None
     ) -> Any:
         """Ask the server to cancel `goal`. For its handle."""
+        if not self._cancel_goal.service_is_ready():  # it was, so it has gone
+            raise ServiceUnavailableError(self._cancel_goal.srv_name)
         request = self.action_type.Impl.CancelGoalService.Request()
         request.goal_info.goal_id = goal.goal_id
         return await self._cancel_goal.call(request, timeout_sec)
@@ -345,9 +363,12 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
 
     async def _until_end(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
         try:
+            await self._until_askable()
             response = await self._ask(goal.goal_id)
             status = GoalStatus(response.status)
             text = await self._reason(goal) if status is GoalStatus.ABORTED else ""
+            for _ in range(TURNS_FOR_FEEDBACK):
+                await give_way()
         except ServiceUnavailableError:
             problem = "the server went away before it ended"
             goal.end(lost=GoalLostError(self.action_name, goal.text, problem))
@@ -358,6 +379,17 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
             goal.end(ActionResult(status, response.result, text))
         finally:
             self._forget(goal)
+
+    async def _until_askable(self) -> None:
+        """Wait for the server's other half, which may be found later than its first.
+
+        Raises:
+            ServiceUnavailableError: the server has gone since it accepted the goal.
+        """
+        while not self._get_result.service_is_ready():
+            if not self._send_goal.service_is_ready():
+                raise ServiceUnavailableError(self._get_result.srv_name)
+            await self._change()
 
     async def _ask(self, goal_id: Any, timeout_sec: float | None = None) -> Any:
         request = self.action_type.Impl.GetResultService.Request(goal_id=goal_id)
@@ -377,9 +409,9 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
 
     def close(self) -> None:
         """Withdraw the client, and cancel what waits; goals go on at the server."""
-        self._close_parts()
-        for wait in list(self._waits):
+        for wait in list(self._waits):  # first, as the end of the parts is a change of the graph
             wait.cancel(f"{self.subject}: destroyed")
+        self._close_parts()
         goals, self._goals = self._goals, {}
         for goal in goals.values():
             goal.end()

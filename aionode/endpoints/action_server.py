@@ -6,6 +6,7 @@ import asyncio
 import math
 from collections.abc import Awaitable, Callable, Coroutine
 from concurrent.futures import Future as ThreadFuture
+from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
@@ -15,6 +16,7 @@ from aionode.endpoints.entity import Entity
 from aionode.endpoints.inbox import Inbox
 from aionode.endpoints.server_goal import ServerGoalHandle
 from aionode.endpoints.stats import CallbackStats
+from aionode.errors import QueueFullError
 from aionode.goal import (
     CancelCode,
     CancelResponse,
@@ -46,6 +48,9 @@ FeedbackT = TypeVar("FeedbackT", bound=Message)
 
 UNLIMITED = 2**63 - 1
 """Depth of the queues of goals: `goal_callback` decides how many there are."""
+
+DRAIN_LIMIT_S = 1.0
+"""How long a result waits for the last feedback to be sent, in seconds of the machine."""
 
 
 class AbortReason(Exception):  # noqa: N818  # a message to the client, which reads its name
@@ -459,10 +464,17 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
                 raise AbortReason(aborted.error_text)
             return response
         status, result = await goal.outcome()
+        await self._send_feedback_first()
         response.status = int(status)
         if result is not None:
             response.result = result
         return response
+
+    async def _send_feedback_first(self) -> None:
+        """Let feedback out before the result: clients stop to listen when they have that."""
+        with suppress(TimeoutError):  # a full KEEP_ALL reader must not hold results back
+            async with asyncio.timeout(DRAIN_LIMIT_S):
+                await self._feedback.drain()
 
     def checked_result(self, result: ResultT) -> ResultT:
         """Return a copy of `result` that nobody changes. For goal handles.
@@ -502,7 +514,8 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             )
         if not self.destroyed:
             message = self.action_type.Impl.FeedbackMessage(goal_id=goal.goal_id, feedback=feedback)
-            self._feedback.publish(message)
+            with suppress(QueueFullError):  # the goal goes on, whoever does not read
+                self._feedback.publish(message)
 
     def publish_status(self) -> None:
         """Send the states of all goals that are active or kept. For goal handles."""
@@ -510,14 +523,14 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             return
         from aionode.interfaces.action_msgs.msg import GoalStatus as GoalStatusMessage
 
-        self._status.publish(
-            self.action_type.Impl.GoalStatusMessage(
-                status_list=[
-                    GoalStatusMessage(goal_info=goal.info, status=int(goal.status))
-                    for goal in self._goals.values()
-                ]
-            )
+        message = self.action_type.Impl.GoalStatusMessage(
+            status_list=[
+                GoalStatusMessage(goal_info=goal.info, status=int(goal.status))
+                for goal in self._goals.values()
+            ]
         )
+        with suppress(QueueFullError):  # as above
+            self._status.publish(message)
 
     def warn(self, text: str) -> None:
         """Log what a callback did wrong. For goal handles."""
