@@ -1,0 +1,160 @@
+"""Opening and closing: what cannot be opened is said in words, and nothing is left behind."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import socket
+import threading
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from aionode.context import Context
+from aionode.errors import ConfigurationError, TransportError
+from aionode.interfaces.std_msgs.msg import Int32
+from aionode.settle import one_turn
+from aionode.transport.zenoh.session import (
+    answering_ports,
+    close_session,
+    in_thread,
+    open_router,
+)
+from tests.peers import free_ports, quiet_node, ros_router, ros_session
+
+
+def test_only_ports_that_accept_a_connection_answer() -> None:
+    """Who listens is dialled, and a free port is taken."""
+    with closing(socket.create_server(("127.0.0.1", 0))) as server:
+        taken = server.getsockname()[1]
+        (free,) = free_ports(1)
+
+        assert answering_ports([taken, free]) == [taken]
+
+
+async def test_a_setting_that_zenoh_does_not_know_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It comes from a variable that was set long ago."""
+    monkeypatch.setenv("ZENOH_CONFIG_OVERRIDE", "mode='nonsense'")
+    with pytest.raises(ConfigurationError, match="ZENOH_CONFIG_OVERRIDE: \"mode='nonsense'\""):
+        async with Context():
+            pass
+
+
+async def test_a_setting_of_the_program_is_named_as_such() -> None:
+    """Then the variables are not to blame."""
+    with pytest.raises(ConfigurationError, match="config: 'no/such/setting=1' given"):
+        async with Context(config={"no/such/setting": 1}):
+            pass
+
+
+async def test_a_configuration_file_that_is_none_is_named(tmp_path: Path) -> None:
+    """With the reason."""
+    missing = tmp_path / "missing.json5"
+    with pytest.raises(ConfigurationError, match=f"config: '{missing}' given"):
+        async with Context(config=missing):
+            pass
+
+
+async def test_a_configuration_file_takes_the_place_of_all_settings(tmp_path: Path) -> None:
+    """Two contexts that its author links hear each other."""
+    (port,) = free_ports(1)
+    listening, dialling = tmp_path / "listen.json5", tmp_path / "dial.json5"
+    common = (
+        "scouting: {multicast: {enabled: false}}, "
+        "open: {return_conditions: {connect_scouted: false}}"
+    )
+    listening.write_text(
+        f"{{mode: 'peer', listen: {{endpoints: ['tcp/127.0.0.1:{port}']}}, {common}}}"
+    )
+    dialling.write_text(
+        f"{{mode: 'client', connect: {{endpoints: ['tcp/127.0.0.1:{port}']}}, {common}}}"
+    )
+    async with (
+        quiet_node("a", Context(config=listening)) as a,
+        quiet_node("b", Context(config=f"file://{dialling}")) as b,
+    ):
+        subscription = b.create_subscription(Int32, "n")
+        publisher = a.create_publisher(Int32, "n", 10)
+        await publisher.wait_for_subscribers()
+        publisher.publish(Int32(data=1))
+        assert (await subscription.receive()).data == 1
+
+
+async def test_a_port_that_is_taken_is_named() -> None:
+    """Two routers on one port cannot be."""
+    endpoint = f"tcp/127.0.0.1:{os.environ['AIONODE_ROUTER_PORT']}"
+    first = await open_router([endpoint])
+    try:
+        with pytest.raises(TransportError, match="is another router running there"):
+            await open_router([endpoint])
+    finally:
+        await close_session(first)
+
+
+@pytest.mark.parametrize("router_first", [True, False])
+async def test_ros_nodes_are_found_through_a_router(router_first: bool) -> None:
+    """With rmw_zenoh's own configuration, whichever starts first."""
+    router = await asyncio.to_thread(ros_router) if router_first else None
+    async with quiet_node("ours") as ours:
+        ros = await asyncio.to_thread(ros_session)
+        if router is None:
+            router = await asyncio.to_thread(ros_router)
+        try:
+            token = ros.liveliness().declare_token(
+                f"@ros2_lv/{ours.context.domain_id}/{ros.zid()}/0/0/NN/%/%/theirs"
+            )
+            names = {"ours", "theirs"}
+            await ours.graph.until(lambda: names == {n.name for n in ours.graph.nodes()})
+            token.undeclare()
+            await ours.graph.until(lambda: {"ours"} == {n.name for n in ours.graph.nodes()})
+        finally:
+            await asyncio.to_thread(ros.close)
+            await asyncio.to_thread(router.close)
+
+
+async def test_opening_can_be_cancelled() -> None:
+    """Ctrl-C does not wait for the network, and nothing stays open."""
+    context = Context()
+    opening = asyncio.get_running_loop().create_task(context.acquire())
+    await one_turn()
+    opening.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await opening
+
+    async with context:
+        assert context.ok()
+
+
+async def test_work_in_a_thread_returns_its_result_and_leaves_no_thread() -> None:
+    """As does its error."""
+    before = threading.active_count()
+
+    assert await in_thread(lambda: 5) == 5
+    with pytest.raises(ZeroDivisionError):
+        await in_thread(lambda: 1 // 0)
+    assert threading.active_count() == before
+
+
+async def test_a_result_that_nobody_waits_for_is_given_up() -> None:
+    """A session that opens after its context was cancelled is closed."""
+    gate, late = threading.Event(), threading.Event()
+    results: list[int] = []
+
+    def work() -> int:
+        gate.wait()
+        return 5
+
+    def give_up(result: int) -> None:
+        results.append(result)
+        late.set()
+
+    waiting = asyncio.get_running_loop().create_task(in_thread(work, give_up))
+    await one_turn()
+    waiting.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await waiting
+    gate.set()
+    await asyncio.to_thread(late.wait)
+
+    assert results == [5]
