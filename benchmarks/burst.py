@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import zenoh
-from roundtrip import (
+from roundtrip import (  # type: ignore[import-not-found]  # beside this file when it is run
     ATTACHMENT,
     PORTS,
     RAW_PAYLOAD,

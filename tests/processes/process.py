@@ -73,7 +73,7 @@ class Process:
             if stream is not None:
                 stream.close()
         if error is not None:
-            error.add_note(f"{self._popen.args}: {[line for _, line in self.lines]}")
+            error.add_note(f"{self._popen.args!r}: {[line for _, line in self.lines]}")
 
     def expect(self, *texts: str) -> float:
         """Wait until each of `texts` began a line; return how long after the start the last came.

@@ -219,7 +219,7 @@ def test_our_router_introduces_ros_nodes_to_each_other() -> None:
         publisher = one.declare_publisher("key")
         linked = threading.Event()
         publisher.declare_matching_listener(lambda s: linked.set() if s.matching else None)
-        if publisher.matching_status.matching:
+        if publisher.matching_status.matching:  # type: ignore[attr-defined]  # no bool
             linked.set()
         assert linked.wait(15), router.lines
         publisher.put(b"hello")

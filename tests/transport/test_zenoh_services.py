@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 import zenoh  # noqa: TID251  # plays the other participants, without aionode
 
+from aionode.endpoints.service import Client
 from aionode.errors import RequestTimeoutError, ServiceError, ServiceUnavailableError
 from aionode.interfaces import get_service
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
@@ -217,7 +218,7 @@ async def test_requests_and_responses_are_those_of_rmw_zenoh(half: str) -> None:
     async with quiet_node("node") as node:
         with raw_session() as session:
             for number, (name, golden) in enumerate(SERVICES.items(), 1):
-                srv_type = get_service(name)
+                srv_type: Any = get_service(name)
                 request = from_builtins(srv_type.Request, ros_value(golden["request"]["value"]))
                 response = from_builtins(srv_type.Response, ros_value(golden["response"]["value"]))
                 key = f"{DOMAIN_ID}/srv{number}/{golden['dds_type']}/{golden['rihs01']}"
@@ -250,7 +251,7 @@ async def test_requests_and_responses_are_those_of_rmw_zenoh(half: str) -> None:
                         f"@ros2_lv/{DOMAIN_ID}/{session.zid()}/0/{number}/SS/%/%/raw/%srv{number}/"
                         f"{golden['dds_type']}/{golden['rihs01']}/::,10:,:,:,,"
                     )
-                    client = node.create_client(srv_type, f"srv{number}")
+                    client: Client[Any, Any] = node.create_client(srv_type, f"srv{number}")
                     await client.wait_for_service()
                     call = asyncio.gather(client.call(request))
                     (query,) = await queries.have(1)
@@ -264,7 +265,7 @@ async def test_requests_and_responses_are_those_of_rmw_zenoh(half: str) -> None:
                         attachment=attachment.pack(1, 1, extra.gid),
                     )
                     query.drop()
-                    assert await call == [response]
+                    assert list(await call) == [response]
                     token.undeclare()
                     queryable.undeclare()
 
