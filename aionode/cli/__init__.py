@@ -18,6 +18,26 @@ one for each noun      its verbs
 ====================== =============================================================
 """
 
-from aionode.cli.command import main
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 __all__ = ["main"]
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line and return the exit status.
+
+    Args:
+        argv: The arguments without the name of the program; those of the process without it.
+    """
+    try:
+        # Imported here, so that Ctrl-C in the first moment leaves no traceback.
+        from aionode.cli import command
+
+        return command.main(argv)
+    except KeyboardInterrupt:
+        return 130  # what shells know as ended by Ctrl-C

@@ -186,7 +186,9 @@ async def wait_for_server(
     """
     name = client.action_name
     output.progress("Waiting for an action server to become available...")
-    if not client.server_is_ready() and (hint := lookup.close_to(name, actions_of(node))):
+    if client.server_is_ready():
+        return
+    if hint := lookup.close_to(name, actions_of(node)):
         output.warn(f"Nobody serves '{name}'{hint}")
     with output.waiting(f"waiting for somebody to serve {name}"):
         ready = await client.wait_for_server(timeout_s)

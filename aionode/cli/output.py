@@ -7,6 +7,7 @@ shows it at once.
 from __future__ import annotations
 
 import contextlib
+import math
 import sys
 from typing import TYPE_CHECKING, Any, TextIO
 
@@ -47,9 +48,12 @@ class Output:
         return not self.json and self._stdout.isatty()
 
     def item(self, text: str, record: object) -> None:
-        """Print one item of data: `text`, or `record` in one line of JSON."""
+        """Print one item of data: `text`, or `record` in one line of JSON.
+
+        A float that JSON does not have is a word there: ``NaN``, ``Infinity``, ``-Infinity``.
+        """
         if self.json:
-            self._write(msgspec.json.encode(record, enc_hook=str).decode())
+            self._write(msgspec.json.encode(with_words(record)).decode())
         else:
             self._write(text)
 
@@ -103,3 +107,19 @@ class Output:
 
         with Live(console=Console(file=self._stdout), auto_refresh=False) as live:
             yield lambda table: live.update(table, refresh=True)
+
+
+def with_words(plain: Any) -> Any:
+    """Return plain values in which words stand for the floats that JSON does not have."""
+    if isinstance(plain, float):
+        return plain if math.isfinite(plain) else NOT_FINITE[str(plain)]
+    if isinstance(plain, dict):
+        return {key: with_words(value) for key, value in plain.items()}
+    if isinstance(plain, list):
+        # All of a list are of one kind, and those of numbers can be long.
+        simple = not plain or isinstance(plain[0], int | str)
+        return plain if simple else [with_words(value) for value in plain]
+    return plain
+
+
+NOT_FINITE = {"nan": "NaN", "inf": "Infinity", "-inf": "-Infinity"}

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import os
+import sys
+import threading
 from typing import TYPE_CHECKING
 
 import click
@@ -80,6 +82,7 @@ def run_verb(
     status = run_until_stopped(work(), loop_factory=best_loop_factory() if busy else None)
     if status is None:
         status = 0 if endless else INTERRUPTED
+        leave_if_busy(status)
     raise click.exceptions.Exit(status)
 
 
@@ -119,6 +122,17 @@ async def stoppable(work: Coroutine[None, None, int | None]) -> int | None:
             if stopped:
                 return None
             raise
+
+
+def leave_if_busy(status: int) -> None:
+    """End the process at once if a thread is still at work, such as on opening a connection.
+
+    Python would stop that thread in the middle of foreign code, which aborts the process.
+    """
+    if threading.active_count() > 1:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
 
 
 def first_error(group: BaseExceptionGroup[BaseException]) -> BaseException:

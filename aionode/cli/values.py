@@ -27,7 +27,8 @@ def plain_values(text: str, what: str) -> dict[str, Any]:
     import yaml
 
     try:
-        values = yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # noqa: S506  # both are safe
+        loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+        documents = [each for each in yaml.load_all(text, loader) if each is not None]  # noqa: S506  # both are safe
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         where = "" if mark is None else f" at line {mark.line + 1}, column {mark.column + 1}"
@@ -37,8 +38,12 @@ def plain_values(text: str, what: str) -> dict[str, Any]:
         raise CommandError(
             f"The passed value is no YAML: {shortened(text)}{where}: {problem}; {what} fits"
         ) from error
-    if values is None:
-        return {}
+    if len(documents) > 1:
+        raise CommandError(
+            f"The passed value has {len(documents)} YAML documents: {shortened(text)}; one fits"
+        )
+    # What `topic echo` prints ends in three dashes, behind which another document could begin.
+    values = documents[0] if documents else {}
     if not isinstance(values, dict):
         raise CommandError(
             "The passed value needs to be a dictionary in YAML format: "

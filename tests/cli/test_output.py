@@ -1,0 +1,45 @@
+"""What a command prints, for people and for programs."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+
+def test_text_is_for_people_only(screen: Any) -> None:
+    """Programs get records and nothing else on stdout."""
+    screen.json_output.text("hello")
+    screen.json_output.raw("hello")
+    screen.json_output.item("hello", {"a": 1})
+
+    assert screen.records == [{"a": 1}]
+
+
+def test_progress_leaves_stdout_to_the_records(screen: Any) -> None:
+    """People see it where ros2 prints it."""
+    screen.output.progress("waiting")
+    screen.json_output.progress("waiting")
+
+    assert (screen.text, screen.errors) == ("waiting\n", "waiting\n")
+
+
+@pytest.mark.parametrize(
+    ("number", "word"), [(math.nan, "NaN"), (math.inf, "Infinity"), (-math.inf, "-Infinity")]
+)
+def test_what_json_has_no_number_for_is_a_word(number: float, word: str, screen: Any) -> None:
+    """A range finder says infinite for nothing in sight, which is not nothing at all."""
+    screen.json_output.item(
+        "", {"range": number, "ranges": [1.0, number], "nested": [{"a": number}]}
+    )
+
+    assert screen.records == [{"range": word, "ranges": [1.0, word], "nested": [{"a": word}]}]
+
+
+def test_nobody_waits_at_a_pipe(screen: Any) -> None:
+    """A spinner is for terminals."""
+    with screen.output.waiting("for something"):
+        pass
+
+    assert (screen.text, screen.errors) == ("", "")
