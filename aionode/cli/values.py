@@ -28,7 +28,9 @@ def plain_values(text: str, what: str) -> dict[str, Any]:
 
     try:
         loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-        documents = [each for each in yaml.load_all(text, loader) if each is not None]  # noqa: S506  # both are safe
+        documents = [
+            each for each in yaml.load_all(text, loader) if each is not None
+        ]  # both are safe
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         where = "" if mark is None else f" at line {mark.line + 1}, column {mark.column + 1}"

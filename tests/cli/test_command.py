@@ -55,6 +55,15 @@ def test_every_command_has_help(words: str, capsys: pytest.CaptureFixture[str]) 
     assert len(help_text.splitlines()[2].strip()) > 10
 
 
+@pytest.mark.parametrize("words", [[], ["topic"]])
+def test_no_verb_at_all_shows_what_there_is(
+    words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As ros2 does; nothing went wrong."""
+    assert main(words) == 0
+    assert "Commands:" in capsys.readouterr().out
+
+
 def test_every_command_that_prints_data_has_json() -> None:
     """Only running nodes and the shells' scripts have no records."""
     without = {

@@ -7,13 +7,15 @@ from typing import Any
 
 import pytest
 
-from aionode import Node, QoSProfile, ReliabilityPolicy
+from aionode import Context, Node, QoSProfile, ReliabilityPolicy
 from aionode.cli.echo import echo
+from aionode.cli.session import make_node
 from aionode.errors import CommandError
 from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
 from aionode.interfaces.sensor_msgs.msg import JointState
 from aionode.interfaces.std_msgs.msg import Header, Int32MultiArray, String, UInt8MultiArray
-from aionode.testing import settle
+from aionode.testing import FaultyTransport, settle
+from aionode.transport.local import LocalTransport
 
 
 async def echoed(
@@ -288,3 +290,24 @@ async def test_two_types_need_a_choice(
 
     with pytest.raises(CommandError, match="more than one type: geometry_msgs/msg/Twist, std_msgs"):
         await echo(tool, "/topic", output=screen.output)
+
+
+async def test_lost_messages_are_said(running: Any, screen: Any) -> None:
+    """On stderr, as they are no data; the count is of all so far."""
+    faulty = FaultyTransport(LocalTransport(), drop=0.5, seed=2)
+    async with (
+        Context(transport=faulty) as context,
+        Node("talker", context=context) as talker,
+        make_node(context) as tool,
+    ):
+        publisher = talker.create_publisher(String, "/topic", 100)
+        async with running(echo(tool, "/topic", output=screen.output)):
+            for number in range(20):
+                publisher.publish(String(data=str(number)))
+            await settle()
+
+    arrived = [int(line.split("'")[1]) for line in screen.text.splitlines() if "data" in line]
+    lost = arrived[-1] + 1 - len(arrived)
+    assert lost > 0
+    assert screen.errors.endswith(f"\n\ttotal count: {lost}---\n")
+    assert screen.errors.startswith("A message was lost!!!\n\ttotal count change:")

@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from aionode import Node
+from aionode import Node, QoSProfile
+from aionode.cli import measure
 from aionode.cli.measure import bw, delay, hz
 from aionode.errors import CommandError
 from aionode.interfaces.geometry_msgs.msg import TwistStamped
@@ -180,3 +181,25 @@ async def test_delay_needs_a_header(tool: Node, talker: Node, screen: Any) -> No
     """ros2 fails at the first message, with a traceback."""
     with pytest.raises(CommandError, match="std_msgs/msg/String has no field header"):
         await delay(tool, "/chatter", output=screen.output)
+
+
+async def test_hz_says_when_messages_came_too_fast(
+    running: Any,
+    tool: Node,
+    node_factory: Callable[..., Node],
+    manual_clock: ManualClock,
+    monkeypatch: pytest.MonkeyPatch,
+    screen: Any,
+) -> None:
+    """A figure that is too low has to say so."""
+    monkeypatch.setattr(measure, "QOS", QoSProfile(depth=2))
+    publisher = node_factory("burst").create_publisher(String, "/burst", 10)
+
+    async with running(hz(tool, ["/burst"], output=screen.output)):
+        for _ in range(5):
+            publisher.publish(String())
+        await manual_clock.advance(1.05)
+
+    assert screen.errors == (
+        "3 messages came too fast to be counted: the real figures are higher\n"
+    )
