@@ -16,7 +16,7 @@ from aionode.endpoints.entity import Entity
 from aionode.endpoints.inbox import Inbox
 from aionode.endpoints.server_goal import ServerGoalHandle
 from aionode.endpoints.stats import CallbackStats
-from aionode.errors import QueueFullError
+from aionode.errors import CallbackCancelledError, QueueFullError
 from aionode.goal import (
     CancelCode,
     CancelResponse,
@@ -394,6 +394,9 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             goal.stopped()
             raise
         except Exception as error:  # noqa: BLE001  # logged and counted, and told to the client
+            if self.destroyed and isinstance(error, CallbackCancelledError):
+                goal.stopped()  # the node ends, and its clock has ended just before this task
+                return
             dispatch.fail(error)
             goal.failed(error)
 
