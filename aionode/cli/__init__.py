@@ -14,8 +14,11 @@ module                 what is in it
 `completing`           names for the shell to complete
 `lookup`               names on the network and their types
 `text`                 messages and endpoints as text
-one for each noun      its verbs
+one for each noun      its commands, and its verbs where those are short
 ====================== =============================================================
+
+Where verbs have modules of their own, these are `topics`, `echo`, `pub` and `measure` for topics,
+`parameters` and `diagnosis`.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from aionode import Node
-from aionode.cli.param import (
+from aionode.cli.parameters import (
     delete,
     describe,
     dump,

@@ -184,7 +184,7 @@ FIBONACCI = "example_interfaces/action/Fibonacci"
         ("topic hz /chatter", "average rate: ", 0),
         ("topic hz /chatter /stamped", "min_delta", 0),
         ("topic bw /chatter", "/s from", 0),
-        ("topic delay /stamped", "average delay: 0.00", 0),
+        ("topic delay /stamped", "average delay: ", 0),
         ("topic pub /out std_msgs/msg/String", "publishing #1", 0),
         ("topic pub -1 /out std_msgs/msg/String", "Waiting for at least 1", 130),
         ("topic hz /nobody", "does not appear to be published yet", 0),
