@@ -1,0 +1,496 @@
+"""Links between contexts: which way messages take, and what happens when a link breaks."""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+import logging
+import os
+import shutil
+import socket
+import tempfile
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+from aionode.context import Context
+from aionode.errors import ConfigurationError, ServiceUnavailableError
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.sensor_msgs.msg import Image
+from aionode.interfaces.std_msgs.msg import Int32
+from aionode.node import Node
+from aionode.transport.link import hub, meeting, memory
+from aionode.transport.link.connection import Connection
+from aionode.transport.link.topics import LinkWriter
+from aionode.transport.link.transport import LinkTransport
+from aionode.wire import cdr
+from aionode.wire.keyexpr import data_key
+from aionode.wire.typehash import type_hash
+from tests.peers import DOMAIN_ID, KEEP_ALL, Collector, quiet_node, raw_session
+
+NUMBERS = data_key(DOMAIN_ID, "/n", "std_msgs/msg/Int32", type_hash(Int32))
+
+
+@pytest.fixture(autouse=True)
+def folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """Sockets of a test lie in a folder of its own, with a path short enough for a socket."""
+    root = Path(tempfile.mkdtemp(prefix="aio"))
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(root))
+    monkeypatch.setattr(hub, "AGAIN_S", 0.01)
+    yield root / "aionode"
+    shutil.rmtree(root)
+
+
+class Two(NamedTuple):
+    """Two nodes in two contexts."""
+
+    a: Node
+    b: Node
+
+
+def transport_of(node: Node) -> LinkTransport:
+    """Return the transport under test."""
+    transport = node.context.transports[1]
+    assert isinstance(transport, LinkTransport)
+    return transport
+
+
+def hub_of(node: Node) -> hub.Hub:
+    """Return the links of a node's context."""
+    return transport_of(node).hub
+
+
+def link_of(node: Node) -> Connection:
+    """Return the only link of a node's context."""
+    (participant,) = hub_of(node).links
+    connection = hub_of(node).linked(participant)
+    assert connection is not None
+    return connection
+
+
+def writer_of(publisher: Any) -> LinkWriter:
+    """Return the publisher's end of both ways."""
+    writer = publisher._writers[1]
+    assert isinstance(writer, LinkWriter)
+    return writer
+
+
+@asynccontextmanager
+async def two_nodes() -> AsyncIterator[Two]:
+    """Two nodes that may be linked."""
+    async with (
+        asyncio.timeout(30),
+        Context(link=True) as first,
+        Context(link=True) as second,
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        yield Two(a, b)
+
+
+class Counting:
+    """A publisher of rising numbers and a subscription that expects them."""
+
+    def __init__(self, nodes: Two, profile: Any = 1000) -> None:
+        self.publisher = nodes.a.create_publisher(Int32, "n", profile)
+        self.subscription = nodes.b.create_subscription(Int32, "n", None, profile)
+        self.next = 0
+
+    def publish(self, count: int = 1) -> None:
+        """Publish the next numbers."""
+        for _ in range(count):
+            self.publisher.publish(Int32(data=self.next))
+            self.next += 1
+
+    async def go(self, count: int = 1) -> None:
+        """Publish and receive so many, and expect the very next ones."""
+        first = self.next
+        self.publish(count)
+        assert [(await self.subscription.receive()).data for _ in range(count)] == list(
+            range(first, self.next)
+        )
+
+    async def until_linked(self, linked: int = 1) -> None:
+        """Go on until so many readers take the link only."""
+        await self.publisher.wait_for_subscribers()
+        while writer_of(self.publisher).linked != linked:
+            await self.go()
+
+
+async def test_a_stream_changes_to_the_link_and_leaves_zenoh() -> None:
+    """Each message once and in order meanwhile, and Zenoh's threads rest afterwards."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.until_linked()
+        assert not writer_of(numbers.publisher).update()
+        await numbers.go(500)
+        assert numbers.subscription.stats.lost == 0
+
+
+async def test_every_kind_of_reader_gets_each_message_once() -> None:
+    """One over the link, one in the process, one that is a bare Zenoh session without tokens."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        beside = nodes.a.create_subscription(Int32, "n", None, 1000)
+        await numbers.publisher.wait_for_subscribers(2)
+        await numbers.until_linked()
+        before = numbers.next
+        with raw_session() as session:
+            samples = Collector()
+            subscriber = session.declare_subscriber(f"{DOMAIN_ID}/**", samples)
+            while not samples.items:
+                await numbers.go()
+            missed = numbers.next - len(samples.items)
+            await numbers.go(50)
+            await samples.have(numbers.next - missed)
+            subscriber.undeclare()
+        heard = [cdr.decode(Int32, sample.payload.to_bytes()).data for sample in samples.items]
+        assert heard == list(range(heard[0], numbers.next))
+        assert len(heard) >= 50
+        assert before <= heard[0]
+        assert [(await beside.receive()).data for _ in range(numbers.next)] == list(
+            range(numbers.next)
+        )
+        assert numbers.subscription.stats.lost == 0
+
+
+async def test_a_stream_goes_on_over_zenoh_when_the_link_ends_and_back_when_it_is_there() -> None:
+    """Either end may close it; nobody notices."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        for node in nodes:
+            await numbers.until_linked()
+            link = link_of(node)
+            link.close()
+            await numbers.go(20)
+            while link in (
+                hub_of(n).linked(p) for n in nodes for p in hub_of(n).links
+            ):  # the other end has not heard yet
+                await numbers.go()
+        await numbers.until_linked()
+        assert numbers.subscription.stats.lost == 0
+
+
+@pytest.mark.parametrize(
+    "garbage", [b"no frame at all" * 10, b"\xff" * 40, b"\x00"], ids=["text", "length", "cut"]
+)
+async def test_garbage_ends_the_link_and_not_the_stream(
+    garbage: bytes, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Both ends go on over Zenoh, and say why."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.until_linked()
+        link = link_of(nodes.b)
+        assert link._sock is not None
+        link._sock.send(garbage)
+        if len(garbage) < 40:
+            link.close()
+        while not link.closed:
+            await numbers.go()
+        await numbers.go(100)
+        assert numbers.subscription.stats.lost == 0
+    assert len(garbage) < 40 or "no frame" in caplog.text
+
+
+async def test_strangers_at_the_socket_get_nothing_and_stop_nothing(folder: Path) -> None:
+    """Silence, garbage, or a frame before the greeting: none of it becomes a link."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        path = folder / f"{nodes.b.context.participant}.sock"
+        for said in (b"", b"x" * 100, bytes(7)):
+            with socket.socket(socket.AF_UNIX) as stranger:
+                stranger.connect(str(path))
+                stranger.send(said)
+                await numbers.publisher.wait_for_subscribers()
+                await numbers.go(5)
+        assert hub_of(nodes.b).links in ([], [nodes.a.context.participant])
+
+
+async def test_other_users_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whoever is at the other end of the socket, it is not this user."""
+    monkeypatch.setattr(meeting, "is_own_user", lambda _: False)
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.publisher.wait_for_subscribers()
+        await numbers.go(20)
+        assert hub_of(nodes.a).links == hub_of(nodes.b).links == []
+
+
+def open_to_others(folder: Path) -> None:
+    """Make the folder one that others can enter."""
+    folder.mkdir(mode=0o755)
+
+
+def a_file(folder: Path) -> None:
+    """Put a file in the folder's place."""
+    folder.touch()
+
+
+def no_parent(folder: Path) -> None:
+    """Remove the folder that it should be made in."""
+    folder.parent.rmdir()
+
+
+@pytest.mark.parametrize("spoil", [open_to_others, a_file, no_parent])
+async def test_without_a_folder_of_its_own_everything_goes_over_zenoh(
+    spoil: Any, folder: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """And it is said once what is wrong with it."""
+    spoil(folder)
+    with caplog.at_level(logging.WARNING, "aionode.transport.link"):
+        async with two_nodes() as nodes:
+            numbers = Counting(nodes)
+            await numbers.publisher.wait_for_subscribers()
+            await numbers.go(20)
+    assert str(folder) in caplog.text
+    folder.parent.mkdir(exist_ok=True)
+
+
+async def test_a_slow_reader_loses_the_oldest_and_the_publisher_counts_them() -> None:
+    """A full socket bounds what waits for it: the depth of the publisher."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes, 10)
+        await numbers.until_linked()
+        link = link_of(nodes.b)
+        loop = asyncio.get_running_loop()
+        loop.remove_reader(link._fd)  # it reads no more, as if it were frozen
+        numbers.publish(20_000)
+        dropped = writer_of(numbers.publisher).dropped
+        assert 0 < dropped < 20_000
+        route = writer_of(numbers.publisher)._routes[link_of(nodes.a)]
+        assert len(route.stream.waiting) == 10
+        loop.add_reader(link._fd, link._on_readable)
+        while (await numbers.subscription.receive()).data != numbers.next - 1:
+            pass
+        assert numbers.subscription.stats.lost == dropped
+
+
+async def test_a_keep_all_reader_that_does_not_read_fills_the_publisher_and_loses_nothing() -> None:
+    """Back-pressure: `drain` waits for it, and `publish` refuses past the bound."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes, KEEP_ALL)
+        await numbers.until_linked()
+        begin = numbers.next
+        total = 0
+        while total < 40_000 and writer_of(numbers.publisher).has_room():
+            numbers.publish()
+            total += 1
+            if not total % 1000:
+                await asyncio.to_thread(lambda: None)  # the loop goes round meanwhile
+        assert not writer_of(numbers.publisher).has_room()
+        drained = asyncio.get_running_loop().create_future()
+
+        async def drain() -> None:
+            await numbers.publisher.drain()
+            drained.set_result(None)
+
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(drain())
+            got = [(await numbers.subscription.receive()).data for _ in range(total)]
+            assert got == list(range(begin, numbers.next))
+            await drained
+        assert numbers.subscription.stats.dropped == numbers.subscription.stats.lost == 0
+
+
+# Services
+
+
+async def test_a_call_takes_the_link_and_ends_with_it() -> None:
+    """Nobody can tell whether the server has begun, so it is not sent again."""
+    async with two_nodes() as nodes:
+        begun = asyncio.Event()
+
+        async def serve(request: Any, response: Any) -> Any:
+            if request.a == 0:
+                begun.set()
+                await asyncio.Event().wait()
+            response.sum = request.a + request.b
+            return response
+
+        nodes.b.create_service(AddTwoInts, "add", serve, concurrent=True)
+        client: Any = nodes.a.create_client(AddTwoInts, "add")
+        await client.wait_for_service()
+        while not hub_of(nodes.a).links:
+            assert (await client.call(AddTwoInts.Request(a=1, b=2))).sum == 3
+        async with asyncio.TaskGroup() as tasks:
+            call = tasks.create_task(fails(client.call(AddTwoInts.Request(a=0, b=0))))
+            await begun.wait()
+            link_of(nodes.b).close()
+            assert isinstance(await call, ServiceUnavailableError)
+        assert (await client.call(AddTwoInts.Request(a=3, b=4))).sum == 7
+
+
+async def fails(awaitable: Any) -> Exception | None:
+    """Return what it raises."""
+    try:
+        await awaitable
+    except ServiceUnavailableError as error:
+        return error
+    return None
+
+
+async def test_a_server_in_a_bare_session_is_asked_over_zenoh() -> None:
+    """The links do not reach it, and a query over Zenoh reaches all."""
+    async with two_nodes() as nodes:
+        served = []
+
+        def serve(request: Any, response: Any) -> Any:
+            served.append(request.a)
+            return response
+
+        nodes.b.create_service(AddTwoInts, "add", serve)
+        async with quiet_node("c", Context(link=False)) as c:
+            c.create_service(AddTwoInts, "add", serve)
+            client: Any = nodes.a.create_client(AddTwoInts, "add")
+            while client._servers() < 2:
+                await nodes.a.graph.changed()
+            await client.call(AddTwoInts.Request(a=1))
+            await client.call(AddTwoInts.Request(a=2))
+            assert hub_of(nodes.a).calls == {}
+        assert set(served) == {1, 2}
+
+
+# Large payloads
+
+
+def image(number: int) -> Image:
+    """Return an image of one colour."""
+    return Image(height=600, width=1000, step=1000, data=bytes([number]) * 600_000)
+
+
+async def test_images_come_in_shared_memory_that_is_used_again() -> None:
+    """Read in place, unchanged as long as anybody looks, and given back afterwards."""
+    async with two_nodes() as nodes:
+        publisher = nodes.a.create_publisher(Image, "images", 10)
+        subscription: Any = nodes.b.create_subscription(Image, "images", None, 10)
+        await publisher.wait_for_subscribers()
+        while writer_of(publisher).linked == 0:
+            publisher.publish(image(0))
+            await subscription.receive()
+        kept = []
+        for number in range(1, 6):
+            publisher.publish(image(number))
+            kept.append(await subscription.receive())
+        pool = hub_of(nodes.a).pool
+        lent = len(link_of(nodes.a)._lent)
+        assert lent >= 5
+        assert [np.frombuffer(one.data, np.uint8).max() for one in kept] == [1, 2, 3, 4, 5]
+        assert all(memoryview(one.data).readonly for one in kept)
+        kept.clear()
+        gc.collect()
+        publisher.publish(image(7))  # what was returned is said with the next
+        await subscription.receive()
+        while len(link_of(nodes.a)._lent) > 2:
+            await asyncio.wait([link_of(nodes.a).progress()], timeout=0.01)
+        assert len(pool._idle) >= 4
+
+
+async def test_without_descriptors_large_payloads_go_through_the_stream(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """It is slower, and nothing is lost."""
+
+    def exhausted(*_: Any) -> int:
+        raise OSError(24, "Too many open files")
+
+    async with two_nodes() as nodes:
+        monkeypatch.setattr(os, "memfd_create", exhausted)
+        publisher = nodes.a.create_publisher(Image, "images", 10)
+        subscription: Any = nodes.b.create_subscription(Image, "images", None, 10)
+        await publisher.wait_for_subscribers()
+        number = 0
+        while writer_of(publisher).linked == 0 or number < 5:
+            number += 1
+            publisher.publish(image(number % 256))
+            assert bytes((await subscription.receive()).data[:1])[0] == number % 256
+
+
+@pytest.mark.parametrize("size", [0, 5000])
+def test_memory_that_could_change_or_shrink_is_refused(size: int) -> None:
+    """Reading it would end the process (SIGBUS)."""
+    fd = os.memfd_create("test", os.MFD_ALLOW_SEALING)
+    os.ftruncate(fd, 5000)
+    with pytest.raises(ConnectionError):
+        memory.mapped(fd, size, lambda: None)
+    with pytest.raises(OSError, match="Bad file"):
+        os.fstat(fd)
+
+
+# What stays
+
+
+async def test_nothing_stays_behind(folder: Path) -> None:
+    """No descriptor and no socket."""
+    async with two_nodes():  # what is opened once for all
+        pass
+    before = len(os.listdir("/proc/self/fd"))
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.until_linked()
+        assert len(list(folder.iterdir())) == 2
+    assert list(folder.iterdir()) == []
+    gc.collect()
+    assert len(os.listdir("/proc/self/fd")) <= before
+
+
+async def test_sockets_of_the_killed_are_removed(folder: Path) -> None:
+    """Who was killed could not do it."""
+    folder.mkdir(mode=0o700)
+    with socket.socket(socket.AF_UNIX) as dead:
+        dead.bind(str(folder / "dead.sock"))
+    async with two_nodes():
+        assert not (folder / "dead.sock").exists()
+
+
+# The switch
+
+
+def test_a_link_is_used_only_when_it_was_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the variable, unless the argument says otherwise."""
+
+    def linked(**options: Any) -> bool:
+        return isinstance(Context(**options).transports[-1], LinkTransport)
+
+    monkeypatch.delenv("AIONODE_LINK", raising=False)
+    assert not linked()
+    assert linked(link=True)
+    monkeypatch.setenv("AIONODE_LINK", "on")
+    assert linked()
+    assert not linked(link=False)
+    monkeypatch.setenv("AIONODE_LINK", "off")
+    assert not linked()
+    monkeypatch.setenv("AIONODE_LINK", "perhaps")
+    with pytest.raises(ConfigurationError):
+        linked()
+
+
+async def test_contexts_with_and_without_links_hear_each_other() -> None:
+    """An older release, or one that was told not to."""
+    async with (
+        asyncio.timeout(30),
+        Context(link=True) as first,
+        Context(link=False) as second,
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        numbers = Counting(Two(a, b))
+        await numbers.publisher.wait_for_subscribers()
+        await numbers.go(50)
+        assert hub_of(a).links == []
+
+
+def test_a_beacon_says_who_can_be_linked() -> None:
+    """Same host, same user, same version; and what is no beacon is none."""
+    own = meeting.Beacon.own("1a")
+    assert meeting.Beacon.parse(own.text()) == own
+    assert own.is_near(own._replace(participant="2b"))
+    assert not own.is_near(own)
+    for other in (own._replace(host="x"), own._replace(uid=own.uid + 1)):
+        assert not own.is_near(other._replace(participant="2b"))
+    for text in ("", "1a/link", "../x/link/1/h/0", "1a/link/-1/h/0", f"{'1' * 33}/link/1/h/0"):
+        assert meeting.Beacon.parse(text) is None
