@@ -1,0 +1,102 @@
+"""One end of an action for tests, in a process of its own; it tells on stdout what happens.
+
+``python tests/processes/action_member.py server`` serves /count and tells ``open``, ``executing``,
+``ended STATUS``; a line with a word on stdin makes it tell ``WORD GOALS RESULTS REQUESTS``, the
+sizes of its tables. ``… client STEPS`` sends one goal of so many steps and tells ``open``,
+``accepted``, ``feedback N``, ``result STATUS TEXT``, ``error TYPE: TEXT``, and ``tables GOALS``.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from typing import Any
+
+import aionode
+from aionode import CancelResponse, Node, ServerGoalHandle
+from aionode.errors import GoalError
+from aionode.interfaces.example_interfaces.action import Fibonacci
+
+STEP_SEC = 0.02
+RESULT_TIMEOUT_SEC = 0.2
+
+
+def tell(*words: object) -> None:
+    """Write one line at once."""
+    sys.stdout.write(" ".join(str(word) for word in words) + "\n")
+    sys.stdout.flush()
+
+
+class Counter(Node):
+    """Counts as far as a goal asks for; fails on the way to 13."""
+
+    def __init__(self) -> None:
+        super().__init__("counter", enable_rosout=False, start_parameter_services=False)
+        self.server = self.create_action_server(
+            Fibonacci,
+            "/count",
+            self.count,
+            cancel_callback=lambda _goal: CancelResponse.ACCEPT,
+            result_timeout=RESULT_TIMEOUT_SEC,
+        )
+
+    async def count(self, goal: ServerGoalHandle[Any, Any, Any]) -> Fibonacci.Result:
+        """Count, slowly."""
+        tell("executing")
+        try:
+            for number in range(1, goal.request.order + 1):
+                await self.get_clock().sleep(STEP_SEC)
+                if number == goal.request.order == 13:
+                    raise ValueError("thirteen")
+                goal.publish_feedback(Fibonacci.Feedback(sequence=[number]))
+            goal.succeed()
+        except asyncio.CancelledError:
+            tell("ended", "CANCELED" if goal.is_cancel_requested else "otherwise")
+            raise
+        tell("ended", goal.status.name)
+        return Fibonacci.Result(sequence=[goal.request.order])
+
+    async def obey(self) -> None:
+        """Tell the sizes of the tables when asked."""
+        lines: asyncio.Queue[str] = asyncio.Queue()
+        loop = asyncio.get_running_loop()
+        loop.add_reader(sys.stdin, lambda: lines.put_nowait(sys.stdin.readline()))
+        while word := (await lines.get()).strip():
+            server = self.server
+            requests = sum(
+                len(announced.unanswered)
+                for part in server._parts
+                for announced in getattr(part, "_announcements", ())
+            )
+            tell(word, len(server._goals), len(server._alarms), requests)
+        loop.remove_reader(sys.stdin)
+
+
+async def serve() -> None:
+    """Be the server, until a signal comes."""
+    async with Counter() as node:
+        tell("open")
+        await node.obey()
+
+
+async def ask() -> None:
+    """Be the client of one goal."""
+    async with Node("asking", enable_rosout=False, start_parameter_services=False) as node:
+        tell("open")
+        client = node.create_action_client(Fibonacci, "/count")
+        await client.wait_for_server()
+        goal = await client.send_goal(Fibonacci.Goal(order=int(sys.argv[2])))
+        tell("accepted")
+        try:
+            async for feedback in goal:
+                tell("feedback", feedback.sequence[0])
+            outcome = await goal.result()
+            tell("result", outcome.status.name, outcome.error_text)
+        except GoalError as error:
+            tell("error", f"{type(error).__name__}:", error)
+        tell("tables", len(client._goals))
+
+
+if __name__ == "__main__":
+    aionode.run(serve if sys.argv[1] == "server" else ask)
+    tell("stopped")

@@ -1,0 +1,102 @@
+"""Actions between processes: the good way, and what is left when one end is killed."""
+
+from __future__ import annotations
+
+import signal
+import time  # noqa: TID251  # how long it takes to notice is what is tested
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from tests.processes.process import Process
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+PROGRAM = "tests/processes/action_member.py"
+LONG = "100000"
+"""Steps of a goal that does not end by itself."""
+
+
+@contextmanager
+def ends(steps: str) -> Iterator[tuple[Process, Process]]:
+    """A server, and a client whose goal of so many steps was accepted."""
+    with Process(PROGRAM, "server") as server, Process(PROGRAM, "client", steps) as client:
+        client.expect("accepted")
+        yield server, client
+
+
+def expect_empty_tables(server: Process) -> None:
+    """Ask the server for the sizes of its tables until all are zero."""
+    for number in range(100):
+        server.write(f"tables{number}")
+        server.expect(f"tables{number} ")
+        if server.lines[-1][1] == f"tables{number} 0 0 0":
+            return
+        time.sleep(0.05)
+    raise AssertionError([line for _, line in server.lines[-3:]])
+
+
+def test_a_goal_goes_from_process_to_process() -> None:
+    """Feedback in order, the result, and nothing is left on either side."""
+    with ends("5") as (server, client):
+        client.expect("tables 0")
+        lines = client.rest()
+        expect_empty_tables(server)
+
+    assert lines[lines.index("accepted") :] == [
+        "accepted",
+        *(f"feedback {number}" for number in range(1, 6)),
+        "result SUCCEEDED ",
+        "tables 0",
+        "stopped",
+    ]
+
+
+def test_the_exception_of_a_server_is_told_in_the_other_process() -> None:
+    """As a reply of its own, because ROS's result has no room for it."""
+    with ends("13") as (server, client):
+        client.expect("result ABORTED ValueError: thirteen")
+        expect_empty_tables(server)
+
+
+def test_a_killed_server_is_an_error_at_once() -> None:
+    """SIGKILL: no farewell is sent, and yet nobody waits in vain."""
+    with ends(LONG) as (server, client):
+        client.expect("feedback")
+        killed_s = time.monotonic()
+        server.send(signal.SIGKILL)
+        noticed_s = client.started_s + client.expect("error GoalLostError") - killed_s
+        client.expect("tables 0")
+
+    assert noticed_s < 2.0
+
+
+def test_a_stopped_server_is_an_error_at_once() -> None:
+    """Ctrl-C: its goal is cut off, and its client told."""
+    with ends(LONG) as (server, client):
+        client.expect("feedback")
+        _, status = server.stop()
+        client.expect("error GoalLostError")
+
+    assert status == 0
+    assert "ended otherwise" in server.rest()
+
+
+def test_the_goal_of_a_killed_client_goes_on_and_leaves_nothing_behind() -> None:
+    """The robot arrives; the result expires, and the open request has ended with its client."""
+    with ends("60") as (server, client):
+        client.expect("feedback")
+        client.send(signal.SIGKILL)
+        server.expect("ended SUCCEEDED")
+        expect_empty_tables(server)
+
+
+def test_ctrl_c_at_the_client_cancels_its_goal() -> None:
+    """The task that awaits the goal is cancelled, and the server hears of it before the end."""
+    with ends(LONG) as (server, client):
+        client.expect("feedback")
+        _, status = client.stop()
+        server.expect("ended CANCELED")
+        expect_empty_tables(server)
+
+    assert status == 0
