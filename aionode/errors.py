@@ -45,7 +45,7 @@ name; new ones end in `Error`. They carry plain values, never live objects.
     ├── NodeNameNonExistentError (LookupError, RuntimeError)
     ├── QueueFullError (RuntimeError)
     ├── ServiceError (RuntimeError)
-    │   └── ServiceUnavailableError
+    │   └── ServiceUnavailableError (TimeoutError)
     ├── RequestTimeoutError (TimeoutError)
     ├── TimeSourceChangedError (RuntimeError)
     └── TransportError (ConnectionError)
@@ -167,8 +167,8 @@ class QueueFullError(AionodeError, RuntimeError):
         self.topic = topic
         self.depth = depth
         super().__init__(
-            f"{topic}: a KEEP_ALL subscription already holds {depth} unread messages; nothing was "
-            "published. `await publisher.drain()` before publishing on, or use KEEP_LAST"
+            f"{topic}: a KEEP_ALL subscription is full, with {depth} unread messages or more; "
+            "nothing was published. Before publishing on, `await publisher.drain()`, or use KEEP_LAST"
         )
 
 
@@ -189,8 +189,12 @@ class ServiceError(AionodeError, RuntimeError):
         super().__init__(f"{service}: {what}")
 
 
-class ServiceUnavailableError(ServiceError):
-    """Every server that had the request went away before it answered."""
+class ServiceUnavailableError(ServiceError, TimeoutError):
+    """Every server that had the request went away before it answered.
+
+    It is a TimeoutError too, because no reply will come: a caller that is prepared for silence, as
+    callers of ROS have to be, is prepared for this, and learns it without waiting.
+    """
 
     def __init__(self, service: str) -> None:
         super().__init__(

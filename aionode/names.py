@@ -74,6 +74,7 @@ def validate_topic_name(name: str, *, is_service: bool = False) -> Literal[True]
         InvalidTopicNameException: It may not, and is for a topic.
         InvalidServiceNameException: It may not, and is for a service.
     """
+    expect_text(name, "service name" if is_service else "topic name")
     if problem := topic_name_problem(name):
         raise name_error(name, problem, is_service=is_service)
     return True
@@ -97,6 +98,7 @@ def validate_namespace(namespace: str) -> Literal[True]:
     Raises:
         InvalidNamespaceException: It is not.
     """
+    expect_text(namespace, "namespace")
     if namespace == "/":
         return True
     problem = full_name_problem(namespace, "namespace", NAMESPACE_MAX_LENGTH)
@@ -111,9 +113,16 @@ def validate_node_name(node_name: str) -> Literal[True]:
     Raises:
         InvalidNodeNameException: It is not.
     """
+    expect_text(node_name, "node name")
     if problem := node_name_problem(node_name):
         raise InvalidNodeNameException(node_name, *problem)
     return True
+
+
+def expect_text(name: object, what: str) -> None:
+    """Raise TypeError unless `name` is a str."""
+    if not isinstance(name, str):
+        raise TypeError(f"{what}: got {name!r} ({type(name).__name__}); a str is needed")
 
 
 def topic_name_problem(name: str) -> Problem | None:
@@ -301,8 +310,9 @@ def normalize_namespace(namespace: str | None) -> str:
     Raises:
         InvalidNamespaceException: It is invalid even so.
     """
-    if not namespace:
+    if namespace is None or namespace == "":
         return "/"
+    expect_text(namespace, "namespace")
     result = namespace if namespace.startswith("/") else f"/{namespace}"
     validate_namespace(result)
     return result

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
-import threading
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar, overload
 
@@ -14,6 +12,7 @@ from aionode.clock import ROSClock
 from aionode.context import Context
 from aionode.endpoints.channel import Channel
 from aionode.endpoints.dispatch import Callbacks
+from aionode.endpoints.home import Home
 from aionode.endpoints.rate import Rate
 from aionode.endpoints.service import Client, Service
 from aionode.endpoints.timer import Timer, to_period_ns
@@ -126,14 +125,13 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             logger=self._logger,
             budget_ns=round(callback_budget_ms * 1e6),
         )
+        self._home = Home()
         self.context.add_node(self)
         self._info = self.context.describe_node(
             node_name, namespace, enclave=own.enclave or shared.enclave or "/"
         )
         self._announcements = [t.create_node(self._info) for t in self.context.transports]
         self.context.graph.add_node(self._info)
-        self._loop: asyncio.AbstractEventLoop | None = None
-        self._thread = 0
         self._unlog: Callable[[], None] | None = None
         if enable_rosout and shared.rosout_logs and own.rosout_logs:
             self._unlog = node_services.publish_log(self, rosout_qos_profile)
@@ -181,8 +179,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         except BaseException:
             self._running = False
             raise
-        self._loop = asyncio.get_running_loop()
-        self._thread = threading.get_ident()
+        self._home.move_in()
         self._tasks = await asyncio.TaskGroup().__aenter__()
         for entity in list(self._entities):
             entity.start(self._tasks)
@@ -206,6 +203,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             await tasks.__aexit__(exc_type, exc, traceback)
         finally:
             self._running = False
+            self._home.move_out()
             await self.context.release()
 
     async def run(self) -> None:
@@ -234,9 +232,13 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
     def destroy_node(self) -> None:
         """End the node: its entities are destroyed and its callbacks cancelled. Twice is allowed.
 
-        `run` returns when the callbacks have ended.
+        `run` returns when the callbacks have ended. It may be called in any thread; outside that of
+        the node's event loop it returns before the loop has done it.
         """
         if self.destroyed:
+            return
+        if self._home.is_elsewhere():
+            self._home.call(self.destroy_node)
             return
         self._destroyed.set()
         if self._unlog is not None:
@@ -251,11 +253,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
 
     def call_in_loop(self, action: Callable[[], None]) -> None:
         """Do `action` in the thread of the node's loop: at once if this is it, or none runs."""
-        if self._loop is None or threading.get_ident() == self._thread:
-            action()
-        else:
-            with contextlib.suppress(RuntimeError):  # the loop was closed, and with it the node
-                self._loop.call_soon_threadsafe(action)
+        self._home.call(action)
 
     # What it is
 
@@ -647,7 +645,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         endpoint = self.context.describe_endpoint(
             kind, self._info, full_name, ros_type, profile.resolved()
         )
-        return Channel(endpoint, self.graph, self._callbacks)
+        return Channel(endpoint, self.graph, self._callbacks, self._home)
 
     def _add(self, entity: EntityT, channel: Channel | None = None) -> EntityT:
         """Take `entity` in: announce it, and start it if the node runs."""

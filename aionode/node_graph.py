@@ -94,11 +94,17 @@ class NodeGraphMethods:
         """Return name, namespace and security enclave of all nodes."""
         return [(node.name, node.namespace, node.enclave) for node in self.graph.nodes()]
 
-    async def wait_for_node(self, fully_qualified_node_name: str) -> None:
+    async def wait_for_node(
+        self,
+        fully_qualified_node_name: str,
+        *,
+        check_interval: float = 0.1,  # noqa: ARG002  # rclpy's signature
+    ) -> None:
         """Wait until a node of this name is there; `asyncio.timeout` limits it.
 
         Args:
             fully_qualified_node_name: Namespace and name; a leading slash may be left out.
+            check_interval: Makes no difference: the wait ends when the graph changes.
         """
         wanted = "/" + fully_qualified_node_name.removeprefix("/")
         await self.graph.until(lambda: any(self.graph.find_nodes(wanted)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from hypothesis import given
@@ -19,6 +20,9 @@ from aionode.errors import (
     NameValidationException,
 )
 from aionode.names import RemapKind, RemapRule
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 NUMBER = "topic name token must not start with a number"
 CHARACTERS = (
@@ -411,3 +415,19 @@ def test_a_double_wildcard_moves_a_whole_tree(parts: list[str], root: str) -> No
     below = "/".join(parts)
 
     assert names.remap([rule], f"/{root}/{below}", "node", "/") == f"/moved/{below}"
+
+
+@pytest.mark.parametrize(
+    ("check", "what"),
+    [
+        (names.validate_topic_name, "topic name"),
+        (lambda name: names.validate_topic_name(name, is_service=True), "service name"),
+        (names.validate_node_name, "node name"),
+        (names.validate_namespace, "namespace"),
+        (names.normalize_namespace, "namespace"),
+    ],
+)
+def test_a_name_that_is_no_text_is_a_type_error(check: Callable[[Any], object], what: str) -> None:
+    """The message says which name it is, not what str cannot do."""
+    with pytest.raises(TypeError, match=rf"^{what}: got 5 \(int\); a str is needed$"):
+        check(5)

@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.endpoints.dispatch import Callbacks
+    from aionode.endpoints.home import Home
     from aionode.graph import EndpointInfo, EndpointKind, Graph
 
 __all__ = ["Channel"]
@@ -20,11 +21,15 @@ class Channel:
     Attributes:
         endpoint: The endpoint.
         callbacks: How its node runs callbacks.
+        home: Where its node runs.
     """
 
-    def __init__(self, endpoint: EndpointInfo, graph: Graph, callbacks: Callbacks) -> None:
+    def __init__(
+        self, endpoint: EndpointInfo, graph: Graph, callbacks: Callbacks, home: Home
+    ) -> None:
         self.endpoint = endpoint
         self.callbacks = callbacks
+        self.home = home
         self._graph = graph
         self._waits: set[asyncio.Future[None]] = set()
 

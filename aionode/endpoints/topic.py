@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Coroutine
+from threading import get_ident
 from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar
 
 from aionode.clock import perf_ns
@@ -90,6 +91,7 @@ class Publisher(Entity, Generic[MsgT]):
         self._channel = channel
         self._writers = tuple(writers)
         self._gid = channel.endpoint.gid
+        self._home = channel.home
         self._check = checker(msg_type)
         self._now_ns = time_base.system_ns
 
@@ -113,6 +115,9 @@ class Publisher(Entity, Generic[MsgT]):
         KEEP_LAST queue drops its oldest message and counts it. To wait for slow readers instead,
         subscribe with KEEP_ALL and `await drain()` before publishing on.
 
+        It may be called in any thread, such as that of an offloaded callback: outside the thread
+        of the node's event loop it waits until that loop has taken the message.
+
         Raises:
             TypeError: `msg` is not of this publisher's type.
             MessageError: a value does not fit its field; nobody got the message.
@@ -120,6 +125,10 @@ class Publisher(Entity, Generic[MsgT]):
                 the message.
             EntityDestroyedError: the publisher or its node was destroyed (a RuntimeError).
         """
+        thread = self._home.thread
+        if thread and thread != get_ident():
+            self._home.wait_for(self.publish, msg)
+            return
         if self.destroyed:
             raise EntityDestroyedError(self.subject)
         if type(msg) is not self.msg_type:

@@ -439,6 +439,20 @@ async def test_a_server_that_goes_away_ends_the_call_at_once(
     assert sorted(gate.cancelled) == sorted(gate.began)
 
 
+async def test_who_is_prepared_for_silence_is_prepared_for_a_server_that_goes_away(
+    context: Context, node: Node
+) -> None:
+    """Callers of ROS wait with a limit, as no reply would come there, and catch its end."""
+    client = node.create_client(AddTwoInts, "/add")
+    async with Node("server", context=context) as server:
+        service = server.create_service(AddTwoInts, "/add", Gate())
+        asyncio.get_running_loop().call_soon(service.destroy)
+        with pytest.raises(TimeoutError):
+            async with asyncio.timeout(60):
+                await client.call(Request())
+    assert client.stats.errors == 1
+
+
 async def test_with_one_of_two_servers_gone_the_other_still_answers(
     context: Context, node: Node
 ) -> None:
