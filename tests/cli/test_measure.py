@@ -7,11 +7,14 @@ from typing import Any
 
 import pytest
 
-from aionode import Node, QoSProfile
+from aionode import Context, Node, QoSProfile
 from aionode.cli import measure
 from aionode.cli.measure import bw, delay, hz
+from aionode.cli.session import make_node
 from aionode.errors import CommandError
+from aionode.interfaces.builtin_interfaces.msg import Time as TimeMsg
 from aionode.interfaces.geometry_msgs.msg import TwistStamped
+from aionode.interfaces.rosgraph_msgs.msg import Clock
 from aionode.interfaces.std_msgs.msg import Header, String
 from aionode.testing import ManualClock, settle
 
@@ -203,3 +206,28 @@ async def test_hz_says_when_messages_came_too_fast(
     assert screen.errors == (
         "3 messages came too fast to be counted: the real figures are higher\n"
     )
+
+
+async def test_delay_is_that_of_the_simulation_if_asked(
+    running: Any,
+    aionode_context: Context,
+    node_factory: Callable[..., Node],
+    manual_clock: ManualClock,
+    screen: Any,
+) -> None:
+    """A stamp of a simulation means nothing to this machine's clock."""
+    simulator = node_factory("simulator")
+    clock = simulator.create_publisher(Clock, "/clock", 1)
+    publisher = simulator.create_publisher(TwistStamped, "/stamped", 10)
+    async with (
+        make_node(aionode_context, use_sim_time=True) as tool,
+        running(delay(tool, "/stamped", output=screen.json_output)),
+    ):
+        clock.publish(Clock(clock=TimeMsg(sec=100)))
+        await settle()
+        publisher.publish(TwistStamped(header=Header(stamp=TimeMsg(sec=98))))
+        await settle()
+        clock.publish(Clock(clock=TimeMsg(sec=102)))
+        await manual_clock.advance(1.0)
+
+    assert screen.records[0]["delay_s"] == 2.0
