@@ -168,7 +168,7 @@ class QueueFullError(AionodeError, RuntimeError):
         self.depth = depth
         super().__init__(
             f"{topic}: a KEEP_ALL subscription is full, with {depth} unread messages or more; "
-            "nothing was published. Before publishing on, `await publisher.drain()`, or use KEEP_LAST"
+            "nothing was published. `await publisher.drain()` before the next, or use KEEP_LAST"
         )
 
 
