@@ -3,7 +3,7 @@
 ``python tests/processes/action_member.py server`` serves /count and tells ``open``, ``executing``,
 ``ended STATUS``; a line with a word on stdin makes it tell ``WORD GOALS RESULTS REQUESTS``, the
 sizes of its tables. ``… client STEPS`` sends one goal of so many steps and tells ``open``,
-``accepted``, ``feedback N``, ``result STATUS TEXT``, ``error TYPE: TEXT``, and ``tables GOALS``.
+``ready``, ``accepted``, ``feedback N``, ``result STATUS TEXT``, ``error TYPE: TEXT``, and ``tables GOALS``.
 """
 
 from __future__ import annotations
@@ -85,6 +85,7 @@ async def ask() -> None:
         tell("open")
         client = node.create_action_client(Fibonacci, "/count")
         await client.wait_for_server()
+        tell("ready")
         goal = await client.send_goal(Fibonacci.Goal(order=int(sys.argv[2])))
         tell("accepted")
         try:

@@ -20,9 +20,11 @@ LONG = "100000"
 @contextmanager
 def ends(steps: str) -> Iterator[tuple[Process, Process]]:
     """A server, and a client whose goal of so many steps was accepted."""
-    with Process(PROGRAM, "server") as server, Process(PROGRAM, "client", steps) as client:
-        client.expect("accepted")
-        yield server, client
+    with Process(PROGRAM, "server") as server:
+        server.expect("open")
+        with Process(PROGRAM, "client", steps) as client:
+            client.expect("accepted")
+            yield server, client
 
 
 def expect_empty_tables(server: Process) -> None:
