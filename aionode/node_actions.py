@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from aionode.action import ActionClient, ActionServer
 from aionode.message import Message
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.action import ServerGoalHandle
+    from aionode.action import ActionClient, ActionServer, ServerGoalHandle
     from aionode.endpoints.dispatch import Callbacks, OnError
     from aionode.endpoints.entity import Entity
     from aionode.message import ActionClass
@@ -47,6 +46,8 @@ class NodeActionMethods:
         offload: bool = False,
     ) -> ActionServer[GoalT, ResultT, FeedbackT]:
         """Return a server that executes goals; see `aionode.ActionServer` for all arguments."""
+        from aionode.action import ActionServer  # nodes without actions start faster
+
         return ActionServer(
             self,  # type: ignore[arg-type]  # only Node inherits this
             action_type,
@@ -65,6 +66,8 @@ class NodeActionMethods:
         self, action_type: ActionClass[GoalT, ResultT, FeedbackT], action_name: str
     ) -> ActionClient[GoalT, ResultT, FeedbackT]:
         """Return a client that sends goals; see `aionode.ActionClient`."""
+        from aionode.action import ActionClient  # as above
+
         return ActionClient(self, action_type, action_name)  # type: ignore[arg-type]  # as above
 
     # What entities need that are made of others
