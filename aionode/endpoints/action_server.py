@@ -173,6 +173,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         self._accepted: Inbox[Any] = Inbox(UNLIMITED, CallbackStats(), keep_all=True)
         self._waiting: Inbox[Any] = Inbox(UNLIMITED, self.stats, keep_all=True)
         self._loop: asyncio.AbstractEventLoop | None = None
+        self._status_due = False
         self._hand_over = self._callbacks.dispatch(
             self._call_handle_accepted, self, CallbackStats(), on_error=on_error, offload=False
         )
@@ -521,7 +522,17 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
                 self._feedback.publish(message)
 
     def publish_status(self) -> None:
-        """Send the states of all goals that are active or kept. For goal handles."""
+        """Send the states of all goals soon: once for all changes of one turn of the loop.
+
+        The list holds every goal that is active or kept, so a message for each change of each of
+        many goals would cost more than the goals do. For goal handles.
+        """
+        if not (self._status_due or self.destroyed):
+            self._status_due = True
+            asyncio.get_running_loop().call_soon(self._send_status)
+
+    def _send_status(self) -> None:
+        self._status_due = False
         if self.destroyed:
             return
         from aionode.interfaces.action_msgs.msg import GoalStatus as GoalStatusMessage

@@ -3,7 +3,8 @@
 ``python tests/processes/action_member.py server`` serves /count and tells ``open``, ``executing``,
 ``ended STATUS``; a line with a word on stdin makes it tell ``WORD GOALS RESULTS REQUESTS``, the
 sizes of its tables. ``… client STEPS`` sends one goal of so many steps and tells ``open``,
-``ready``, ``accepted``, ``feedback N``, ``result STATUS TEXT``, ``error TYPE: TEXT``, and ``tables GOALS``.
+``ready``, ``accepted``, ``feedback N``, ``result STATUS TEXT``, ``error TYPE: TEXT``, and
+``tables GOALS``.
 """
 
 from __future__ import annotations
