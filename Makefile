@@ -67,7 +67,7 @@ clean:
 
 .venv/installed-dev: pyproject.toml | .venv/bin/python
 	@echo "Installing aionode and the tools of its developers into .venv ..."
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fast,bag,dev]'
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
 	@touch .venv/installed $@
 
 .venv/bin/python:
