@@ -9,7 +9,7 @@ import os
 import select
 import socket
 import threading
-from contextlib import suppress
+from contextlib import closing, contextmanager, suppress
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import zenoh
@@ -26,7 +26,7 @@ from aionode.transport.zenoh_config import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Iterator
 
     from aionode.transport.wakeup import Lane
     from aionode.transport.zenoh_config import Network
@@ -39,6 +39,12 @@ T = TypeVar("T")
 
 PROBE_S = 0.2
 """How long a port on this machine may take to accept a connection; it takes 0.1 ms."""
+
+TURN_S = 1.0
+"""How long others may take to open their sessions before this one goes ahead; each takes 10 ms."""
+
+TURN_POLL_S = 0.002
+"""How often the turn is asked for: in a thread, and only while many start at once."""
 
 FIRST_LINK_S = 1.0
 """How long `open` waits for the first of those who accept connections; a frozen one never comes."""
@@ -115,6 +121,27 @@ def answering_ports(ports: Iterable[int]) -> list[int]:
     return answering
 
 
+@contextmanager
+def one_at_a_time(port: int | None) -> Iterator[None]:
+    """Let the processes of this machine look for a free meeting port, and take it, in turn.
+
+    Two that look at the same moment would both want the first one; the loser would have none, and
+    not dial the winner either. Whoever holds the UDP port of this number has the turn: unlike a
+    file it belongs to no user, and goes with its process.
+    """
+    if port is None:
+        yield
+        return
+    with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as turn:
+        ends_ns = perf_ns() + int(TURN_S * 1e9)
+        while perf_ns() < ends_ns:
+            with suppress(OSError):
+                turn.bind((LOOPBACK, port))
+                break
+            threading.Event().wait(TURN_POLL_S)
+        yield
+
+
 def load_config(
     network: Network, settings: dict[str, Any], participant: str | None = None
 ) -> zenoh.Config:
@@ -153,10 +180,12 @@ async def open_session(network: Network, participant: str) -> tuple[zenoh.Sessio
     """
 
     def work() -> tuple[zenoh.Session, int]:
-        answering = answering_ports(probed_ports(network))
-        config = load_config(network, session_settings(network, answering), participant)
+        ports = probed_ports(network)
         try:
-            session = zenoh.open(config)
+            with one_at_a_time(network.meeting_ports[0] if len(ports) > 1 else None):
+                answering = answering_ports(ports)
+                config = load_config(network, session_settings(network, answering), participant)
+                session = zenoh.open(config)
         except zenoh.ZError as error:
             raise TransportError(
                 f"Zenoh: no session could be opened: {reason(error)}; look at "
