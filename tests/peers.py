@@ -22,6 +22,7 @@ __all__ = [
     "free_ports",
     "isolated_environment",
     "kept",
+    "known",
     "quiet_node",
     "raw_session",
     "ros_router",
@@ -131,6 +132,19 @@ def raw_session() -> Iterator[zenoh.Session]:
     )
     with closing(zenoh.open(config)) as session:
         yield session
+
+
+async def known(session: zenoh.Session, tokens: str, count: int = 1) -> list[str]:
+    """Wait until a session sees so many tokens that match, and return those."""
+    found = Collector()
+    subscriber = session.liveliness().declare_subscriber(tokens, found, history=True)
+    try:
+        # One may come twice: with the history, and as news.
+        while len(keys := list(dict.fromkeys(str(each.key_expr) for each in found.items))) < count:
+            await found.have(len(found.items) + 1)
+    finally:
+        subscriber.undeclare()
+    return keys
 
 
 EVERYBODY = ["router", "peer"]

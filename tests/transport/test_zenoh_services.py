@@ -22,7 +22,15 @@ from aionode.transport.zenoh.services import error_payload, parse_error
 from aionode.wire import attachment, cdr
 from aionode.wire.keyexpr import data_key
 from aionode.wire.typehash import type_hash
-from tests.peers import DOMAIN_ID, Collector, quiet_node, raw_session, ros_value, two_contexts
+from tests.peers import (
+    DOMAIN_ID,
+    Collector,
+    known,
+    quiet_node,
+    raw_session,
+    ros_value,
+    two_contexts,
+)
 
 VECTORS: dict[str, Any] = json.loads(
     Path(__file__).parent.parent.joinpath("vectors", "vectors.json").read_text()
@@ -226,7 +234,7 @@ async def test_requests_and_responses_are_those_of_rmw_zenoh(half: str) -> None:
                     heard: list[Any] = []
 
                     node.create_service(srv_type, f"srv{number}", remembering(heard, response))
-                    await served(session, f"@ros2_lv/{DOMAIN_ID}/**/SS/**", number)
+                    await known(session, f"@ros2_lv/{DOMAIN_ID}/**/SS/**", number)
                     replies = Collector()
                     session.get(
                         key,
@@ -337,7 +345,7 @@ async def test_strange_requests_are_answered_with_an_error_and_stop_nothing(
     async with quiet_node("server") as node:
         node.create_service(AddTwoInts, "add", add)
         with raw_session() as session:
-            await served(session, f"@ros2_lv/{DOMAIN_ID}/**/SS/**", 1)
+            await known(session, f"@ros2_lv/{DOMAIN_ID}/**/SS/**", 1)
             with caplog.at_level(logging.WARNING, "aionode.transport.zenoh"):
                 for payload in (None, b"", b"\0\1\0\0\1"):
                     replies = await raw_call(session, payload, None).have(2)
@@ -359,16 +367,6 @@ def remembering(heard: list[Any], response: Any) -> Callable[[Any], Any]:
         return response
 
     return answer
-
-
-async def served(session: zenoh.Session, tokens: str, count: int) -> None:
-    """Wait until a session sees so many tokens."""
-    found = Collector()
-    subscriber = session.liveliness().declare_subscriber(tokens, found, history=True)
-    try:
-        await found.have(count)
-    finally:
-        subscriber.undeclare()
 
 
 # Errors as text

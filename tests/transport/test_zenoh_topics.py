@@ -29,6 +29,7 @@ from tests.peers import (
     KEEP_ALL,
     Collector,
     kept,
+    known,
     quiet_node,
     raw_session,
     ros_value,
@@ -449,14 +450,3 @@ async def matched(publisher: Any) -> None:
 
     writer._matching_changed._handle = note
     await future
-
-
-async def known(session: zenoh.Session, tokens: str, count: int = 1) -> list[str]:
-    """Wait until a session sees so many tokens that match, and return those."""
-    found = Collector()
-    subscriber = session.liveliness().declare_subscriber(tokens, found, history=True)
-    try:
-        await found.have(count)
-    finally:
-        subscriber.undeclare()
-    return [str(sample.key_expr) for sample in found.items]
