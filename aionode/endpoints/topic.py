@@ -92,7 +92,7 @@ class Publisher(Entity, Generic[MsgT]):
         self._writers = tuple(writers)
         self._gid = channel.endpoint.gid
         self._home = channel.home
-        self._check = checker(msg_type)
+        self._check: Callable[[Any], None] = checker(msg_type)
         self._now_ns = time_base.system_ns
 
     def __repr__(self) -> str:
@@ -108,12 +108,15 @@ class Publisher(Entity, Generic[MsgT]):
 
     topic = topic_name
 
-    def publish(self, msg: MsgT) -> None:
+    def publish(self, msg: MsgT | bytes | bytearray | memoryview) -> None:
         """Hand `msg` to every matched subscription; never blocks and never waits.
 
         The object may be changed and published again at once: readers have a snapshot. A full
         KEEP_LAST queue drops its oldest message and counts it. To wait for slow readers instead,
         subscribe with KEEP_ALL and `await drain()` before publishing on.
+
+        In place of a message it takes one as CDR bytes, such as a subscription with ``raw=True``
+        received.
 
         It may be called in any thread, such as that of an offloaded callback: outside the thread
         of the node's event loop it waits until that loop has taken the message.
@@ -121,6 +124,7 @@ class Publisher(Entity, Generic[MsgT]):
         Raises:
             TypeError: `msg` is not of this publisher's type.
             MessageError: a value does not fit its field; nobody got the message.
+            DecodeError: the bytes are no message of this publisher's type (a ValueError).
             QueueFullError: a reliable KEEP_ALL subscription of this process is full; nobody got
                 the message.
             EntityDestroyedError: the publisher or its node was destroyed (a RuntimeError).
@@ -132,7 +136,7 @@ class Publisher(Entity, Generic[MsgT]):
         if self.destroyed:
             raise EntityDestroyedError(self.subject)
         if type(msg) is not self.msg_type:
-            self._check(msg)  # raises the TypeError; a subclass that fits may pass
+            msg = self._fitting(msg)
         for writer in self._writers:
             if writer.bounded and not writer.has_room():
                 raise QueueFullError(self.topic_name, KEEP_ALL_DEPTH)
@@ -146,6 +150,15 @@ class Publisher(Entity, Generic[MsgT]):
         if not used:
             self._check(msg)
         stats.published += 1
+
+    def _fitting(self, msg: Any) -> Any:
+        """Return a message of another class, if it fits all the same; TypeError if it does not."""
+        if isinstance(msg, bytes | bytearray | memoryview):
+            from aionode.wire import cdr  # who publishes messages in process needs no codec
+
+            return cdr.decode(self.msg_type, msg)
+        self._check(msg)  # raises the TypeError; a subclass that fits may pass
+        return msg
 
     async def drain(self) -> None:
         """Wait until every reliable KEEP_ALL reader has room and nothing is left to send.

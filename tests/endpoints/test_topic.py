@@ -11,6 +11,7 @@ import pytest
 from aionode.context import Context
 from aionode.errors import (
     CallbackSignatureError,
+    DecodeError,
     EntityDestroyedError,
     InvalidTopicNameException,
     MessageError,
@@ -176,6 +177,25 @@ async def test_read_only_arrays_travel_without_a_copy(node: Node) -> None:
     pixels.flags.writeable = False
     node.create_publisher(Float64MultiArray, "numbers", 10).publish(Float64MultiArray(data=pixels))
     assert np.shares_memory((await reader.receive()).data, pixels)
+
+
+async def test_what_a_raw_subscription_received_can_be_published(node: Node) -> None:
+    """A relay needs not know what is in a message, nor which classes there are."""
+    raw = node.create_subscription(String, "in", raw=True)
+    reader = node.create_subscription(String, "out")
+    relay = node.create_publisher(String, "out", 10)
+    fill(node.create_publisher(String, "in", 10), "a")
+    relay.publish(await raw.receive())
+    assert await reader.receive() == String(data="a")
+
+
+@pytest.mark.parametrize("kind", [bytes, bytearray, memoryview])
+async def test_bytes_that_are_no_message_are_refused(node: Node, kind: type[bytes]) -> None:
+    """Where the mistake is made, with the field and the offset."""
+    publisher = node.create_publisher(String, "words", 10)
+    with pytest.raises(DecodeError, match="std_msgs/msg/String"):
+        publisher.publish(kind(b"\0\1\0\0\xff"))
+    assert publisher.stats.published == 0
 
 
 async def test_raw_subscriptions_get_cdr_bytes_in_process_too(node: Node) -> None:
