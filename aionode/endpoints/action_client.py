@@ -24,6 +24,7 @@ from aionode.errors import (
     ServiceUnavailableError,
 )
 from aionode.goal import GoalStatus
+from aionode.graph import EndpointKind
 from aionode.message import Message, checker, type_name
 from aionode.qos import (
     QoSProfile,
@@ -47,11 +48,15 @@ ANSWER_LIMIT_S = 1.0
 
 UNLIMITED = 2**63 - 1
 
-TURNS_FOR_FEEDBACK = 10
-"""For how many turns of the loop a goal outlives its result.
+LAST_FEEDBACK_S = 0.02
+"""How long feedback is listened for after the result came from another process, in seconds.
 
-Feedback that was sent before the result has arrived then, but may wait in other queues.
+Zenoh lets a reply overtake the samples before it: in 3 to 7 of 100 goals that sent feedback just
+before their end it came after the result, by less than a millisecond.
 """
+
+TURNS_FOR_FEEDBACK = 10
+"""For how many turns of the loop what has arrived may wait in the queue of a subscription."""
 
 FEEDBACK_QOS = QoSProfile(depth=100)
 """Of the feedback of all goals together, as much as one goal keeps."""
@@ -109,6 +114,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         super().__init__(f"action client of {self.action_name}")
         self._check = checker(self.action_type.Goal)
         self._graph = node.graph
+        self._participant = node.context.participant
         self._goals: dict[bytes, ClientGoalHandle[ResultT, FeedbackT]] = {}
         self._accepted: Inbox[Any] = Inbox(UNLIMITED, CallbackStats(), keep_all=True)
         self._waits: set[asyncio.Future[None]] = set()
@@ -243,6 +249,8 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         """
         handle = await self.send_goal(goal, feedback_callback)
         outcome = await handle.result()
+        if feedback_callback is not None:
+            await handle.heard_out()
         if outcome.status is GoalStatus.SUCCEEDED:
             return outcome.result
         if outcome.status is GoalStatus.CANCELED:
@@ -303,7 +311,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
             raise GoalRejectedError(self.action_name, handle.text)
         handle.accepted = True
         handle.stamp = response.stamp
-        handle.status = max(handle.status, GoalStatus.ACCEPTED)
+        handle.tell(GoalStatus.ACCEPTED)
         self._accepted.put(handle)
         return handle
 
@@ -350,7 +358,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         for each in message.status_list:
             goal = self._goals.get(each.goal_info.goal_id.uuid.tobytes())
             if goal is not None:
-                goal.status = max(goal.status, GoalStatus(each.status))
+                goal.tell(GoalStatus(each.status))
 
     async def run(self) -> None:
         """Wait for the results of all goals, until cancelled."""
@@ -367,8 +375,6 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
             response = await self._ask(goal.goal_id)
             status = GoalStatus(response.status)
             text = await self._reason(goal) if status is GoalStatus.ABORTED else ""
-            for _ in range(TURNS_FOR_FEEDBACK):
-                await give_way()
         except ServiceUnavailableError:
             problem = "the server went away before it ended"
             goal.end(lost=GoalLostError(self.action_name, goal.text, problem))
@@ -377,8 +383,25 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
             goal.end(lost=GoalLostError(self.action_name, goal.text, problem))
         else:
             goal.end(ActionResult(status, response.result, text))
+            if status is not GoalStatus.UNKNOWN:
+                await self._hear_out(goal)
+            goal.end_feedback()
         finally:
             self._forget(goal)
+
+    async def _hear_out(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
+        """Wait for feedback that its goal's result has overtaken."""
+        if self._is_remote():
+            with suppress(TimeoutError):
+                async with asyncio.timeout(LAST_FEEDBACK_S):
+                    await asyncio.Event().wait()
+        for _ in range(TURNS_FOR_FEEDBACK):
+            await give_way()
+
+    def _is_remote(self) -> bool:
+        """Whether a server of another process may have had the goal."""
+        servers = self._graph.endpoints(EndpointKind.SERVER, name=self._get_result.srv_name)
+        return any(server.node.participant != self._participant for server in servers)
 
     async def _until_askable(self) -> None:
         """Wait for the server's other half, which may be found later than its first.

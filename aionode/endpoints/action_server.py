@@ -495,8 +495,8 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         goal_id = goal.key.goal_id
         if self.destroyed or goal_id not in self._goals:
             return
-        if self._timeout_ns == 0:
-            self._forget(goal_id)
+        if self._timeout_ns == 0:  # after the status, which is sent in the next turn
+            asyncio.get_running_loop().call_soon(self._forget, goal_id)
         else:
             due_ns = self._time_base.steady_ns() + self._timeout_ns
             self._alarms[goal_id] = self._time_base.call_at(due_ns, partial(self._forget, goal_id))

@@ -77,6 +77,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         self._outcome: ActionResult[ResultT] | None = None
         self._lost: GoalLostError | None = None
         self._ended = asyncio.Event()
+        self._heard_out = asyncio.Event()
 
     def __repr__(self) -> str:
         return f"<ClientGoalHandle {self._client.action_name} {self.text} {self.status.name}>"
@@ -136,7 +137,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
             CancelledError: the client was destroyed.
         """
         while not self._feedback:
-            if self.done:
+            if self._heard_out.is_set():
                 self._raise_if_lost()
                 if self._outcome is None:
                     raise asyncio.CancelledError(f"{self._client.subject}: destroyed")
@@ -171,17 +172,30 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         """Keep `feedback` for a reader."""
         self._feedback.put(feedback)
 
+    def tell(self, status: GoalStatus) -> None:
+        """Take what the status topic tells; news that come late change nothing."""
+        self.status = max(self.status, status)
+
     def end(
         self,
         outcome: ActionResult[ResultT] | None = None,
         lost: GoalLostError | None = None,
     ) -> None:
         """Take how the goal ended; neither means that the client was destroyed."""
-        if self.done:
-            return
-        self._outcome = outcome
-        self._lost = lost
-        if outcome is not None:
-            self.status = outcome.status
-        self._ended.set()
+        if not self.done:
+            self._outcome = outcome
+            self._lost = lost
+            if outcome is not None:
+                self.status = outcome.status
+            self._ended.set()
+        if outcome is None:
+            self.end_feedback()
+
+    def end_feedback(self) -> None:
+        """End the iteration: no feedback will come any more."""
+        self._heard_out.set()
         self._feedback.wake()
+
+    async def heard_out(self) -> None:
+        """Wait until no feedback will come any more."""
+        await self._heard_out.wait()
