@@ -146,7 +146,7 @@ class Service(Entity, Generic[RequestT, ResponseT]):
         if not isinstance(response, self.srv_type.Response):
             given = "None" if response is None else f"a {type(response).__name__}"
             raise TypeError(
-                f"{self.subject}: the handler returned {given} instead of a "
+                f"{self.subject}: the handler returned {given} in place of "
                 f"{type_name(self.srv_type.Response)}; it must end with `return response`"
             )
 
@@ -269,6 +269,24 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         self.stats.run_time.record(perf_ns() - began_ns)
         return response
 
+    def send(self, request: RequestT) -> None:
+        """Send `request` to the servers that are there now; the response is dropped.
+
+        For what has to be said at the end, when nobody can wait any more.
+
+        Raises:
+            TypeError: `request` is of another type.
+            MessageError: a value does not fit its field.
+            EntityDestroyedError: the client was destroyed.
+        """
+        self.refuse_if_destroyed("called")
+        self._check(request)
+        self.stats.calls += 1
+        origin = Origin(self._channel.endpoint.gid, self.stats.calls, self._now_ns())
+        for requester in self._requesters:
+            if requester.servers:
+                requester.send(request, origin, _Nobody())
+
     async def _exchange(self, request: Any) -> Any:
         """Send through every transport and return the first answer."""
         servers = self._servers()
@@ -340,3 +358,16 @@ class _Exchange:
         self.open -= 1
         if self.open == 0 and not self._answer.done():
             self._answer.set_exception(ServiceUnavailableError(self._service))
+
+
+class _Nobody:
+    """What becomes of a call that nobody waits for."""
+
+    def reply(self, response: Any, origin: Origin) -> None:
+        """Drop a response."""
+
+    def fail(self, error: ServiceError) -> None:
+        """Drop an error."""
+
+    def end(self) -> None:
+        """Nothing was expected."""
