@@ -90,7 +90,7 @@ class ZenohWriter(Entity, Writer):
         qos = endpoint.qos
         self._key = data_key(link.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
         self._msg_type = msg_type
-        # Codecs are made when they are used first: the many services of a node mostly never are.
+        # Making a codec takes a while: not before it is needed, and not within a callback.
         self._encode: Callable[[Any], bytes] | None = None
         self._publisher: zenoh.Publisher | ext.AdvancedPublisher | None = None
         self._matching: zenoh.MatchingListener[None] | None = None
@@ -143,7 +143,7 @@ class ZenohWriter(Entity, Writer):
             self._matching = self._publisher.declare_matching_listener(
                 direct(self._matching_changed.put)
             )
-            self._update()
+        self._update()
 
     def undeclare_data(self) -> None:
         """Withdraw the publisher."""
@@ -165,6 +165,8 @@ class ZenohWriter(Entity, Writer):
             self.active = isinstance(publisher, zenoh.Publisher) and bool(
                 publisher.matching_status.matching  # type: ignore[attr-defined]  # no bool, as the stub says
             )
+        if self.active and self._encode is None:
+            self._encode = cdr.encoder(self._msg_type)
 
     def write(self, msg: Any, origin: Origin) -> None:
         """Send `msg`."""
