@@ -103,7 +103,5 @@ class Schedule:
 def checked_period(period_ns: int) -> int:
     """Return `period_ns` if it is not negative."""
     if period_ns < 0:
-        raise ValueError(
-            f"timer: its period is {period_ns} ns; use 0 or more (0 is always ready)"
-        )
+        raise ValueError(f"timer: its period is {period_ns} ns; use 0 or more (0 is always ready)")
     return period_ns
