@@ -8,6 +8,7 @@ import logging
 import threading
 from contextlib import ExitStack
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -15,6 +16,7 @@ import zenoh  # noqa: TID251  # plays the other participants, without aionode
 
 from aionode.context import Context
 from aionode.errors import QueueFullError
+from aionode.graph import EndpointInfo, EndpointKind
 from aionode.interfaces import get_message
 from aionode.interfaces.sensor_msgs.msg import Image
 from aionode.interfaces.std_msgs.msg import Int32, String, UInt8MultiArray
@@ -450,3 +452,35 @@ async def matched(publisher: Any) -> None:
 
     writer._matching_changed._handle = note
     await future
+
+
+async def test_without_a_hash_every_definition_of_a_type_is_heard() -> None:
+    """For tools that look at topics whose definition they do not have."""
+    other_key = data_key(DOMAIN_ID, "/chatter", "std_msgs/msg/String", "RIHS01_" + "0" * 64)
+    async with quiet_node("tool") as node:
+        heard: asyncio.Queue[bytes] = asyncio.Queue()
+        endpoint = EndpointInfo(
+            EndpointKind.SUBSCRIPTION,
+            node.context.graph.nodes()[0],
+            node.context.new_id(),
+            "/chatter",
+            "std_msgs/msg/String",
+            "",
+            QoSProfile(depth=10),
+            b"",
+        )
+        reader: Any = SimpleNamespace(
+            endpoint=endpoint, raw=True, deliver=lambda data, _: heard.put_nowait(data), reject=None
+        )
+        announcement = transport_of(node).create_reader(endpoint, String, reader)
+        with raw_session() as session:
+            publisher = session.declare_publisher(other_key)
+            matching = Collector()
+            listener = publisher.declare_matching_listener(matching)
+            if not publisher.matching_status.matching:  # type: ignore[attr-defined]  # no bool
+                await matching.have(1)
+            publisher.put(b"any")
+            assert await heard.get() == b"any"
+            listener.undeclare()
+        announcement.close()
+        announcement.close()

@@ -32,10 +32,17 @@ class Cancellations:
         listeners: Called with the gid of the client and its number of the request.
     """
 
-    def __init__(self, participant: str, domain_id: int, wakeup: Wakeup) -> None:
+    def __init__(
+        self,
+        participant: str,
+        domain_id: int,
+        wakeup: Wakeup,
+        note_garbage: Callable[[str, str], None],
+    ) -> None:
         self.listeners: dict[Callable[[bytes, int], None], None] = {}
         self._participant = participant
         self._domain_id = domain_id
+        self._note_garbage = note_garbage
         self._session: zenoh.Session | None = None
         self._subscriber: zenoh.Subscriber[None] | None = None
         self._lane: Lane[zenoh.Sample] = Lane(wakeup, self._take, LIMIT)
@@ -68,6 +75,8 @@ class Cancellations:
     def _take(self, sample: zenoh.Sample) -> None:
         extra = sample.attachment
         request = None if extra is None else attachment.unpack(extra.to_bytes())
-        if request is not None:
+        if request is None:
+            self._note_garbage(self._key(self._participant), "a cancellation")
+        else:
             for listener in list(self.listeners):
                 listener(request.gid, request.sequence)

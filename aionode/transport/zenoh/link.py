@@ -56,7 +56,7 @@ class Link:
         self.senders = {self.bulk}
         self.garbage: Counter[str] = Counter()
         self.own_gids: set[bytes] = set()
-        self.cancellations = Cancellations(participant, domain_id, self.wakeup)
+        self.cancellations = Cancellations(participant, domain_id, self.wakeup, self.note_garbage)
         self.now_ns = MachineTime().system_ns
         self.on_reader: dict[str, list[Callable[[], None]]] = {}
         self._entities: dict[Entity, None] = {}
@@ -115,13 +115,14 @@ class Entity(Announcement):
 
     Args:
         link: The connection.
-        token: Its liveliness token.
+        token: Its liveliness token; without one others do not see it.
     """
 
     def __init__(self, link: Link, token: str) -> None:
         self.link = link
         self.token = token
         self.gid = gid_of(token)
+        self._declared = False
         self._declared_token: zenoh.LivelinessToken | None = None
 
     def __hash__(self) -> int:
@@ -131,14 +132,18 @@ class Entity(Announcement):
         """Announce it: first what it does, then, to everybody, that it is there."""
         with translated(self.token):
             self.declare_data(session)
-            self._declared_token = session.liveliness().declare_token(self.token)
+            self._declared = True
+            if self.token:
+                self._declared_token = session.liveliness().declare_token(self.token)
 
     def undeclare(self) -> None:
         """Withdraw it, in the other order."""
         token, self._declared_token = self._declared_token, None
-        if token is not None:
-            with translated(self.token):
+        declared, self._declared = self._declared, False
+        with translated(self.token):
+            if token is not None:
                 token.undeclare()
+            if declared:
                 self.undeclare_data()
 
     @abstractmethod

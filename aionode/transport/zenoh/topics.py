@@ -232,9 +232,11 @@ class ZenohReader(Entity):
         self._buffers = has_buffers(msg_type)
         transient = is_transient(endpoint.qos)
         self._second_key = self._buffers and not transient
+        backends = CPU_BACKEND if self._second_key else ""
+        # Without a hash it takes every definition of the type, which ROS has no token for.
+        visible = bool(endpoint.type_hash)
         super().__init__(
-            link,
-            endpoint_token(link.domain_id, endpoint, CPU_BACKEND if self._second_key else ""),
+            link, endpoint_token(link.domain_id, endpoint, backends) if visible else ""
         )
         self.endpoint = endpoint
         self._key = data_key(link.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
