@@ -58,8 +58,8 @@ before their end it came after the result, by less than a millisecond.
 TURNS_FOR_FEEDBACK = 10
 """For how many turns of the loop what has arrived may wait in the queue of a subscription."""
 
-FEEDBACK_QOS = QoSProfile(depth=100)
-"""Of the feedback of all goals together, as much as one goal keeps."""
+FEEDBACK_QOS = QoSProfile(depth=1000)
+"""The feedback of all goals shares a queue: ten of them may get as much at once as one keeps."""
 
 
 class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
@@ -321,6 +321,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
 
     async def awaiting(self, goal: ClientGoalHandle[ResultT, FeedbackT], wait: Awaitable[T]) -> T:
         """Return what `wait` returns; if cancelled, cancel `goal` as well. For its handle."""
+        goal.waiting += 1
         try:
             return await wait
         except asyncio.CancelledError:
@@ -330,6 +331,8 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
                 with suppress(ServiceError, RequestTimeoutError):
                     await self.cancel_goal(goal, ANSWER_LIMIT_S)
             raise
+        finally:
+            goal.waiting -= 1
 
     async def cancel_goal(
         self, goal: ClientGoalHandle[ResultT, FeedbackT], timeout_sec: float | None = None
@@ -337,9 +340,12 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         """Ask the server to cancel `goal`. For its handle."""
         if not self._cancel_goal.service_is_ready():  # it was, so it has gone
             raise ServiceUnavailableError(self._cancel_goal.srv_name)
+        return await self._cancel_goal.call(self._cancel_request(goal), timeout_sec)
+
+    def _cancel_request(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> Any:
         request = self.action_type.Impl.CancelGoalService.Request()
         request.goal_info.goal_id = goal.goal_id
-        return await self._cancel_goal.call(request, timeout_sec)
+        return request
 
     # What the server says
 
@@ -370,6 +376,8 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         return self._until_end(goal)
 
     async def _until_end(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
+        if self.destroyed:
+            return
         try:
             await self._until_askable()
             response = await self._ask(goal.goal_id)
@@ -384,13 +392,13 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         else:
             goal.end(ActionResult(status, response.result, text))
             if status is not GoalStatus.UNKNOWN:
-                await self._hear_out(goal)
+                await self._hear_out()
             goal.end_feedback()
         finally:
             self._forget(goal)
 
-    async def _hear_out(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
-        """Wait for feedback that its goal's result has overtaken."""
+    async def _hear_out(self) -> None:
+        """Wait for feedback that the result of its goal has overtaken."""
         if self._is_remote():
             with suppress(TimeoutError):
                 async with asyncio.timeout(LAST_FEEDBACK_S):
@@ -431,7 +439,14 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
     # The end
 
     def close(self) -> None:
-        """Withdraw the client, and cancel what waits; goals go on at the server."""
+        """Withdraw the client, and cancel what waits, and so the goals that somebody awaits.
+
+        The other goals go on at the server.
+        """
+        for goal in self._goals.values():
+            # There is no time for an answer: the node may be stopping.
+            if goal.waiting and not (goal.withdrawn or self._cancel_goal.destroyed):
+                self._cancel_goal.send(self._cancel_request(goal))
         for wait in list(self._waits):  # first, as the end of the parts is a change of the graph
             wait.cancel(f"{self.subject}: destroyed")
         self._close_parts()

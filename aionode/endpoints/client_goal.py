@@ -49,7 +49,8 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
     the goal was sent (the newest 100 are kept) and what comes, and ends when the goal has.
 
     Cancelling a task that awaits the goal, in `result` or in the iteration, cancels the goal: the
-    server is asked once, and its answer is waited for up to 1 s before CancelledError goes on. To
+    server is asked once, and its answer is waited for up to 1 s before CancelledError goes on. So
+    does destroying the client, or its node, while a task awaits the goal. To
     give up only the wait, put ``asyncio.shield`` around `result`; leaving the iteration with
     ``break`` has no effect on the goal.
 
@@ -72,6 +73,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         self.accepted = False
         self.feedback_callback = feedback_callback
         self.withdrawn = False
+        self.waiting = 0
         self._client = client
         self._feedback: Inbox[FeedbackT] = Inbox(KEPT_FEEDBACK, CallbackStats())
         self._outcome: ActionResult[ResultT] | None = None

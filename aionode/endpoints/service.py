@@ -325,10 +325,10 @@ class Client(Entity, Generic[RequestT, ResponseT]):
     def close(self) -> None:
         """Withdraw the client, and cancel its waits and calls."""
         self._channel.close()
+        for answer in list(self._answers):  # first, or it would look as if the servers had gone
+            answer.cancel(f"{self.subject}: destroyed")
         for requester in self._requesters:
             requester.close()
-        for answer in list(self._answers):
-            answer.cancel(f"{self.subject}: destroyed")
 
 
 class _Exchange:

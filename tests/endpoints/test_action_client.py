@@ -649,15 +649,12 @@ async def test_a_forgotten_goal_is_unknown(ends: Ends) -> None:
 # The client's own end
 
 
-async def test_a_destroyed_client_cancels_its_waits_and_leaves_goals_alone(ends: Ends) -> None:
-    """Whoever destroys a client does not mean the robot; nothing of the client is left."""
+async def test_a_destroyed_client_cancels_its_waits_and_what_they_wait_for(ends: Ends) -> None:
+    """Nothing of the client is left, and no goal goes on that somebody still awaited."""
     sent, goal = await begin(ends)
-    waiting = [
-        beside(sent.result()),
-        beside(anext(sent)),
-        beside(ends.client.call(Fibonacci.Goal())),
-    ]
-    await ends.worker.begun.get()
+    call = ends.client.call(Fibonacci.Goal())
+    waiting = [beside(each) for each in (sent.result(), anext(sent), call)]
+    called = await ends.worker.begun.get()
     other: Client = ends.asking.create_action_client(Fibonacci, "nobody")
     waiting.append(beside(other.wait_for_server()))
     await asyncio.sleep(0)  # noqa: TID251  # lets them begin
@@ -670,13 +667,55 @@ async def test_a_destroyed_client_cancels_its_waits_and_leaves_goals_alone(ends:
     for each in waiting:
         with pytest.raises(asyncio.CancelledError):
             await each
-    assert goal.status is GoalStatus.EXECUTING
-    assert ends.requests == []
     assert len(ends.asking._entities) == before - 12
+    await until(lambda: not (goal.is_active or called.is_active))
+    assert ends.requests == [goal, called]
     with pytest.raises(EntityDestroyedError):
         await ends.client.send_goal(Fibonacci.Goal())
     with pytest.raises(EntityDestroyedError):
         await ends.client.wait_for_server()
+
+
+async def test_a_goal_that_nobody_awaits_outlives_its_client(ends: Ends) -> None:
+    """Sent and left alone on purpose: it goes on."""
+    sent, goal = await begin(ends)
+
+    ends.client.destroy()
+    await gone_from(ends.serving)
+    ends.worker.may_end.set()
+
+    await until(lambda: not goal.is_active)
+    assert goal.status is GoalStatus.SUCCEEDED
+    assert ends.requests == []
+    with pytest.raises(asyncio.CancelledError):
+        await sent.result()
+
+
+async def gone_from(serving: Node) -> None:
+    """Wait until the server's side knows no client any more."""
+    while serving.count_clients("/fibonacci/_action/cancel_goal"):
+        await serving.graph.changed()
+
+
+async def test_a_stopping_node_cancels_the_goals_that_it_awaits(ends: Ends) -> None:
+    """Ctrl-C in a program whose callback awaits a goal: the robot stops, too."""
+    node = Node("program", context=ends.asking.context)
+
+    async def drive() -> None:
+        client: Client = node.create_action_client(Fibonacci, "fibonacci")
+        await client.wait_for_server()
+        await client.call(Fibonacci.Goal())
+
+    node.create_timer(0.0, drive)
+    running = beside(node.run())
+    goal = await ends.worker.begun.get()
+
+    node.destroy_node()
+    await running
+
+    await until(lambda: not goal.is_active)
+    assert goal.status is GoalStatus.CANCELED
+    assert ends.requests == [goal]
 
 
 def print_nothing() -> None:
