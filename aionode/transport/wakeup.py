@@ -94,12 +94,15 @@ class Wakeup:
         if self._loop is None:
             return
         ready = self._ready
-        ends_ns = perf_ns() + SLICE_NS
         try:
-            while ready:
+            if ready:
                 ready.popleft().take()
-                if perf_ns() >= ends_ns:
-                    break
+            if ready:  # a single message, the usual case, does not get here
+                ends_ns = perf_ns() + SLICE_NS
+                while ready:
+                    ready.popleft().take()
+                    if perf_ns() >= ends_ns:
+                        break
         finally:
             self._armed = False
             if ready:
