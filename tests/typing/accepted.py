@@ -7,6 +7,7 @@ from typing import Any, ClassVar, TypeVar, assert_type
 import numpy as np
 import numpy.typing as npt
 
+from aionode import GoalResponse, Node, ServerGoalHandle
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.geometry_msgs.msg import Point, PoseStamped, Twist, Vector3
@@ -164,6 +165,28 @@ def services_and_actions() -> None:
     assert last == 1
     AddTwoInts.Event(request=[AddTwoInts.Request(a=1)])
     Fibonacci.Impl.SendGoalService.Request()
+
+
+async def goals(node: Node) -> None:
+    """An action client knows its messages, and so does the handle that a server's callback gets."""
+    client = node.create_action_client(Fibonacci, "fibonacci")
+    goal = await client.send_goal(Fibonacci.Goal(order=5))
+    async for feedback in goal:
+        assert_type(feedback, Fibonacci.Feedback)
+    assert_type((await goal.result()).result, Fibonacci.Result)
+    assert_type(await client.call(Fibonacci.Goal()), Fibonacci.Result)
+
+    async def execute(
+        handle: ServerGoalHandle[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback],
+    ) -> Fibonacci.Result:
+        assert_type(handle.request, Fibonacci.Goal)
+        handle.publish_feedback(Fibonacci.Feedback())
+        handle.succeed()
+        return Fibonacci.Result()
+
+    node.create_action_server(
+        Fibonacci, "fibonacci", execute, goal_callback=lambda _goal: GoalResponse.ACCEPT
+    )
 
 
 def functions() -> None:
