@@ -118,7 +118,9 @@ class Context:
         self._ids = 0
         self._users = 0
         self._shut_down = False
-        self._opening: asyncio.Lock | None = None
+        self._open = False
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._turn = asyncio.Lock()  # to open or to close, one after the other
         self._closed = asyncio.Event()
 
     def __repr__(self) -> str:
@@ -195,16 +197,36 @@ class Context:
             node.destroy_node()
 
     async def acquire(self) -> None:
-        """Hold the context open: the first holder opens it. For nodes."""
-        if self._opening is None:
-            self._opening = asyncio.Lock()
-        async with self._opening:
-            if self._users == 0:
+        """Hold the context open: the first holder opens it. For nodes.
+
+        Raises:
+            RuntimeError: the context is open in another event loop.
+        """
+        self._enter_loop()
+        async with self._turn:
+            if not self._open and not self._shut_down:
+                await self._open_transports()
+                self._open = True
                 self._closed.clear()
-                await self._open()
             self._users += 1
 
-    async def _open(self) -> None:
+    def _enter_loop(self) -> None:
+        """Note which loop the context works in: one at a time, but one after the other is fine."""
+        loop = asyncio.get_running_loop()
+        if self._loop is loop:
+            return
+        if self._loop is not None and not self._loop.is_closed() and self._users:
+            raise RuntimeError(
+                f"{self!r}: it is open in another event loop already; its nodes have to run in one "
+                "loop, so make a context for each"
+            )
+        self._loop = loop
+        self._turn = asyncio.Lock()
+        self._closed = asyncio.Event()
+        self._users = 0
+        self._open = False
+
+    async def _open_transports(self) -> None:
         opened: list[Transport] = []
         try:
             for transport in self._transports:
@@ -218,15 +240,19 @@ class Context:
     async def release(self) -> None:
         """Hold the context open no longer: the last holder closes it. For nodes."""
         self._users -= 1
+        async with self._turn:
+            if self._users == 0 and self._open:  # else somebody goes on with what is open
+                self._open = False
+                await self._close_transports()
         if self._users == 0:
-            # The lock belongs to the loop that ran, and the next holder may have another.
-            self._opening = None
-            for transport in reversed(self._transports):
-                await transport.close()
-            for node in self.graph.nodes():
-                if node.participant != self.participant:
-                    self.graph.remove_participant(node.participant)
             self._closed.set()
+
+    async def _close_transports(self) -> None:
+        for transport in reversed(self._transports):
+            await transport.close()
+        for node in self.graph.nodes():
+            if node.participant != self.participant:
+                self.graph.remove_participant(node.participant)
 
     def _refuse_if_shut_down(self) -> None:
         if self._shut_down:

@@ -1,0 +1,160 @@
+"""When a context opens and closes, whatever its nodes do meanwhile."""
+
+from __future__ import annotations
+
+import asyncio
+from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING
+
+import pytest
+
+from aionode.context import Context
+from aionode.errors import EntityDestroyedError, TransportError
+from aionode.node import Node
+from aionode.testing import local_context, settle
+from aionode.transport.local import LocalTransport
+
+if TYPE_CHECKING:
+    from aionode.graph import Graph
+
+
+class SlowTransport(LocalTransport):
+    """Opens and closes when it is told to, and notes what it does."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.events: list[str] = []
+        self.may_open = asyncio.Event()
+        self.may_close = asyncio.Event()
+
+    async def open(self, graph: Graph) -> None:
+        """Wait until it may."""
+        self.events.append("opening")
+        await self.may_open.wait()
+        self.events.append("open")
+
+    async def close(self) -> None:
+        """Wait until it may."""
+        self.events.append("closing")
+        await self.may_close.wait()
+        self.events.append("closed")
+
+    def hurry(self) -> None:
+        """Wait for nothing any more."""
+        self.may_open.set()
+        self.may_close.set()
+
+
+def run(tasks: asyncio.TaskGroup, node: Node) -> asyncio.Task[None]:
+    """Run `node` in a task."""
+    return tasks.create_task(node.run())
+
+
+async def test_the_second_node_waits_until_the_first_has_opened() -> None:
+    """Both would open the one connection otherwise."""
+    transport = SlowTransport()
+    context = Context(transport=transport)
+    async with asyncio.TaskGroup() as tasks:
+        nodes = [Node(name, context=context) for name in ("one", "two")]
+        for node in nodes:
+            run(tasks, node)
+        await settle()
+        assert transport.events == ["opening"]
+        transport.hurry()
+        await settle()
+        assert all(node.is_running for node in nodes)
+        context.shutdown()
+    assert transport.events == ["opening", "open", "closing", "closed"]
+
+
+async def test_a_node_that_comes_while_the_context_closes_opens_it_anew() -> None:
+    """Opening and closing at once would leave a connection that is half of each."""
+    transport = SlowTransport()
+    transport.may_open.set()
+    context = Context(transport=transport)
+    first, second = (Node(name, context=context) for name in ("one", "two"))
+    async with asyncio.TaskGroup() as tasks:
+        run(tasks, first)
+        await settle()
+        first.destroy_node()
+        await settle()
+        run(tasks, second)
+        await settle()
+        assert transport.events == ["opening", "open", "closing"]
+        transport.hurry()
+        await settle()
+        assert transport.events == ["opening", "open", "closing", "closed", "opening", "open"]
+        second.destroy_node()
+
+
+async def test_a_shut_down_context_is_not_opened_for_those_who_waited() -> None:
+    """Their nodes are destroyed already, and end without a word."""
+    transport = SlowTransport()
+    context = Context(transport=transport)
+    async with asyncio.TaskGroup() as tasks:
+        for name in ("one", "two"):
+            run(tasks, Node(name, context=context))
+        await settle()
+        context.shutdown()
+        transport.hurry()
+    assert transport.events == ["opening", "open", "closing", "closed"]
+    with pytest.raises(EntityDestroyedError):
+        Node("three", context=context)
+
+
+async def test_a_context_that_could_not_open_can_be_tried_again() -> None:
+    """What is in the way may have gone."""
+
+    class Failing(LocalTransport):
+        attempts = 0
+
+        async def open(self, graph: Graph) -> None:
+            self.attempts += 1
+            if self.attempts == 1:
+                raise TransportError("no way")
+
+    node = Node("node", context=Context(transport=Failing()))
+    with pytest.raises(TransportError):
+        await node.run()
+    async with node:
+        assert node.is_running
+
+
+async def test_a_context_works_in_one_loop_at_a_time() -> None:
+    """Nodes of two loops would call each other's callbacks in foreign threads."""
+    context = local_context()
+    other = Node("other", context=context)
+    async with Node("node", context=context):
+        with (
+            ThreadPoolExecutor(1) as pool,
+            pytest.raises(RuntimeError, match="open in another event loop"),
+        ):
+            pool.submit(asyncio.run, other.run()).result()
+    async with other:
+        assert other.is_running
+
+
+def test_a_context_may_be_used_in_one_loop_after_another() -> None:
+    """As programs do that call `asyncio.run` several times."""
+    context = local_context()
+
+    async def use() -> None:
+        async with Node("node", context=context):
+            pass
+
+    for _ in range(2):
+        asyncio.run(use())
+
+
+def test_a_loop_that_was_closed_over_a_node_does_not_hold_the_context() -> None:
+    """Nobody can end that node properly any more."""
+    context = local_context()
+    loop = asyncio.new_event_loop()
+    loop.run_until_complete(Node("left", context=context).__aenter__())
+    loop.close()
+
+    async def use() -> None:
+        async with Node("node", context=context) as node:
+            assert node.is_running
+
+    asyncio.run(use())
