@@ -62,7 +62,7 @@ class Kind(enum.IntEnum):
     GONE = 6
     """Publisher gid sends nothing any more."""
     CREDIT = 7
-    """This reader (the payload) has used sequence messages of publisher gid."""
+    """This reader (the payload) has used sequence more messages, the last with number source_ns."""
     DATA = 8
     """Message number sequence of publisher gid."""
     REQUEST = 9

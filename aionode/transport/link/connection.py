@@ -146,7 +146,7 @@ class Connection:
         The packet's memory is released when the other process has done so.
         """
         if self._sock is None:
-            self._give_back(packet)
+            self.give_back(packet)
             return
         now_ns = perf_ns()
         if not self._queue and self._rest is None and now_ns - self._sent_ns > BURST_NS:
@@ -159,7 +159,7 @@ class Connection:
                 self._flush()
             if not stream.keep_all and len(stream.waiting) >= stream.depth:
                 stream.dropped += 1
-                self._give_back(stream.waiting.popleft())
+                self.give_back(stream.waiting.popleft())
                 stream.waiting.append(packet)
                 return
             stream.waiting.append(packet)
@@ -231,7 +231,8 @@ class Connection:
         first = self._queue.popleft()
         return first.waiting.popleft() if isinstance(first, Stream) else first
 
-    def _give_back(self, packet: Packet) -> None:
+    def give_back(self, packet: Packet) -> None:
+        """Release the memory of a packet that is not sent."""
         if packet.memory is not None:
             self._pool.release(packet.memory)
 
@@ -329,7 +330,7 @@ class Connection:
         while self._descriptors:
             os.close(self._descriptors.popleft())
         while self._queue:
-            self._give_back(self._take())
+            self.give_back(self._take())
         for memory in self._lent.values():
             memory.spoiled = True  # the other process may look at it as long as it likes
             self._pool.release(memory)

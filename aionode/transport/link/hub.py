@@ -275,11 +275,11 @@ class Hub:
         if self._links.get(participant) is not connection:
             return
         del self._links[participant]
-        for writer in self.writers.values():
-            writer.broken(connection)
         for key in [key for key in self.inlets if key[0] is connection]:
             for inlet in self.inlets.pop(key):
                 inlet.broken()
+        for writer in list(self.writers.values()):
+            writer.broken(connection)
         for server in self.servers.values():
             server.broken(connection)
         for call in list(self.calls.values()):
@@ -332,7 +332,7 @@ class Hub:
         elif one.kind == Kind.SWITCHED:
             writer.switched(connection, one.payload)
         elif one.kind == Kind.CREDIT:
-            writer.credit(connection, one.payload, one.sequence)
+            writer.credit(connection, one.payload, one.sequence, one.source_ns)
         else:
             writer.leave(connection, one.payload)
 

@@ -31,6 +31,12 @@ KEEP_ALL_DEPTH: Final = 10_000
 WINDOW: Final = 1_000
 """How many messages a KEEP_ALL reader lets a publisher send ahead of what it has used."""
 
+CONFIRM_EACH: Final = 64
+"""After how many messages a reader says what it has, if none was large."""
+
+MAX_UNCONFIRMED: Final = 4_096
+"""How many messages more than its depth a publisher keeps for the case that a link breaks."""
+
 DATA: Final = int(Kind.DATA)
 
 ZENOH_LATE_S: Final = 0.1
@@ -67,11 +73,12 @@ def can_link(publisher: EndpointInfo) -> bool:
 class RemoteReader:
     """A subscription at the other end of a link, as its publisher sees it."""
 
-    __slots__ = ("switched", "used", "window")
+    __slots__ = ("confirmed", "switched", "used", "window")
 
     def __init__(self, window: int, used: int) -> None:
         self.window = window
         self.used = used
+        self.confirmed = 0
         self.switched = False
 
 
@@ -81,14 +88,28 @@ class Route:
     What KEEP_ALL subscriptions there have no window for is parked here, and counts as waiting.
     """
 
-    __slots__ = ("_parked", "_sent", "connection", "readers", "stream")
+    __slots__ = ("_parked", "_sent", "connection", "readers", "stream", "unconfirmed")
 
     def __init__(self, connection: Connection, depth: int, *, keep_all: bool) -> None:
         self.connection = connection
         self.stream = Stream(depth, keep_all=keep_all)
         self.readers: dict[bytes, RemoteReader] = {}
+        # Messages that went nowhere else, by number and time, until their readers have them.
+        self.unconfirmed: deque[tuple[int, int, bytes]] = deque(maxlen=depth + MAX_UNCONFIRMED)
         self._parked: deque[Packet] = deque()
         self._sent = 0
+
+    def credit(self, reader: bytes, used: int, confirmed: int) -> None:
+        """Note that `reader` has used so many more messages, and has those up to a number."""
+        remote = self.readers.get(reader)
+        if remote is None:
+            return
+        remote.used += used
+        remote.confirmed = confirmed
+        everybody = min(each.confirmed for each in self.readers.values())
+        while self.unconfirmed and self.unconfirmed[0][0] <= everybody:
+            self.unconfirmed.popleft()
+        self.go_on()
 
     def add(self, reader: bytes, window: int) -> None:
         """Send to `reader` from now on; a window of 0 is without limit."""
@@ -108,6 +129,11 @@ class Route:
             self._sent += 1
             self.connection.put(self._parked.popleft(), self.stream)
         self.connection.wake()
+
+    def drop(self) -> None:
+        """Forget what was parked."""
+        while self._parked:
+            self.connection.give_back(self._parked.popleft())
 
     def end(self) -> None:
         """Send what was parked, whoever has room for it."""
@@ -147,6 +173,7 @@ class LinkWriter(Writer):
         self._hub = hub
         self._zenoh = zenoh
         self._msg_type = msg_type
+        self._reliable = endpoint.qos.resolved().reliability is ReliabilityPolicy.RELIABLE
         self._routes: dict[Connection, Route] = {}
         self._sequence = 0
         self._encode: Callable[[Any], bytes] = self._first_encode
@@ -178,18 +205,22 @@ class LinkWriter(Writer):
 
     def write(self, msg: Any, origin: Origin) -> None:
         """Send `msg` each way that somebody needs."""
+        # Asked again each time, as somebody may have gone.
+        both = self._needs_zenoh and self.update()
         if self._routes:
             payload = self._encode(msg)
-            gid = self.endpoint.gid
             sequence = origin.sequence
+            if not both and self._reliable:
+                for route in self._routes.values():
+                    route.unconfirmed.append((sequence, origin.source_ns, payload))
             if len(payload) < SHARED_FROM:
+                gid = self.endpoint.gid
                 packet = Packet(frame.pack(DATA, sequence, origin.source_ns, gid, payload))
                 for route in tuple(self._routes.values()):
                     route.send(packet)
             else:
                 self._write_large(payload, origin)
-        # Asked again each time, as somebody may have gone.
-        if self._needs_zenoh and self.update() and self._zenoh.active:
+        if both and self._zenoh.active:
             self._zenoh.write(msg, origin)
         self._sequence = origin.sequence
 
@@ -252,12 +283,11 @@ class LinkWriter(Writer):
             route.readers[reader].switched = True
             self.update()
 
-    def credit(self, connection: Connection, reader: bytes, used: int) -> None:
-        """Note that `reader` has used `used` more messages."""
+    def credit(self, connection: Connection, reader: bytes, used: int, confirmed: int) -> None:
+        """Note that `reader` has used `used` more messages, and has those up to a number."""
         route = self._routes.get(connection)
-        if route is not None and reader in route.readers:
-            route.readers[reader].used += used
-            route.go_on()
+        if route is not None:
+            route.credit(reader, used, confirmed)
 
     def leave(self, connection: Connection, reader: bytes) -> None:
         """Send to `reader` no longer."""
@@ -271,9 +301,20 @@ class LinkWriter(Writer):
         self.update()
 
     def broken(self, connection: Connection) -> None:
-        """Send over Zenoh again: `connection` is closed."""
-        if self._routes.pop(connection, None) is not None:
-            self.update()
+        """Send over Zenoh again: `connection` is closed; first what may not have come through.
+
+        Its readers leave out what they have. Nobody else was there when it was published, or it
+        would have been sent over Zenoh as well.
+        """
+        route = self._routes.pop(connection, None)
+        if route is None:
+            return
+        route.drop()
+        if self._zenoh.active:
+            for sequence, source_ns, payload in route.unconfirmed:
+                msg = cdr.decode(self._msg_type, payload)
+                self._zenoh.write(msg, Origin(self.endpoint.gid, sequence, source_ns))
+        self.update()
 
     def update(self) -> bool:
         """Find out whether somebody needs Zenoh: with a token, or a stranger without."""
@@ -331,6 +372,7 @@ class Inlet:
         self._decode = reader.decoder()
         self._window = WINDOW if keeps_all(reader.endpoint.qos) else 0
         self._used = 0
+        self._number = 0
         # What a KEEP_ALL reader has no room for yet.
         self._full: deque[tuple[Any, Origin]] | None = deque() if self._window else None
         self._waiting_for_room = False
@@ -365,13 +407,15 @@ class Inlet:
             return
         origin = Origin(one.gid, one.sequence, one.source_ns, True)
         handover = self.handover
-        if self._window:
-            self._used += 1
+        self._used += 1
+        self._number = one.sequence
         waited = handover.waits
         self._tell(handover.from_link(msg, origin))
         if handover.waits and not waited:
             self._zenoh_spoke = False
             self._hub.later(ZENOH_LATE_S, self._look_for_zenoh)
+        if self._used >= CONFIRM_EACH or one.elsewhere:
+            self._confirm()
 
     def _look_for_zenoh(self) -> None:
         """Wait for Zenoh no longer if it has said nothing all the while."""
@@ -386,8 +430,6 @@ class Inlet:
     def _tell(self, switched: bool) -> None:
         if switched and self.connection is not None:
             self.connection.send(Kind.SWITCHED, 0, self.publisher, self.gid)
-        if self._window:
-            self._give_credit()
 
     def _deliver(self, msg: Any, origin: Origin) -> None:
         full = self._full
@@ -410,14 +452,13 @@ class Inlet:
     def _look_for_room(self) -> None:
         self._waiting_for_room = False
         self._empty()
-        self._give_credit()
+        self._confirm()
 
-    def _give_credit(self) -> None:
-        if self._full:
-            return
-        if self._used and self.connection is not None and self._used * 4 >= self._window:
-            self.connection.send(Kind.CREDIT, self._used, self.publisher, self.gid)
-            self._used = 0
+    def _confirm(self) -> None:
+        """Say what is here, unless a KEEP_ALL reader has no room for it."""
+        if self._used and self.connection is not None and not self._full:
+            used, self._used = self._used, 0
+            self.connection.send(Kind.CREDIT, used, self.publisher, self.gid, self._number)
 
     def broken(self) -> None:
         """Take Zenoh again."""
