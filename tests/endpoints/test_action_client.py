@@ -27,6 +27,7 @@ from aionode.errors import (
     GoalRejectedError,
     MessageError,
     ServiceError,
+    ServiceUnavailableError,
 )
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.std_msgs.msg import String
@@ -747,3 +748,72 @@ async def test_texts_say_what_they_are_about(ends: Ends) -> None:
     )
     assert repr(goal) == f"<ServerGoalHandle /fibonacci {sent.text} EXECUTING>"
     assert repr(sent).startswith(f"<ClientGoalHandle /fibonacci {sent.text} ")
+
+
+async def test_a_client_that_cannot_be_made_leaves_nothing(ends: Ends) -> None:
+    """Its parts are made one after the other, and the last may be refused."""
+    before = len(ends.asking._entities)
+
+    with pytest.raises(TypeError):
+        ActionClient(ends.asking, Fibonacci, "other", status_sub_qos_profile="no profile")  # type: ignore[arg-type]  # the mistake
+
+    assert len(ends.asking._entities) == before
+
+
+async def halves(ends: Ends, *names: str) -> tuple[Client, dict[str, Any]]:
+    """Return a client, and a server of only these services, which accepts every goal."""
+    impl = Fibonacci.Impl
+
+    def accept(_request: Any) -> Any:
+        return impl.SendGoalService.Response(accepted=True)
+
+    def fail(_request: Any) -> Any:
+        raise LookupError("out of memory")
+
+    offers: dict[str, tuple[Any, Any]] = {
+        "send_goal": (impl.SendGoalService, accept),
+        "get_result": (impl.GetResultService, fail),
+    }
+    services = {
+        name: ends.serving.create_service(
+            offers[name][0], f"half/_action/{name}", offers[name][1], on_error="log"
+        )
+        for name in names
+    }
+    client: Client = ends.asking.create_action_client(Fibonacci, "half")
+    await client._send_goal.wait_for_service()
+    return client, services
+
+
+async def test_a_server_that_cannot_tell_a_result_loses_the_goal(ends: Ends) -> None:
+    """The error holds what the server said."""
+    client, _ = await halves(ends, "send_goal", "get_result")
+
+    sent = await client.send_goal(Fibonacci.Goal())
+
+    with pytest.raises(GoalLostError, match=r"could not tell its result.*out of memory"):
+        await sent.result()
+
+
+async def test_a_server_that_goes_before_it_was_found_whole_loses_the_goal(ends: Ends) -> None:
+    """The client waits for the other half as long as there is the first."""
+    client, services = await halves(ends, "send_goal")
+    sent = await client.send_goal(Fibonacci.Goal())
+    waiting = beside(sent.result())
+    await asyncio.sleep(0)  # noqa: TID251  # lets it begin
+    assert not waiting.done()
+
+    services["send_goal"].destroy()
+
+    with pytest.raises(GoalLostError, match="the server went away"):
+        await waiting
+
+
+async def test_cancelling_a_goal_whose_server_has_gone_is_an_error_at_once(ends: Ends) -> None:
+    """A request to nobody would wait for ever."""
+    sent, _ = await begin(ends)
+    ends.server.destroy()
+    await gone(ends)
+
+    with pytest.raises(ServiceUnavailableError):
+        await sent.cancel()

@@ -21,6 +21,8 @@ from aionode.interfaces.builtin_interfaces.msg import Time
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
+from aionode.qos import HistoryPolicy, QoSProfile
+from aionode.settle import one_turn
 from aionode.testing import ManualClock, local_context, settle
 from tests.actions import Goal, PlainClient, Worker
 
@@ -1058,3 +1060,65 @@ async def test_a_destroyed_node_refuses_a_server(node: Node) -> None:
 
     with pytest.raises(EntityDestroyedError):
         node.create_action_server(Fibonacci, "fibonacci", lambda _goal: None)
+
+
+async def test_a_server_that_cannot_be_made_leaves_nothing(node: Node) -> None:
+    """Its parts are made one after the other, and one of them may be refused."""
+    before = len(node._entities)
+
+    with pytest.raises(TypeError):
+        ActionServer(node, Fibonacci, "other", yes, result_service_qos_profile="no profile")  # type: ignore[arg-type]  # the mistake
+
+    assert len(node._entities) == before
+
+
+async def test_a_goal_is_aborted_whose_node_stops_before_its_callback_began(
+    node: Node, serve: Serve, client: PlainClient
+) -> None:
+    """Its turn had come, and the end came first."""
+    goals: list[Goal] = []
+    server = serve(handle_accepted_callback=goals.append)
+    await client.send()
+    await settle()
+    goals[0].execute()
+    while goals[0].status is GoalStatus.ACCEPTED:
+        await one_turn()
+    server.destroy()
+    await settle()
+
+    assert goals[0].status is GoalStatus.ABORTED
+
+
+async def test_goals_go_on_beside_a_reader_that_does_not_read(
+    node: Node, serve: Serve, worker: Worker, client: PlainClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A full KEEP_ALL subscription of a tool must not hold up or abort what a robot does."""
+    monkeypatch.setattr("aionode.endpoints.topic.KEEP_ALL_DEPTH", 3)
+    monkeypatch.setattr("aionode.endpoints.action_server.DRAIN_LIMIT_S", 0.01)
+    serve()
+    node.create_subscription(
+        Fibonacci.Impl.FeedbackMessage,
+        "fibonacci/_action/feedback",
+        qos_profile=QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=3),
+    )
+    await client.send()
+    goal = await worker.begun.get()
+    for _ in range(10):
+        goal.publish_feedback(Fibonacci.Feedback())
+    worker.may_end.set()
+
+    assert (await client.result()).status == GoalStatus.SUCCEEDED
+
+
+async def test_a_handed_over_goal_is_executed_if_the_callback_was_taken_back(
+    serve: Serve, worker: Worker, client: PlainClient
+) -> None:
+    """The callback may be replaced between a goal's acceptance and its turn."""
+    server = serve(handle_accepted_callback=lambda _goal: None)
+    sending = asyncio.ensure_future(client.send())  # noqa: TID251  # beside the test
+    while not server._goals:
+        await one_turn()
+    server.register_handle_accepted_callback(None)
+
+    assert (await worker.begun.get()).status is GoalStatus.EXECUTING
+    await sending
