@@ -33,18 +33,21 @@ class Stream:
         self.link: deque[tuple[str, int]] = deque()
         self._linked = False
         self._needs_zenoh = True
+        self._unconfirmed: list[int] = []
 
     def publish(self) -> None:
         """Send one message as the publisher of a link does."""
         self.published += 1
         if self._linked:
             self.link.append(("data", self.published))
+            if not self._needs_zenoh:
+                self._unconfirmed.append(self.published)
         if self._needs_zenoh:
             self.zenoh.append(self.published)
 
     def open(self) -> None:
         """Take the reader's wish."""
-        if not self._linked:
+        if not self._linked and not self.link:  # it is asked for when the last one has ended
             self._linked = True
             self.link.append(("opened", self.published))
 
@@ -58,23 +61,25 @@ class Stream:
         """Hand over one frame of the link's."""
         if self.link:
             what, number = self.link.popleft()
-            if what == "opened":
+            if what == "end":
+                self.handover.broken()
+            elif what == "opened":
                 self._after(self.handover.opened(number))
             else:
                 self._after(self.handover.from_link(number, origin(number)))
 
     def _after(self, switched: bool) -> None:
-        if switched:
+        if switched and self._linked and ("end", 0) not in self.link:
             self._needs_zenoh = False
 
     def end_link(self) -> None:
-        """Break the link when nothing is on its way."""
-        while self.link:
-            self.take_link()
+        """Break the link: the publisher notices now, the reader when it has read everything."""
         if self._linked:
             self._linked = False
             self._needs_zenoh = True
-            self.handover.broken()
+            self.link.append(("end", 0))
+            self.zenoh.extend(self._unconfirmed)
+            self._unconfirmed.clear()
 
     def finish(self) -> None:
         """Hand over everything, with one more message to end a hand-over."""

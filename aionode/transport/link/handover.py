@@ -12,7 +12,9 @@ A reader hears a publisher of another process over Zenoh first. When the two pro
 4. It says so (`SWITCHED`), and the publisher stops writing to Zenoh if nobody else listens there.
 
 A publisher that has sent nothing yet, or nothing that is still under way, needs no step 3.
-When the link ends, the reader takes what comes over Zenoh, from the number after its last.
+When the link ends, the publisher sends over Zenoh what it has no confirmation for, and goes on
+there; the reader takes what comes from the number after its last. The publisher may notice first:
+what Zenoh brings ahead of the link is kept until the link brings it too, or has ended.
 """
 
 from __future__ import annotations
@@ -51,7 +53,7 @@ class Handover:
         way: Where they come from now.
     """
 
-    __slots__ = ("_base", "_deliver", "_held", "_last", "way")
+    __slots__ = ("_ahead", "_base", "_deliver", "_held", "_last", "way")
 
     def __init__(self, deliver: Callable[[Any, Origin], None]) -> None:
         self.way = Way.ZENOH
@@ -59,6 +61,7 @@ class Handover:
         self._last = 0
         self._base = 0
         self._held: deque[tuple[Any, Origin]] = deque()
+        self._ahead: deque[tuple[Any, Origin]] = deque(maxlen=MAX_HELD)
 
     def opened(self, sequence: int) -> bool:
         """Note that what follows number `sequence` comes over the link."""
@@ -69,7 +72,10 @@ class Handover:
     def from_zenoh(self, msg: Any, origin: Origin) -> bool:
         """Take a message that came over Zenoh."""
         number = origin.sequence
-        if self.way is Way.LINK or number <= self._last:
+        if number <= self._last:
+            return False
+        if self.way is Way.LINK:
+            self._ahead.append((msg, origin))
             return False
         self._last = number
         self._deliver(msg, origin)
@@ -81,6 +87,8 @@ class Handover:
             if origin.sequence > self._last:
                 self._last = origin.sequence
                 self._deliver(msg, origin)
+                while self._ahead and self._ahead[0][1].sequence <= self._last:
+                    self._ahead.popleft()
         elif self.way is Way.BOTH:
             self._held.append((msg, origin))
             return self.switch() if len(self._held) >= MAX_HELD else False
@@ -101,6 +109,8 @@ class Handover:
         return True
 
     def broken(self) -> None:
-        """Take Zenoh again: the link has ended. What was held has been sent both ways."""
+        """Take Zenoh again: the link has ended. What was held comes, or came, over Zenoh too."""
         self.way = Way.ZENOH
         self._held.clear()
+        while self._ahead:
+            self.from_zenoh(*self._ahead.popleft())
