@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import logging
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import zenoh
 
+from aionode.clock import perf_ns
 from aionode.errors import DecodeError, ServiceError
 from aionode.graph import EndpointKind
 from aionode.transport.base import Origin, Request, Requester
@@ -30,7 +33,26 @@ __all__ = ["ZenohRequester", "ZenohServer", "error_payload", "parse_error"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 FOREVER_S = 1e9
-"""Timeout of a query: whoever calls sets the limit, and cancels."""
+"""Timeout of a request for the result of a goal, which may take any time."""
+
+LONG_S = 600.0
+"""Timeout of a request, as in ROS; whoever calls sets the limit that counts, and cancels."""
+
+SHORT_S = 30.0
+"""Timeout of the requests of a client that calls often."""
+
+OFTEN = 1_000
+"""So many calls in `LONG_S` are often. Zenoh remembers a query until its timeout, answered or not:
+some 700 bytes each."""
+
+AGAIN_S = (0.005, 0.03, 0.15)
+"""When a request is sent again that found no server though there is one.
+
+The token of a server can be seen shortly before requests find their way to it. What ends later than
+`AT_ONCE_NS` was received, and is not sent again.
+"""
+
+AT_ONCE_NS = 50_000_000
 
 CALLS_BEFORE_THREAD = 32
 """From so many unanswered calls of a client on, the next are sent from a thread.
@@ -200,6 +222,8 @@ class ZenohRequester(Entity, Requester):
         self.key = data_key(link.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
         self.srv_type = srv_type
         self.unanswered: set[ZenohCall] = set()
+        self._window_ns = perf_ns()
+        self._window_calls = 0
         link.add(self)
 
     def declare_data(self, session: zenoh.Session) -> None:
@@ -209,6 +233,16 @@ class ZenohRequester(Entity, Requester):
         """End the calls under way: nothing can answer them any more."""
         for call in list(self.unanswered):
             call.end()
+
+    def timeout_s(self) -> float:
+        """Return the timeout of the next request."""
+        if self.endpoint.name.endswith("/_action/get_result"):
+            return FOREVER_S
+        now_ns = perf_ns()
+        if now_ns - self._window_ns > LONG_S * 1e9:
+            self._window_ns, self._window_calls = now_ns, 0
+        self._window_calls += 1
+        return LONG_S if self._window_calls <= OFTEN else SHORT_S
 
     def _matched(self) -> list[EndpointInfo]:
         graph = self.link.graph
@@ -240,8 +274,10 @@ class ZenohRequester(Entity, Requester):
             call.refuse()
             return call
 
+        timeout_s = self.timeout_s()
+
         def get() -> None:
-            call.get(session, payload, extra)
+            call.get(session, payload, extra, timeout_s)
 
         if len(payload) < BULK_BYTES and len(self.unanswered) <= CALLS_BEFORE_THREAD:
             get()
@@ -259,18 +295,23 @@ class ZenohCall:
         self._sequence = sequence
         self._token = zenoh.CancellationToken()
         self._unreadable: ServiceError | None = None
+        self._send_again: Callable[[], None] | None = None
+        self._sent_ns = 0
+        self._attempts = 0
         self._lane = requester.link.lane(self._take)
         requester.unanswered.add(self)
 
-    def get(self, session: zenoh.Session, payload: bytes, extra: bytes) -> None:
+    def get(self, session: zenoh.Session, payload: bytes, extra: bytes, timeout_s: float) -> None:
         """Send the request; on any thread."""
+        self._send_again = partial(self.get, session, payload, extra, timeout_s)
+        self._sent_ns = perf_ns()
         try:
             session.get(
                 self._requester.key,
                 direct(self._lane.put, lambda: self._lane.put(None)),
                 target=zenoh.QueryTarget.ALL_COMPLETE,
                 consolidation=zenoh.ConsolidationMode.NONE,
-                timeout=FOREVER_S,
+                timeout=timeout_s,
                 payload=payload,
                 attachment=extra,
                 allowed_destination=zenoh.Locality.REMOTE,
@@ -289,7 +330,8 @@ class ZenohCall:
         if reply_to is None:
             return
         if reply is None:
-            self.end()
+            if not self._try_again():
+                self.end()
             return
         sample = reply.ok
         if sample is None:
@@ -313,6 +355,29 @@ class ZenohCall:
             return
         self._finish()
         reply_to.reply(response, origin_of(sample.attachment) or Origin(NOBODY, 0, 0, True))
+
+    def _try_again(self) -> bool:
+        """Send the request again if no server had it though there is one; return whether."""
+        if (
+            self._send_again is None
+            or self._unreadable is not None
+            or self._attempts == len(AGAIN_S)
+            or perf_ns() - self._sent_ns > AT_ONCE_NS
+            or not self._requester.servers
+        ):
+            return False
+        delay_s = AGAIN_S[self._attempts]
+        self._attempts += 1
+        asyncio.get_running_loop().call_later(delay_s, self._go_again)
+        return True
+
+    def _go_again(self) -> None:
+        if self._reply_to is None or self._send_again is None:
+            return
+        if self._requester.link.session is not None and self._requester.servers:
+            self._send_again()
+        else:
+            self.end()
 
     def end(self) -> None:
         """Note that nothing will come any more."""
