@@ -7,6 +7,7 @@ import json
 import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -64,19 +65,24 @@ def raw_server(
         queryable.undeclare()
 
 
-def raw_call(session: zenoh.Session, payload: bytes | None, extra: bytes | None) -> Collector:
-    """Call /add as a ROS client does; the last item is None."""
-    replies = Collector()
-    session.get(
-        ADD_KEY,
-        zenoh.handlers.Callback(replies, lambda: replies(None)),
-        payload=payload,
-        attachment=extra,
-        target=zenoh.QueryTarget.ALL_COMPLETE,
-        consolidation=zenoh.ConsolidationMode.NONE,
-        timeout=30,
-    )
-    return replies
+async def raw_reply(
+    session: zenoh.Session, key: str, payload: bytes | None, extra: bytes | None
+) -> zenoh.Reply:
+    """Call as a ROS client does, and again while the way to the server is not known yet."""
+    while True:
+        replies = Collector()
+        session.get(
+            key,
+            zenoh.handlers.Callback(replies, partial(replies, None)),
+            payload=payload,
+            attachment=extra,
+            target=zenoh.QueryTarget.ALL_COMPLETE,
+            consolidation=zenoh.ConsolidationMode.NONE,
+            timeout=30,
+        )
+        reply: zenoh.Reply | None = (await replies.have(1))[0]
+        if reply is not None:
+            return reply
 
 
 # Both ends aionode
@@ -235,17 +241,10 @@ async def test_requests_and_responses_are_those_of_rmw_zenoh(half: str) -> None:
 
                     node.create_service(srv_type, f"srv{number}", remembering(heard, response))
                     await known(session, f"@ros2_lv/{DOMAIN_ID}/**/SS/**", number)
-                    replies = Collector()
-                    session.get(
-                        key,
-                        replies,
-                        payload=bytes.fromhex(golden["request"]["cdr"]),
-                        attachment=attachment.pack(7, 1, GID),
-                        target=zenoh.QueryTarget.ALL_COMPLETE,
-                        consolidation=zenoh.ConsolidationMode.NONE,
-                        timeout=30,
-                    )
-                    (reply,) = await replies.have(1)
+                    payload = bytes.fromhex(golden["request"]["cdr"])
+                    reply = await raw_reply(session, key, payload, attachment.pack(7, 1, GID))
+                    assert reply.ok is not None
+                    assert reply.ok.attachment is not None
                     extra = attachment.unpack(reply.ok.attachment.to_bytes())
                     assert reply.ok.payload.to_bytes().hex() == golden["response"]["cdr"]
                     assert str(reply.ok.key_expr) == key
@@ -337,6 +336,24 @@ async def test_a_server_that_says_nothing_and_ends_is_unavailable() -> None:
                 await client.call(AddTwoInts.Request())
 
 
+async def test_a_request_that_found_no_way_is_sent_again() -> None:
+    """The token of a server can be seen shortly before requests find their way to it."""
+    asked = 0
+
+    def answer_late(query: zenoh.Query) -> None:
+        nonlocal asked
+        asked += 1
+        if asked == 3:
+            query.reply(ADD_KEY, cdr.encode(AddTwoInts.Response(sum=3)))
+        query.drop()
+
+    async with quiet_node("client") as node:
+        with raw_session() as session, raw_server(session, answer_late):
+            client = node.create_client(AddTwoInts, "add")
+            await client.wait_for_service()
+            assert (await client.call(AddTwoInts.Request())).sum == 3
+
+
 async def test_strange_requests_are_answered_with_an_error_and_stop_nothing(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
@@ -348,13 +365,14 @@ async def test_strange_requests_are_answered_with_an_error_and_stop_nothing(
             await known(session, f"@ros2_lv/{DOMAIN_ID}/**/SS/**", 1)
             with caplog.at_level(logging.WARNING, "aionode.transport.zenoh"):
                 for payload in (None, b"", b"\0\1\0\0\1"):
-                    replies = await raw_call(session, payload, None).have(2)
-                    assert b"DecodeError" in replies[0].err.payload.to_bytes()
+                    reply = await raw_reply(session, ADD_KEY, payload, None)
+                    assert reply.err is not None
+                    assert b"DecodeError" in reply.err.payload.to_bytes()
                 for extra in (None, b"", bytes(200), attachment.pack(1, 1, GID)):
-                    replies = await raw_call(session, good, extra).have(2)
-                    assert cdr.decode(
-                        AddTwoInts.Response, replies[0].ok.payload.to_bytes()
-                    ) == AddTwoInts.Response(sum=3)
+                    reply = await raw_reply(session, ADD_KEY, good, extra)
+                    assert reply.ok is not None
+                    answer = cdr.decode(AddTwoInts.Response, reply.ok.payload.to_bytes())
+                    assert answer == AddTwoInts.Response(sum=3)
 
     assert sum("unknown form" in text for text in caplog.messages) == 1
 
