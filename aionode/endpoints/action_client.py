@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 from uuid import uuid4
 
-from aionode.endpoints.action_server import expect_action_type, reason_id
+from aionode.endpoints.action_words import expect_action_type, reason_id
 from aionode.endpoints.client_goal import ActionResult, ClientGoalHandle
 from aionode.endpoints.dispatch import accepts, give_way, pump
 from aionode.endpoints.entity import Entity
