@@ -381,7 +381,7 @@ class Inlet:
     @property
     def gid(self) -> bytes:
         """Of the subscription."""
-        return self.reader.endpoint.gid
+        return self.reader.gid
 
     def open(self, connection: Connection) -> None:
         """Ask for the publisher's messages over `connection`."""
@@ -490,7 +490,9 @@ class LinkReader(Announcement):
         self._hub = hub
         self._tap = tap
         self._zenoh = zenoh
-        hub.readers[self.endpoint.gid] = self
+        # Others know it by its token, which may say more than the graph does (`CPU_BACKEND`).
+        self.gid: bytes = getattr(zenoh, "gid", self.endpoint.gid)
+        hub.readers[self.gid] = self
 
     def decoder(self) -> Callable[[Data], Any]:
         """Return what makes its messages of bytes."""
@@ -514,7 +516,7 @@ class LinkReader(Announcement):
 
     def close(self) -> None:
         """Withdraw the subscription."""
-        self._hub.readers.pop(self.endpoint.gid, None)
+        self._hub.readers.pop(self.gid, None)
         self._zenoh.close()
         for inlet in self.inlets.values():
             if inlet.connection is not None:
