@@ -61,7 +61,7 @@ class Context:
     with all its nodes.
 
     Args:
-        domain_id: The ROS domain, 0 to 232; ``ROS_DOMAIN_ID`` or 0 without it.
+        domain_id: The ROS domain, a number from 0 up; ``ROS_DOMAIN_ID`` or 0 without it.
         transport: ``"zenoh"`` reaches other processes and ROS 2, ``"local"`` only the nodes of this
             context. A `Transport` object, or several, are used as they are.
         clock: Where the time comes from: the machine, or an `aionode.testing.ManualClock`.
