@@ -278,8 +278,8 @@ def session_settings(network: Network, answering: Iterable[int]) -> dict[str, An
         "transport/link/tx/queue/congestion_control/block/wait_before_close": 60_000_000,
         # Large messages are sent from a thread, which may wait longer for a slow network.
         "transport/link/tx/queue/congestion_control/drop/max_wait_before_drop_fragments": 500_000,
-        # Bounds close() while a frozen peer does not answer.
-        "transport/unicast/open_timeout": 1500,
+        # Bounds close() while a frozen peer does not answer; other machines may be slow to.
+        "transport/unicast/open_timeout": 3000 if network.static_peers else 700,
         "scouting/multicast/enabled": subnet,
         "scouting/gossip/enabled": not off,
         # The history of transient_local topics is put in order by time stamps.

@@ -29,8 +29,8 @@ def group(stack: ExitStack, *names: str) -> list[Process]:
     return members
 
 
-def heard_within(stack: ExitStack, limit_s: float, *others: str) -> None:
-    """Start newcomers until one hears all others soon enough after its modules are loaded.
+def heard_within(stack: ExitStack, limit_s: float, *others: str) -> Process:
+    """Start newcomers until one hears all others soon enough after loading; return it.
 
     More than one, because a loaded machine may take its time for any single one.
     """
@@ -40,7 +40,7 @@ def heard_within(stack: ExitStack, limit_s: float, *others: str) -> None:
         began_s = newcomer.expect("started")
         took.append(newcomer.expect(*(f"heard {name}" for name in others)) - began_s)
         if took[-1] < limit_s:
-            return
+            return newcomer
     pytest.fail(f"newcomers took {took} s to hear {others}; {limit_s} s is the limit")
 
 
@@ -118,8 +118,8 @@ def test_newcomers_hear_everyone_when_the_holder_of_the_meeting_port_is_gone(
         holder, *others = group(stack, "holder", "one", "two", "three")
         others[-1].expect("heard holder", "heard one", "heard two")
         holder.send(number)
-        heard_within(stack, 0.5, "one", "two", "three")
-        stop_within_a_second(*others)
+        newcomer = heard_within(stack, 0.5, "one", "two", "three")
+        stop_within_a_second(newcomer, *others)
 
 
 def test_newcomers_hear_everyone_when_all_holders_are_killed() -> None:

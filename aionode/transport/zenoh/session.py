@@ -69,7 +69,7 @@ async def in_thread(work: Callable[[], T], late: Callable[[T], object] | None = 
 
     def deliver(result: T | None, error: BaseException | None) -> None:
         if error is None and done.cancelled() and late is not None:
-            threading.Thread(target=late, args=(result,), daemon=True).start()
+            threading.Thread(target=late, args=(result,)).start()
         elif not done.done():
             if error is None:
                 done.set_result(result)  # type: ignore[arg-type]  # there is one without an error
@@ -82,10 +82,14 @@ async def in_thread(work: Callable[[], T], late: Callable[[T], object] | None = 
             result = work()
         except BaseException as raised:  # noqa: BLE001  # goes to whoever waits
             error = raised
-        with suppress(RuntimeError):  # the loop was closed meanwhile
+        try:
             loop.call_soon_threadsafe(deliver, result, error)
+        except RuntimeError:  # the loop was closed meanwhile
+            if error is None and late is not None:
+                late(result)  # type: ignore[arg-type]  # there is one without an error
 
-    thread = threading.Thread(target=run, name="aionode-zenoh", daemon=True)
+    # Python waits for it at its end: a thread inside Zenoh at that moment would abort the process.
+    thread = threading.Thread(target=run, name="aionode-zenoh")
     thread.start()
     try:
         return await done
