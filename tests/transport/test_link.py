@@ -297,6 +297,23 @@ async def test_a_keep_all_reader_that_does_not_read_fills_the_publisher_and_lose
         assert numbers.subscription.stats.dropped == numbers.subscription.stats.lost == 0
 
 
+async def test_keep_all_loses_nothing_while_the_link_comes_up() -> None:
+    """However far Zenoh is behind when the reader asks for the link."""
+    async with two_nodes() as nodes:
+        heard: list[int] = []
+        nodes.b.create_subscription(Int32, "n", lambda msg: heard.append(msg.data), KEEP_ALL)
+        publisher = nodes.a.create_publisher(Int32, "n", KEEP_ALL)
+        await publisher.wait_for_subscribers()
+        for number in range(12_000):
+            if not writer_of(publisher).has_room():
+                await publisher.drain()
+            publisher.publish(Int32(data=number))
+        await publisher.drain()
+        while len(heard) < 12_000:
+            await asyncio.to_thread(lambda: None)
+        assert heard == list(range(12_000))
+
+
 # Services
 
 

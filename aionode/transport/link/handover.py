@@ -30,8 +30,11 @@ if TYPE_CHECKING:
 
 __all__ = ["Handover", "Way"]
 
-MAX_HELD = 1_000
-"""How many messages are held at most; with one more the reader waits for Zenoh no longer."""
+MAX_HELD = 2_000
+"""How many messages are held at most; with one more the reader waits for Zenoh no longer.
+
+More than the window of a KEEP_ALL reader, which therefore always waits.
+"""
 
 
 class Way(enum.Enum):

@@ -430,6 +430,7 @@ class Inlet:
     def _tell(self, switched: bool) -> None:
         if switched and self.connection is not None:
             self.connection.send(Kind.SWITCHED, 0, self.publisher, self.gid)
+            self._confirm()
 
     def _deliver(self, msg: Any, origin: Origin) -> None:
         full = self._full
@@ -455,7 +456,9 @@ class Inlet:
         self._confirm()
 
     def _confirm(self) -> None:
-        """Say what is here, unless a KEEP_ALL reader has no room for it."""
+        """Say what is here, unless a KEEP_ALL reader has no room for it or waits for Zenoh."""
+        if self._window and self.handover.waits:
+            return
         if self._used and self.connection is not None and not self._full:
             used, self._used = self._used, 0
             self.connection.send(Kind.CREDIT, used, self.publisher, self.gid, self._number)
