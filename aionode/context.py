@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import dataclasses
 import os
 import secrets
@@ -21,7 +22,7 @@ from aionode.wire.liveliness import endpoint_token, gid_of
 from aionode.wire.typehash import type_hash
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
     from types import TracebackType
 
@@ -164,6 +165,16 @@ class Context:
         if cls._default is None or not cls._default.ok():
             cls._default = cls()
         return cls._default
+
+    @classmethod
+    @contextlib.contextmanager
+    def as_default(cls, context: Context) -> Iterator[None]:
+        """Let `context` be the default one meanwhile: nodes made without a context are in it."""
+        before, cls._default = cls._default, context
+        try:
+            yield
+        finally:
+            cls._default = before
 
     def ok(self) -> bool:
         """Whether the context can be used: `shutdown` was not called."""

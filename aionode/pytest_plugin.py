@@ -31,21 +31,28 @@ def manual_clock() -> ManualClock:
 
 @pytest_asyncio.fixture
 async def aionode_context(request: pytest.FixtureRequest) -> AsyncIterator[Context]:
-    """An open context without network; its time is `manual_clock` if the test asks for that."""
-    from aionode.testing import local_context  # as above
+    """An open context without network; its time is `manual_clock` if the test asks for that.
+
+    During the test it is the default context, so that nodes made without one are in it too.
+    """
+    from aionode.context import Context  # as above
+    from aionode.testing import local_context
 
     clock = (
         request.getfixturevalue("manual_clock") if "manual_clock" in request.fixturenames else None
     )
     async with local_context(clock=clock) as context:
-        yield context
+        with Context.as_default(context):
+            yield context
 
 
 @pytest_asyncio.fixture
 async def node_factory(aionode_context: Context) -> AsyncIterator[Callable[..., Node]]:
-    """Make nodes in `aionode_context` that run until the test ends: ``node_factory("talker")``.
+    """Make nodes in `aionode_context` that run until the test ends.
 
-    Takes what `Node` takes. A callback that failed makes the test fail at its end.
+    ``node_factory("talker")`` makes a plain node and takes what `Node` takes;
+    ``node_factory(Talker)`` makes one of your own, with the arguments that follow. A callback that
+    failed makes the test fail at its end.
     """
     from aionode.node import Node  # as above
 
@@ -56,8 +63,11 @@ async def node_factory(aionode_context: Context) -> AsyncIterator[Callable[..., 
         if not node.destroyed and not node.is_running:
             await node.run()
 
-    def make(node_name: str = "node", **options: Any) -> Node:
-        node = Node(node_name, **{"context": aionode_context, **options})
+    def make(kind: str | Callable[..., Node] = "node", /, *args: Any, **options: Any) -> Node:
+        if isinstance(kind, str):
+            node = Node(kind, *args, **{"context": aionode_context, **options})
+        else:
+            node = kind(*args, **options)
         nodes.append(node)
         # pytest may end a fixture in another task than it began in, which a TaskGroup forbids.
         runs.append(asyncio.get_running_loop().create_task(run(node)))

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    import asyncio
     from collections.abc import Callable
 
     from aionode.endpoints.dispatch import Callbacks
@@ -32,6 +32,7 @@ class Channel:
         self.home = home
         self._graph = graph
         self._waits: set[asyncio.Future[None]] = set()
+        self._closed = False
 
     def open(self) -> None:
         """Enter the endpoint into the graph. Called when its transports know it."""
@@ -39,6 +40,7 @@ class Channel:
 
     def close(self) -> None:
         """Take the endpoint out of the graph, and cancel every `until`."""
+        self._closed = True
         for wait in list(self._waits):  # first, as the change below would wake them
             wait.cancel(f"{self.endpoint.kind.value} of {self.endpoint.name}: destroyed")
         self._graph.remove_endpoint(self.endpoint)
@@ -57,6 +59,9 @@ class Channel:
             CancelledError: the endpoint was closed meanwhile.
         """
         while not condition():
+            if self._closed:
+                # A change in the same turn as `close` had ended the wait already.
+                raise asyncio.CancelledError(f"{self.endpoint.name}: destroyed")
             wait = self._graph.changed()
             self._waits.add(wait)
             wait.add_done_callback(self._waits.discard)

@@ -12,15 +12,15 @@ from aionode.node import Node
 
 async def main() -> None:
     """Send back what comes."""
-    ended: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-    asyncio.get_running_loop().add_reader(sys.stdin, lambda: ended.done() or ended.set_result(None))
+    ended = asyncio.Event()
+    asyncio.get_running_loop().add_reader(sys.stdin, ended.set)
     async with (
         Context(link=True) as context,
         Node("echo", context=context, enable_rosout=False, start_parameter_services=False) as node,
     ):
         publisher = node.create_publisher(Int32, "back", 1000)
         node.create_subscription(Int32, "there", publisher.publish, 1000)
-        await ended
+        await ended.wait()
 
 
 if __name__ == "__main__":
