@@ -152,7 +152,12 @@ class ZenohWriter(Entity, Writer):
         if matching is not None:
             matching.undeclare()
         if publisher is not None:
-            publisher.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
+            if len(self._outlet):
+                # The thread may be inside `put`, and Zenoh's object is used by one at a time; what
+                # was published before is still sent.
+                self._sender.submit(lambda: withdraw(publisher))
+            else:
+                withdraw(publisher)
         self._update()
 
     def _update_with(self, _: zenoh.MatchingStatus) -> None:
@@ -210,6 +215,14 @@ class ZenohWriter(Entity, Writer):
             self.link.senders.discard(self._sender)
             self._sender.close()
         self._update()
+
+
+def withdraw(publisher: zenoh.Publisher | ext.AdvancedPublisher) -> None:
+    """Undeclare a publisher, which an end of its session may have done already."""
+    try:
+        publisher.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
+    except zenoh.ZError as error:
+        logger.debug("%s: not undeclared: %s", publisher.key_expr, error)
 
 
 def send(publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes) -> None:
