@@ -124,8 +124,12 @@ class ZenohWriter(Entity, Writer):
                 allowed_destination=zenoh.Locality.REMOTE,
                 cache=ext.CacheConfig(max_samples=depth_of(qos)),
                 publisher_detection=True,
+                # Samples are numbered, so that readers ask again for what is missing between two.
+                # No heartbeat, which would tell of a missing last one too: undeclaring waits for
+                # its task with the GIL held, and for 10 s if that task's thread needs the GIL for
+                # a callback just then (zenoh-python 1.10).
                 sample_miss_detection=ext.MissDetectionConfig(
-                    heartbeat=None, sporadic_heartbeat=0.5
+                    heartbeat=None, sporadic_heartbeat=None
                 )
                 if reliable
                 else None,
