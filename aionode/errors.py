@@ -673,8 +673,8 @@ class InterfaceNotFoundError(AionodeError, LookupError):
 
 
 HOW_TO_FIND = (
-    "names look like std_msgs/msg/String, `aionode interface list` shows those there are, and "
-    "aionode.idl.load_interfaces() adds your own"
+    "names look like std_msgs/msg/String or std_srvs/srv/Trigger, `aionode interface list` shows "
+    "those there are, and aionode.idl.load_interfaces() adds your own"
 )
 
 

@@ -46,9 +46,15 @@ def run(
         SystemExit: with status 1 after an error, which was printed on stderr: one line for an error
             of aionode's own, a traceback for a bug in a callback.
         TypeError: there is nothing to run.
+        RuntimeError: it is called inside a running event loop.
     """
     if not nodes:
         raise TypeError("run: give at least one node, or a function that makes one")
+    if asyncio._get_running_loop() is not None:  # noqa: SLF001  # get_running_loop raises instead
+        raise RuntimeError(
+            "run: an event loop runs already; `await node.run()` or `async with node:` runs a node "
+            "in it"
+        )
     try:
         set_up(sys.argv if args is None else [sys.argv[0], *args])
         with asyncio.Runner(loop_factory=loop_factory or best_loop_factory()) as runner:

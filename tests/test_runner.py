@@ -259,3 +259,9 @@ def test_failures_in_groups_are_told_one_by_one() -> None:
     """One line each for errors of aionode."""
     group = ExceptionGroup("g", [AionodeError("one"), ExceptionGroup("h", [AionodeError("two")])])
     assert failure_text(group) == "error: one\nerror: two\n"
+
+
+async def test_inside_a_running_loop_it_says_what_to_use_instead() -> None:
+    """One who has a loop already needs no second one, and asyncio's own text does not say that."""
+    with pytest.raises(RuntimeError, match=r"await node\.run\(\)"):
+        aionode.run(lambda: Node("never_made"))
