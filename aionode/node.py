@@ -21,7 +21,7 @@ from aionode.errors import EntityDestroyedError
 from aionode.graph import EndpointKind
 from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.logging import get_logger
-from aionode.message import Message, ServiceType
+from aionode.message import Message, ServiceType, holds_arrays
 from aionode.node_actions import NodeActionMethods
 from aionode.node_graph import NodeGraphMethods
 from aionode.node_parameters import NodeParameterMethods
@@ -112,6 +112,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         self._rules = own.remap_rules + shared.remap_rules
         node_name = names.remap_node_name(self._rules, node_name)
         namespace = names.remap_namespace(self._rules, node_name, namespace)
+        self._made = False
         self._entities: dict[Entity, None] = {}
         self._tasks: asyncio.TaskGroup | None = None
         self._running = False
@@ -155,6 +156,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         node_services.serve_type_descriptions(self)
         if enable_logger_service:
             node_services.serve_logger_levels(self)
+        self._made = True
 
     def __repr__(self) -> str:
         state = "destroyed" if self.destroyed else "running" if self._running else "not running"
@@ -629,6 +631,8 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         overriding: QoSOverridingOptions | None = None,
     ) -> Channel:
         """Return the entry of a new endpoint; it is entered into the graph by `_add`."""
+        if self._made:
+            load_arrays(ros_type)
         is_service = kind in {EndpointKind.SERVER, EndpointKind.CLIENT}
         full_name = self._resolve(name, is_service=is_service)
         profile = qos.as_profile(qos_profile)
@@ -665,6 +669,16 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             raise EntityDestroyedError(
                 f"node {self.get_fully_qualified_name()}", f"given a {wanted}"
             )
+
+
+def load_arrays(ros_type: Any) -> None:
+    """Import numpy if values of a type need it, so that no callback has to wait for that.
+
+    A node's own services need it too, but hardly ever; it starts without them waiting for it.
+    """
+    halves = (ros_type,) if issubclass(ros_type, Message) else (ros_type.Request, ros_type.Response)
+    if any(holds_arrays(half) for half in halves):
+        import numpy  # noqa: F401, ICN001  # imported to be there later
 
 
 def parameters_from(values: Mapping[str, object]) -> list[Parameter]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import subprocess
+import sys
 from typing import TYPE_CHECKING
 
 import pytest
@@ -370,3 +372,22 @@ async def test_cancelled_waits_leave_nothing_in_the_graph(node: Node) -> None:
                 await node.graph.changed()
     await settle()
     assert not node.graph._waiters  # what grows is the subject
+
+
+@pytest.mark.parametrize(
+    ("module", "loaded"), [("std_msgs.msg.String", False), ("sensor_msgs.msg.JointState", True)]
+)
+def test_numpy_is_there_before_a_callback_needs_it(module: str, *, loaded: bool) -> None:
+    """Importing it within a callback would block the loop; a node without arrays goes without."""
+    package, _, name = module.rpartition(".")
+    program = (
+        "import sys\n"
+        f"from aionode.interfaces.{package} import {name}\n"
+        "from aionode.node import Node\n"
+        "from aionode.testing import local_context\n"
+        "node = Node('node', context=local_context())\n"
+        "assert 'numpy' not in sys.modules\n"
+        f"node.create_publisher({name}, 'topic', 10)\n"
+        f"assert ('numpy' in sys.modules) is {loaded}\n"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True)  # the text is here

@@ -50,7 +50,7 @@ from aionode.message.services import (
     ServiceClass,
     ServiceType,
 )
-from aionode.message.snapshot import check, checker, snapshot, snapshotter
+from aionode.message.snapshot import check, checker, holds_arrays, snapshot, snapshotter
 
 __all__ = [
     "DEFAULT",
@@ -84,6 +84,7 @@ __all__ = [
     "from_builtins",
     "from_json",
     "from_yaml",
+    "holds_arrays",
     "int8",
     "int16",
     "int32",

@@ -7,21 +7,32 @@ from the description of a message class, whose names were checked when the class
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode.errors import MessageError
-from aionode.message.base import Message, message_class, type_name
+from aionode.message.base import Message, fields, message_class, type_name
 from aionode.message.fieldtypes import INT_RANGES, FieldType
 from aionode.message.fit import check_length, fit, fit_array, fit_bytes, given, listed
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["check", "checker", "snapshot", "snapshotter"]
+__all__ = ["check", "checker", "holds_arrays", "snapshot", "snapshotter"]
 
 MessageT = TypeVar("MessageT", bound=Message)
 
 FLOAT32_MAX = (2 - 2**-23) * 2.0**127
+
+
+@cache
+def holds_arrays(cls: type[Message]) -> bool:
+    """Whether values of a message class hold numpy arrays, their parts included."""
+    types = [field.type for field in fields(cls)]
+    return any(
+        type_.form == "ndarray" or (type_.nested is not None and holds_arrays(type_.nested))
+        for type_ in types
+    )
 
 
 def snapshotter(cls: type[MessageT]) -> Callable[[MessageT], MessageT]:
