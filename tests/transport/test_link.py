@@ -32,6 +32,8 @@ from aionode.wire.keyexpr import data_key
 from aionode.wire.typehash import type_hash
 from tests.peers import DOMAIN_ID, KEEP_ALL, Collector, quiet_node, raw_session
 
+pytestmark = pytest.mark.experimental  # the link is off by default
+
 NUMBERS = data_key(DOMAIN_ID, "/n", "std_msgs/msg/Int32", type_hash(Int32))
 
 
