@@ -8,19 +8,29 @@ from __future__ import annotations
 
 import copy
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any, TypeAlias, TypeVar
 
 from aionode.errors import MessageError
 from aionode.message import Message, fields, snapshotter, type_name
 from aionode.wire.decoding import generate_decoder
-from aionode.wire.encoding import MISFITS, generate_encoder
+from aionode.wire.encoding import JOIN, MISFITS, generate_encoder, views
+from aionode.wire.layout import has_views
 from aionode.wire.plain import decode_plainly
 
-__all__ = ["Data", "decode", "decoder", "encode", "encoder"]
+__all__ = [
+    "Data",
+    "decode",
+    "decoder",
+    "encode",
+    "encoder",
+    "has_views",
+    "parts_encoder",
+]
 
 MessageT = TypeVar("MessageT", bound=Message)
+Encoded = TypeVar("Encoded")
 
 Data: TypeAlias = bytes | bytearray | memoryview
 """What may hold an encoded message."""
@@ -64,8 +74,24 @@ def encoder(cls: type[MessageT]) -> Callable[[MessageT], bytes]:
         TypeError: `cls` is not a message class.
     """
     if cls not in ENCODERS:
-        ENCODERS[cls] = new_encoder(cls)
+        ENCODERS[cls] = new_encoder(cls, JOIN)
     return ENCODERS[cls]
+
+
+def parts_encoder(cls: type[MessageT]) -> Callable[[MessageT], list[bytes | memoryview]]:
+    """Return the function that encodes messages of one class into pieces, not yet put together.
+
+    Put one after the other they are what `encode` returns. Large arrays and octets of the message
+    are read-only views of its own memory, of single bytes: no copy is made, and they show what the
+    message holds when they are read, not when it was encoded. Read them before the message may
+    change. It is worth it for classes of which `has_views` is true; all others have no such pieces.
+
+    Raises:
+        TypeError: `cls` is not a message class.
+    """
+    if cls not in PARTS_ENCODERS:
+        PARTS_ENCODERS[cls] = new_encoder(cls, views)
+    return PARTS_ENCODERS[cls]
 
 
 def decoder(cls: type[MessageT]) -> Callable[[Data], MessageT]:
@@ -80,15 +106,18 @@ def decoder(cls: type[MessageT]) -> Callable[[Data], MessageT]:
 
 
 ENCODERS: dict[type[Message], Callable[[Any], bytes]] = {}
+PARTS_ENCODERS: dict[type[Message], Callable[[Any], list[bytes | memoryview]]] = {}
 DECODERS: dict[type[Message], Callable[[Any], Any]] = {}
 
 
-def new_encoder(cls: type[Message]) -> Callable[[Any], bytes]:
-    """Return the encoder of a class, newly made."""
+def new_encoder(
+    cls: type[Message], finish: Callable[[Sequence[Any]], Encoded]
+) -> Callable[[Any], Encoded]:
+    """Return the encoder of a class, newly made; `finish` as for `generate_encoder`."""
     fields(cls)  # tells a service from a message
     take = snapshotter(cls)
 
-    def encode_unusual(msg: Any) -> bytes:
+    def encode_unusual(msg: Any) -> Encoded:
         taken = take(msg)
         try:
             return fast(taken, True)
@@ -98,7 +127,7 @@ def new_encoder(cls: type[Message]) -> Callable[[Any], bytes]:
             # Arrays with gaps between their elements, which a snapshot may share.
             return fast(copy.deepcopy(taken), True)
 
-    fast = generate_encoder(cls, encode_unusual)
+    fast = generate_encoder(cls, encode_unusual, finish)
     return fast
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import struct
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from aionode.message import fields, type_name
 from aionode.wire.layout import (
@@ -29,11 +29,18 @@ from aionode.wire.usual import octets, real_numbers, usual_array, whole_numbers
 from aionode.wire.writing import Writing
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from aionode.message import FieldType
 
-__all__ = ["MISFITS", "generate_encoder"]
+__all__ = ["JOIN", "MISFITS", "generate_encoder", "views"]
+
+Encoded = TypeVar("Encoded")
+
+JOIN: Final = b"".join
+
+LARGE: Final = 1 << 12
+"""From so many elements on a part stands for itself; what is smaller costs less when joined."""
 
 MISFITS = (
     Misfit,
@@ -47,15 +54,36 @@ MISFITS = (
 """What the generated function meets when a message is not of the usual form."""
 
 
-def generate_encoder(cls: Any, plain: Callable[[Any], bytes]) -> Callable[..., bytes]:
+def generate_encoder(
+    cls: Any,
+    plain: Callable[[Any], Encoded],
+    finish: Callable[[Sequence[Any]], Encoded],
+) -> Callable[..., Encoded]:
     """Return the function that encodes messages of class `cls`.
 
     Args:
         cls: A message class.
         plain: Encodes a message that is not of the usual form, or raises its error. It may call
             the function again with True after the message, and then gets what went wrong.
+        finish: Makes the result of the parts, which are bytes and the message's own arrays: `JOIN`
+            or `views`.
     """
-    return Encoding(cls).whole(plain)
+    return Encoding(cls).whole(plain, finish)
+
+
+def views(parts: Sequence[Any]) -> list[bytes | memoryview]:
+    """Return `parts` as bytes and as read-only views of their single bytes, small ones joined."""
+    found: list[bytes | memoryview] = []
+    begin = 0
+    for place in [number for number, part in enumerate(parts) if len(part) >= LARGE]:
+        if begin < place:
+            found.append(JOIN(parts[begin:place]))
+        part = parts[place]
+        found.append(part if part.__class__ is bytes else memoryview(part).cast("B").toreadonly())
+        begin = place + 1
+    if begin < len(parts):
+        found.append(JOIN(parts[begin:]))
+    return found
 
 
 @cache
@@ -73,12 +101,14 @@ class Encoding(Writing):
         self._ints: list[str] = []
         self._floats: list[str] = []
 
-    def whole(self, plain: Callable[[Any], bytes]) -> Callable[..., bytes]:
+    def whole(
+        self, plain: Callable[[Any], Encoded], finish: Callable[[Sequence[Any]], Encoded]
+    ) -> Callable[..., Encoded]:
         """Compile the function that encodes a message; `again` is for `plain`, not to be called."""
         source = self._source
         fallback = source.constant("plain", plain)
         misfits = source.constant("misfits", MISFITS)
-        join = source.constant("join", b"".join)
+        join = source.constant("join", finish)
         with source.block("try:"):
             self._run.append(Item(f"{len(HEADER)}s", 1, source.constant("header", HEADER)))
             self._message(self._cls, "msg", after=1)
@@ -86,8 +116,8 @@ class Encoding(Writing):
             if self._listed:
                 self._spill()
                 source.line(f"return {join}(out)")
-            elif len(self._parts) > 1:
-                source.line(f"return {join}(({', '.join(self._parts)}))")
+            elif len(self._parts) > 1 or finish is not JOIN:
+                source.line(f"return {join}(({', '.join(self._parts)},))")
             else:
                 source.line(f"return {self._parts[0]}")
         with source.block(f"except {misfits}:"):

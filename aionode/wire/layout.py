@@ -22,6 +22,7 @@ __all__ = [
     "PRIMITIVES",
     "Primitive",
     "first_alignment",
+    "has_views",
     "is_small",
     "minimum_size",
     "padding",
@@ -101,6 +102,19 @@ def is_small(cls: Any) -> bool:
     """
     _, leaves, depth = totals(cls)
     return leaves <= MOST_LEAVES and depth <= DEEPEST
+
+
+def has_views(cls: Any) -> bool:
+    """Tell whether messages hold sequences of numbers or of bytes, at any depth.
+
+    They may be large, and are written from where they lie.
+    """
+    return any(
+        has_views(kind.nested)
+        if kind.nested is not None
+        else kind.container in ("bounded", "unbounded") and kind.kind in PRIMITIVES
+        for kind in (field.type for field in fields(cls))
+    )
 
 
 @cache

@@ -22,8 +22,12 @@ def octets(value: object) -> Any:
     """Return `value` if its bytes are what is sent."""
     if isinstance(value, bytes | bytearray):
         return value
-    if isinstance(value, memoryview) and value.format == "B" and value.ndim == 1:
-        return value
+    try:
+        view = memoryview(value)  # type: ignore[arg-type] # asked in this way: an ndarray has one
+    except (TypeError, BufferError):
+        raise Misfit from None
+    if view.format == "B" and view.ndim == 1 and view.contiguous:
+        return view
     raise Misfit
 
 

@@ -140,6 +140,64 @@ def test_octets_may_be_given_in_any_form(octets: Any) -> None:
     assert cdr.encode(Mixed(octets=octets, few_octets=octets, three_bytes=octets)) == usual
 
 
+@pytest.mark.parametrize("kind", [bytes, bytearray, memoryview, "ndarray"])
+def test_the_pixels_of_an_image_are_a_piece_without_a_copy(kind: Any) -> None:
+    """The piece is a read-only view of the memory that the message holds."""
+    pixels = np.arange(60_000).astype(np.uint8)
+    data = pixels if kind == "ndarray" else kind(pixels)
+    image = Image(height=100, width=200, step=600, data=data)
+
+    pieces = cdr.parts_encoder(Image)(image)
+
+    assert b"".join(pieces) == cdr.encode(image)
+    assert len(pieces) == 2
+    assert np.shares_memory(np.frombuffer(pieces[1], np.uint8), np.frombuffer(data, np.uint8))
+    assert memoryview(pieces[1]).readonly
+
+
+def test_numbers_are_a_piece_of_single_bytes_without_a_copy() -> None:
+    """Elements of any size are counted in bytes, so that lengths of pieces can be added up."""
+    ranges = np.arange(5000.0).astype(np.float32)
+    scan = LaserScan(ranges=ranges, intensities=np.ones(3, np.float32))
+
+    pieces = cdr.parts_encoder(LaserScan)(scan)
+
+    assert b"".join(pieces) == cdr.encode(scan)
+    assert [len(piece) for piece in pieces[1:]] == [20_000, 4 + 12]
+    assert np.shares_memory(np.frombuffer(pieces[1], np.float32), ranges)
+    assert isinstance(pieces[1], memoryview)
+    assert pieces[1].readonly
+
+
+def test_an_unusual_message_has_pieces_too() -> None:
+    """Numbers with gaps between them are copied first."""
+    numbers = np.arange(20_000).astype(np.uint16)[::2]
+    half: Any = Fraction(1, 2)
+
+    pieces = cdr.parts_encoder(Mixed)(Mixed(numbers=numbers, real=half))
+
+    assert b"".join(pieces) == cdr.encode(Mixed(numbers=numbers, real=0.5))
+
+
+def test_pieces_of_a_misfit_are_refused_as_its_bytes_are() -> None:
+    """The reason is the same."""
+    misfit: Any = "five"
+
+    with pytest.raises(MessageError, match="number"):
+        cdr.parts_encoder(Mixed)(Mixed(number=misfit))
+
+
+@pytest.mark.parametrize(
+    ("cls", "expected"),
+    [(Image, True), (Mixed, True), (String, False), (TFMessage, False), (Imu, False)],
+)
+def test_only_sequences_of_numbers_and_bytes_are_pieces_of_their_own(
+    cls: Any, expected: bool
+) -> None:
+    """All else is made anew for each message."""
+    assert cdr.has_views(cls) is expected
+
+
 def test_an_array_on_disk_is_encoded(tmp_path: Path) -> None:
     """A memmap is an ndarray of another class."""
     array = np.memmap(tmp_path / "numbers", np.uint16, "w+", shape=3)
@@ -311,6 +369,7 @@ def test_only_message_classes_have_a_codec(wrong: Any) -> None:
 def test_the_functions_of_a_class_are_made_once() -> None:
     """Generating them takes a thousand times as long as running them."""
     assert cdr.encoder(String) is cdr.encoder(String)
+    assert cdr.parts_encoder(String) is cdr.parts_encoder(String)
     assert cdr.decoder(String) is cdr.decoder(String)
 
 

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from aionode.errors import DecodeError
 from aionode.message import Message, check
-from aionode.wire import cdr
+from aionode.wire import cdr, encoding
 from aionode.wire.decoding import generate_decoder
-from aionode.wire.encoding import generate_encoder
+from aionode.wire.encoding import JOIN, generate_encoder, views
 from aionode.wire.plain import decode_plainly
 from tests.strategies import message_classes, messages
 
@@ -50,6 +50,24 @@ def test_decode_undoes_encode(cls: type[Message], data: st.DataObject) -> None:
 
 
 @every_class
+@few
+@given(data=st.data())
+def test_the_pieces_of_a_message_are_its_bytes(cls: type[Message], data: st.DataObject) -> None:
+    """Put together they are what `encode` returns, however small a piece stands for itself."""
+    message = data.draw(messages(cls, nan=True))
+    least = data.draw(st.sampled_from([1, 2, 8, encoding.LARGE]))
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(encoding, "LARGE", least)
+        pieces = cdr.parts_encoder(cls)(message)
+
+    assert b"".join(pieces) == cdr.encode(message)
+    assert all(isinstance(one, bytes) or one.readonly for one in pieces)
+    assert sum(map(len, pieces)) == len(cdr.encode(message))
+    assert cdr.has_views(cls) or all(isinstance(one, bytes) for one in pieces)
+
+
+@every_class
 def test_usual_messages_take_the_fast_way(cls: type[Message]) -> None:
     """The generated functions do all that they can: else a codec would be right, and slow."""
 
@@ -57,8 +75,9 @@ def test_usual_messages_take_the_fast_way(cls: type[Message]) -> None:
         raise AssertionError
 
     message = cls()
-    encoded = generate_encoder(cls, slow)(message)
+    encoded = generate_encoder(cls, slow, JOIN)(message)
 
+    assert b"".join(generate_encoder(cls, slow, views)(message)) == encoded
     assert generate_decoder(cls, slow, slow)(encoded) == message
     assert generate_decoder(cls, slow)(memoryview(encoded)) == message
 
