@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from aionode.clock import TimeBase
     from aionode.graph import EndpointInfo, Graph, NodeInfo
-    from aionode.transport.base import Call, Reader, ReplyTo, Request
+    from aionode.transport.base import Call, Reader, ReplyTo, Serve
 
 __all__ = ["FaultyTransport", "ManualClock", "local_context", "settle"]
 
@@ -121,9 +121,7 @@ class FaultyTransport(Transport):
         """Announce a subscription, without faults of its own."""
         return self.inner.create_reader(endpoint, msg_type, reader)
 
-    def create_server(
-        self, endpoint: EndpointInfo, srv_type: Any, serve: Callable[[Request], None]
-    ) -> Announcement:
+    def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Announcement:
         """Announce a server, without faults of its own."""
         return self.inner.create_server(endpoint, srv_type, serve)
 

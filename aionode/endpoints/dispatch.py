@@ -20,6 +20,7 @@ from aionode.settle import off_loop, one_turn
 if TYPE_CHECKING:
     from aionode.endpoints.entity import Entity
     from aionode.endpoints.inbox import Inbox
+    from aionode.endpoints.shortcut import Shortcut
     from aionode.endpoints.stats import CallbackStats
     from aionode.logging import RcutilsLogger
 
@@ -76,6 +77,9 @@ class Dispatch:
     Raises:
         TypeError: `callback` or `on_error` is of a wrong kind.
         ValueError: `on_error` is an unknown word, or a coroutine function is to be offloaded.
+
+    Attributes:
+        runs_through: Whether a call is expected to end without a wait, in the loop's own thread.
     """
 
     def __init__(
@@ -110,6 +114,7 @@ class Dispatch:
         self._context = context
         self._on_error = on_error
         self._offload = offload
+        self.runs_through = not offload and not _is_async(callback)
         self.budget_ns = budget_ns
         self._logger = logger
         self._last_report_ns = -REPORT_INTERVAL_NS
@@ -266,11 +271,20 @@ class _Measured:
 
     def __init__(self, dispatch: Dispatch, awaitable: Awaitable[Any]) -> None:
         self._dispatch = dispatch
-        self._awaitable = awaitable
+        self._awaitable: Any = awaitable  # None once it was begun
+
+    def __del__(self) -> None:
+        # The task was cancelled before it came to this: nobody will await it.
+        awaitable = self._awaitable
+        if awaitable is not None:
+            give_up = getattr(awaitable, "close", None) or getattr(awaitable, "cancel", None)
+            if give_up is not None:
+                give_up()
 
     def __await__(self) -> Generator[Any, Any, Any]:
         dispatch = self._dispatch
-        steps = self._awaitable.__await__()
+        awaitable, self._awaitable = self._awaitable, None
+        steps = awaitable.__await__()
         began_ns = perf_ns()
         longest_ns = 0
         thrown: BaseException | None = None
@@ -330,15 +344,17 @@ async def pump(
     inbox: Inbox[T],
     handle: Callable[[int, T], Coroutine[Any, Any, None] | None],
     concurrent: bool | int,  # a number, where True and False are numbers too
+    shortcut: Shortcut[T] | None = None,
 ) -> None:
     """Hand everything that arrives in `inbox` to `handle`, until cancelled.
 
     `handle` runs what can run at once and returns what is left to await, if anything. With
     `concurrent` that runs beside the next items: in a TaskGroup, any number at once or at most so
-    many, while the others wait in the inbox.
+    many, while the others wait in the inbox. A `shortcut` past the inbox is open while one that is
+    not `concurrent` has nothing to do.
     """
     if concurrent is False:
-        await _pump_in_order(inbox, handle)
+        await _pump_in_order(inbox, handle, inbox if shortcut is None else shortcut)
     else:
         limit = None if concurrent is True else concurrent
         async with asyncio.TaskGroup() as tasks:
@@ -346,11 +362,13 @@ async def pump(
 
 
 async def _pump_in_order(
-    inbox: Inbox[T], handle: Callable[[int, T], Coroutine[Any, Any, None] | None]
+    inbox: Inbox[T],
+    handle: Callable[[int, T], Coroutine[Any, Any, None] | None],
+    signal: Inbox[T] | Shortcut[T],
 ) -> None:
     queue = inbox.queue  # asking the inbox itself costs a call for each item
     while True:
-        await inbox.wait()
+        await signal.wait()
         turn_ends_ns = perf_ns() + SLICE_NS
         while queue:
             rest = handle(*inbox.pop())
@@ -386,6 +404,12 @@ async def _pump_beside(
 
 
 # Arguments
+
+
+def _is_async(callback: Callable[..., Any]) -> bool:
+    return inspect.iscoroutinefunction(callback) or inspect.iscoroutinefunction(
+        type(callback).__call__
+    )
 
 
 def accepts(callback: Callable[..., Any], *counts: int, subject: str, wanted: str) -> int:

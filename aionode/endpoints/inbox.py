@@ -70,12 +70,33 @@ class Inbox(Generic[T]):
     async def wait(self) -> None:
         """Wait until there is an item, or until woken by `wake`. Cancelling loses nothing."""
         if not self.queue:
-            await _sleep_in(self._readers)
+            waiter = self.expect()
+            try:
+                await waiter
+            finally:
+                self.forget(waiter)
+
+    def expect(self) -> asyncio.Future[None]:
+        """Return a future that is done when the next item comes, or by `wake`."""
+        waiter = asyncio.get_running_loop().create_future()
+        self._readers.append(waiter)
+        return waiter
+
+    def forget(self, waiter: asyncio.Future[None]) -> None:
+        """Note that nobody waits for what `expect` returned any more."""
+        if waiter in self._readers:
+            self._readers.remove(waiter)
 
     async def wait_for_room(self) -> None:
         """Wait until there is room, or until woken by `wake`."""
         if not self.has_room():
-            await _sleep_in(self._writers)
+            waiter = asyncio.get_running_loop().create_future()
+            self._writers.append(waiter)
+            try:
+                await waiter
+            finally:
+                if waiter in self._writers:
+                    self._writers.remove(waiter)
 
     def when_room(self, callback: Callable[[], None]) -> None:
         """Call `callback` soon after the next item was taken, or after `wake`."""
@@ -101,13 +122,3 @@ def _wake(waiters: list[asyncio.Future[None]]) -> None:
         if not waiter.done():
             waiter.set_result(None)
     waiters.clear()
-
-
-async def _sleep_in(waiters: list[asyncio.Future[None]]) -> None:
-    waiter = asyncio.get_running_loop().create_future()
-    waiters.append(waiter)
-    try:
-        await waiter
-    finally:
-        if waiter in waiters:
-            waiters.remove(waiter)

@@ -102,7 +102,7 @@ class Service(Entity, Generic[RequestT, ResponseT]):
         """Take what the transports returned for this server, to be closed with it."""
         self._announcements.extend(announcements)
 
-    def serve(self, request: Request) -> None:
+    def serve(self, request: Request, until_ns: int = 0) -> None:  # noqa: ARG002  # part of Serve
         """Take one request from a transport."""
         if self.destroyed:
             request.drop()

@@ -17,6 +17,7 @@ from aionode.endpoints.dispatch import (
 )
 from aionode.endpoints.entity import Entity
 from aionode.endpoints.inbox import Inbox
+from aionode.endpoints.shortcut import Shortcut
 from aionode.endpoints.stats import CallbackStats, PublisherStats
 from aionode.errors import EntityDestroyedError, QueueFullError
 from aionode.graph import EndpointKind
@@ -230,6 +231,7 @@ class Subscription(Entity, Generic[ItemT]):
         self._concurrent = checked_concurrency(concurrent, self.subject)
         self._turn_ends_ns = 0
         self._dispatch: Dispatch | None = None
+        self._shortcut: Shortcut[Any] | None = None
         self._wants_info = False
         if callback is not None:
             wants = accepts(
@@ -239,6 +241,8 @@ class Subscription(Entity, Generic[ItemT]):
             self._dispatch = channel.callbacks.dispatch(
                 callback, self, self.stats, on_error=on_error, offload=offload
             )
+            if self._dispatch.runs_through and self._concurrent is False:
+                self._shortcut = Shortcut(self._inbox, self._handle)
 
     def __repr__(self) -> str:
         return (
@@ -305,13 +309,16 @@ class Subscription(Entity, Generic[ItemT]):
         """Take what the transports returned for this reader, to be closed with it."""
         self._announcements.extend(announcements)
 
-    def deliver(self, msg: Any, origin: Origin) -> None:
-        """Take one message from a transport."""
+    def deliver(self, msg: Any, origin: Origin, until_ns: int = 0) -> None:
+        """Take one message from a transport; see `Reader` for `until_ns`."""
         if self.destroyed:
             return
         if origin.remote:
             self._count_lost(origin)
-        self._inbox.put((msg, self._info(origin)) if self._wants_info else msg)
+        item = (msg, self._info(origin)) if self._wants_info else msg
+        if until_ns and self._shortcut is not None and self._shortcut.take(item, until_ns):
+            return
+        self._inbox.put(item)
 
     def reject(self, error: DecodeError) -> None:  # noqa: ARG002  # the transport has logged it
         """Count something that is no message of this type."""
@@ -354,7 +361,7 @@ class Subscription(Entity, Generic[ItemT]):
         """Return the loop that calls the callback; None without a callback."""
         if self._dispatch is None:
             return None
-        return pump(self._inbox, self._handle, self._concurrent)
+        return pump(self._inbox, self._handle, self._concurrent, self._shortcut)
 
     def _handle(self, entered_ns: int, item: Any) -> Coroutine[Any, Any, None] | None:
         dispatch = self._dispatch

@@ -31,6 +31,7 @@ __all__ = [
     "ReplyTo",
     "Request",
     "Requester",
+    "Serve",
     "Transport",
     "Writer",
 ]
@@ -70,8 +71,16 @@ class Reader(Protocol):
     raw: bool
     """Whether `deliver` wants the message as CDR bytes."""
 
-    def deliver(self, msg: Any, origin: Origin) -> None:
-        """Take one message, which nobody may change from now on. Never raises, never waits."""
+    def deliver(self, msg: Any, origin: Origin, until_ns: int = 0) -> None:
+        """Take one message, which nobody may change from now on. Never raises, never waits.
+
+        Args:
+            msg: The message.
+            origin: Where it comes from.
+            until_ns: Until which `perf_ns` a callback may run at once, within this call. A
+                transport sets it once for each event of the loop, so that the loop has its turn.
+                0 means that none may: the caller is itself in a callback or in `publish`.
+        """
 
     def reject(self, error: DecodeError) -> None:
         """Note that something came which is no message of this type. Never raises."""
@@ -189,6 +198,13 @@ class Request(ABC):
         """Give the request up without an answer: the server goes away."""
 
 
+class Serve(Protocol):
+    """The receiving end of a service, as a transport sees it."""
+
+    def __call__(self, request: Request, until_ns: int = 0) -> None:
+        """Take one request; see `Reader.deliver` for `until_ns`. Never raises, never waits."""
+
+
 # The whole
 
 
@@ -225,9 +241,7 @@ class Transport(ABC):
         """Announce a subscription of `msg_type`, whose messages go to `reader`."""
 
     @abstractmethod
-    def create_server(
-        self, endpoint: EndpointInfo, srv_type: Any, serve: Callable[[Request], None]
-    ) -> Announcement:
+    def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Announcement:
         """Announce a server of `srv_type`, whose requests go to `serve`.
 
         Closing it ends the calls of requests that it has not answered.

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.graph import EndpointInfo, Graph, NodeInfo
-    from aionode.transport.base import Call, Reader, ReplyTo
+    from aionode.transport.base import Call, Reader, ReplyTo, Serve
 
 __all__ = ["LocalTransport"]
 
@@ -63,9 +63,7 @@ class LocalTransport(Transport):
             writer.meet(local_reader)
         return local_reader
 
-    def create_server(
-        self, endpoint: EndpointInfo, srv_type: Any, serve: Callable[[Request], None]
-    ) -> Announcement:
+    def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Announcement:
         """Connect a server with the clients of its service."""
         server = LocalServer(endpoint, srv_type, serve, self._servers)
         self._servers.setdefault(endpoint.name, []).append(server)
@@ -234,7 +232,7 @@ class LocalServer(Announcement):
         self,
         endpoint: EndpointInfo,
         srv_type: Any,
-        serve: Callable[[Request], None],
+        serve: Serve,
         servers: dict[str, list[LocalServer]],
     ) -> None:
         self.endpoint = endpoint

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.graph import EndpointInfo
-    from aionode.transport.base import Call, ReplyTo
+    from aionode.transport.base import Call, ReplyTo, Serve
     from aionode.transport.zenoh.link import Link
 
 __all__ = ["ZenohRequester", "ZenohServer", "error_payload", "parse_error"]
@@ -90,7 +90,7 @@ class ZenohServer(Entity):
         link: Link,
         endpoint: EndpointInfo,
         srv_type: type[Any],
-        serve: Callable[[Request], None],
+        serve: Serve,
     ) -> None:
         super().__init__(link, endpoint_token(link.domain_id, endpoint))
         self.endpoint = endpoint

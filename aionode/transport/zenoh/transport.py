@@ -16,10 +16,9 @@ from aionode.transport.zenoh.topics import ZenohReader, ZenohWriter
 
 if TYPE_CHECKING:
     from collections import Counter
-    from collections.abc import Callable
 
     from aionode.graph import EndpointInfo, Graph, NodeInfo
-    from aionode.transport.base import Announcement, Reader, Request, Requester, Writer
+    from aionode.transport.base import Announcement, Reader, Requester, Serve, Writer
     from aionode.transport.zenoh_config import Network
 
 __all__ = ["ZenohTransport"]
@@ -114,7 +113,7 @@ class ZenohTransport(Transport):
         return ZenohReader(self._link, endpoint, msg_type, reader)
 
     def create_server(
-        self, endpoint: EndpointInfo, srv_type: type[Any], serve: Callable[[Request], None]
+        self, endpoint: EndpointInfo, srv_type: type[Any], serve: Serve
     ) -> Announcement:
         """Announce a server."""
         return ZenohServer(self._link, endpoint, srv_type, serve)
