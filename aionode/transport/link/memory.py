@@ -1,9 +1,10 @@
-"""Large payloads: in memory that two processes share, handed over as a descriptor.
+"""Large payloads: in memory that two processes share, and say the place of.
 
-The sender copies a payload into memory that it keeps and uses again, because fresh pages cost more
-than the copy. Sealed, it can neither shrink nor be written to by whoever receives it. The receiver
-maps it read-only and decodes in place; when the last array that looks at it is gone, the memory
-goes back to the sender.
+The sender copies a payload, once, into memory that it keeps and uses again, because fresh pages
+cost far more than the copy. Sealed, the memory can neither shrink nor be written to by whoever
+receives it. The first frame to a process brings the descriptor; the receiver maps the memory
+read-only, decodes in place, and keeps the mapping, so that later frames bring a number only. When
+the last array that looks at a payload is gone, the receiver gives the memory back.
 """
 
 from __future__ import annotations
@@ -13,20 +14,31 @@ import mmap
 import os
 import weakref
 from itertools import count
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import FrameError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
-__all__ = ["SHARED_FROM", "Memory", "Pool", "mapped"]
+    from aionode.wire.cdr import Data
+
+__all__ = ["SHARED_FROM", "Mappings", "Memory", "Pool", "mapped"]
 
 SHARED_FROM: Final = 1 << 16
 """From this size on, in bytes, a payload is shared: below it costs less to send it."""
 
 MAX_IDLE: Final = 1 << 26
 """How much memory is kept for later, in bytes."""
+
+MOST_IDLE: Final = 8
+"""How many pieces of memory are kept for later; each takes two descriptors, and one at the peer."""
+
+STEPS: Final = 8
+"""How many sizes of memory there are between a power of two and the next.
+
+Payloads whose size varies a little, as of compressed images, then fit where another one was.
+"""
 
 F_SEAL_FUTURE_WRITE: Final = 0x0010
 """Linux 5.1: nobody can make another writable mapping. Python does not name it."""
@@ -35,11 +47,14 @@ SEALS: Final = fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_GROW if hasattr(fcntl, "F_SEAL
 PAGE: Final = mmap.PAGESIZE
 
 
+# Sending
+
+
 class Memory:
     """A piece of memory and its descriptor.
 
     Attributes:
-        number: Its name in `Place` and `RELEASE`.
+        number: Its name in `Place` and `RELEASE`; no other memory of the pool ever has it.
         fd: Its descriptor.
         users: How many queues and receivers hold it.
         spoiled: Whether a receiver may look at it for ever: it is not used again.
@@ -63,9 +78,17 @@ class Memory:
     def __len__(self) -> int:
         return len(self._map)
 
-    def fill(self, payload: bytes) -> None:
-        """Copy `payload` to the beginning."""
-        self._map[: len(payload)] = payload
+    def fill(self, parts: Sequence[Data]) -> None:
+        """Copy `parts` to the beginning, one after the other; they fit."""
+        place = 0
+        for part in parts:
+            end = place + len(part)
+            self._map[place:end] = part
+            place = end
+
+    def read(self, size: int) -> bytes:
+        """Return a copy of the first `size` bytes, for where the memory itself cannot go."""
+        return self._map[:size]
 
     def close(self) -> None:
         """Give it back to the system; who has mapped it keeps it."""
@@ -74,27 +97,47 @@ class Memory:
 
 
 class Pool:
-    """The memory of one sender."""
+    """The memory of one sender.
+
+    Attributes:
+        listeners: Called with the number of each memory that is closed, so that who was given it
+            can be told to forget its mapping.
+    """
 
     def __init__(self) -> None:
+        self.listeners: set[Callable[[int], object]] = set()
         self._numbers = count(1)
-        self._idle: list[Memory] = []
+        self._idle: list[Memory] = []  # the last used last
         self._closed = False
 
-    def filled(self, payload: bytes) -> Memory | None:
-        """Return memory that holds `payload` for its first user; None if the system has none."""
-        size = len(payload)
-        fitting = [one for one in self._idle if size <= len(one) <= 4 * size + PAGE]
-        if fitting:
-            memory = min(fitting, key=len)
-            self._idle.remove(memory)
-        else:
+    def filled(self, parts: Data | Sequence[Data], size: int | None = None) -> Memory | None:
+        """Return memory that holds a payload for its first user; None if the system has none.
+
+        Args:
+            parts: The payload, or what it consists of, each of single bytes.
+            size: Of all parts together, in bytes.
+        """
+        if isinstance(parts, bytes | bytearray | memoryview):
+            parts = (parts,)
+        if size is None:
+            size = sum(map(len, parts))
+        memory = self._taken(size)
+        if memory is None:
             try:
-                memory = Memory(next(self._numbers), -(-size // PAGE) * PAGE)
+                memory = Memory(next(self._numbers), rounded(size))
             except OSError:  # no descriptors or no memory left: it is sent without
                 return None
-        memory.fill(payload)
+        memory.fill(parts)
         memory.users = 1
+        return memory
+
+    def _taken(self, size: int) -> Memory | None:
+        """Return the idle memory that fits best; the last used of those, as caches know it."""
+        fitting = [one for one in reversed(self._idle) if size <= len(one) <= 4 * size + PAGE]
+        if not fitting:
+            return None
+        memory = min(fitting, key=len)
+        self._idle.remove(memory)
         return memory
 
     def release(self, memory: Memory) -> None:
@@ -102,16 +145,107 @@ class Pool:
         memory.users -= 1
         if memory.users:
             return
-        if self._closed or memory.spoiled or sum(map(len, self._idle)) + len(memory) > MAX_IDLE:
-            memory.close()
-        else:
-            self._idle.append(memory)
+        if self._closed or memory.spoiled or len(memory) > MAX_IDLE:
+            self._close(memory)
+            return
+        self._idle.append(memory)
+        while len(self._idle) > MOST_IDLE or sum(map(len, self._idle)) > MAX_IDLE:
+            self._close(self._idle.pop(0))
+
+    def _close(self, memory: Memory) -> None:
+        memory.close()
+        for listener in tuple(self.listeners):
+            listener(memory.number)
 
     def close(self) -> None:
         """Give back what is idle now, and the rest when it is released."""
         self._closed = True
         while self._idle:
-            self._idle.pop().close()
+            self._close(self._idle.pop())
+
+
+def rounded(size: int) -> int:
+    """Return how large memory for `size` bytes is made; pages that are not used cost nothing."""
+    step = max(PAGE, (1 << size.bit_length()) // (2 * STEPS))
+    return -(-size // step) * step
+
+
+# Receiving
+
+
+class Mappings:
+    """The memory of one sender, as its receiver has mapped it.
+
+    A mapping is kept until the sender forgets its memory or the link ends: its pages are looked up
+    once, not for each payload. How many there are is up to the sender, which keeps few (`Pool`)
+    beside those that somebody here still looks at.
+    """
+
+    def __init__(self) -> None:
+        self._maps: dict[int, mmap.mmap] = {}
+
+    def __len__(self) -> int:
+        return len(self._maps)
+
+    def view(
+        self, number: int, size: int, fd: int | None, done: Callable[[], object]
+    ) -> memoryview:
+        """Return the first `size` bytes of a memory, read-only.
+
+        Args:
+            number: The memory's, from its sender.
+            size: Of the payload.
+            fd: The memory's descriptor, if it came with the frame; it is closed.
+            done: Called once, on any thread, when nothing looks at this payload any more: no view,
+                no slice of one, and no array made of one. Not called if this raises.
+
+        Raises:
+            FrameError: the memory is not known, not sealed, or smaller than `size`.
+        """
+        if fd is not None:
+            self._maps[number] = sealed_map(fd, size)
+        found = self._maps.get(number)
+        if found is None:
+            raise FrameError(f"memory {number}, whose descriptor never came")
+        if not 0 < size <= len(found):
+            raise FrameError(f"{size} bytes in a memory of {len(found)}")
+        import numpy as np
+
+        # Slices of a view keep alive only what it is a view of. Each payload has one of its own,
+        # which also can say when it goes; neither holds for the mapping.
+        payload: Any = np.frombuffer(found, np.uint8, size)
+        weakref.finalize(payload, done).atexit = False
+        return memoryview(payload)
+
+    def forget(self, number: int) -> None:
+        """Drop the mapping of a memory that its sender has closed; views of it stay valid."""
+        self._maps.pop(number, None)
+
+    def close(self) -> None:
+        """Drop all; views stay valid."""
+        self._maps.clear()
+
+
+def sealed_map(fd: int, size: int) -> mmap.mmap:
+    """Return all that is behind `fd`, at least `size` bytes, read-only; `fd` is closed.
+
+    Pages are left to be found when they are read: `MAP_POPULATE` takes as long as that does.
+
+    Raises:
+        FrameError: it is no sealed memory of this size. Reading one that shrinks ends the process.
+    """
+    try:
+        seals = fcntl.fcntl(fd, fcntl.F_GET_SEALS)
+        whole = os.fstat(fd).st_size
+        fits = seals & SEALS == SEALS and 0 < size <= whole
+        found = mmap.mmap(fd, whole, mmap.MAP_SHARED, mmap.PROT_READ) if fits else None
+    except OSError as error:
+        raise FrameError(f"memory that cannot be mapped: {error}") from error
+    finally:
+        os.close(fd)
+    if found is None:
+        raise FrameError(f"memory that is not sealed, or smaller than {size} bytes")
+    return found
 
 
 def mapped(fd: int, size: int, done: Callable[[], object]) -> memoryview:
@@ -125,14 +259,6 @@ def mapped(fd: int, size: int, done: Callable[[], object]) -> memoryview:
     Raises:
         FrameError: it is no sealed memory of this size.
     """
-    try:
-        seals = fcntl.fcntl(fd, fcntl.F_GET_SEALS)
-        if not size or seals & SEALS != SEALS or os.fstat(fd).st_size < size:
-            raise FrameError(f"memory that is not sealed, or smaller than {size} bytes")
-        memory = mmap.mmap(fd, size, flags=mmap.MAP_SHARED, prot=mmap.PROT_READ)
-    except OSError as error:
-        raise FrameError(f"memory that cannot be mapped: {error}") from error
-    finally:
-        os.close(fd)
+    memory = sealed_map(fd, size)
     weakref.finalize(memory, done).atexit = False
-    return memoryview(memory)
+    return memoryview(memory)[:size]
