@@ -14,6 +14,7 @@ import mmap
 import os
 import weakref
 from itertools import count
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import FrameError
@@ -55,15 +56,17 @@ class Memory:
 
     Attributes:
         number: Its name in `Place` and `RELEASE`; no other memory of the pool ever has it.
+        size: How many bytes it has room for.
         fd: Its descriptor.
         users: How many queues and receivers hold it.
         spoiled: Whether a receiver may look at it for ever: it is not used again.
     """
 
-    __slots__ = ("_map", "fd", "number", "spoiled", "users")
+    __slots__ = ("_map", "fd", "number", "size", "spoiled", "users")
 
     def __init__(self, number: int, size: int) -> None:
         self.number = number
+        self.size = size
         self.users = 0
         self.spoiled = False
         self.fd = os.memfd_create("aionode", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
@@ -74,9 +77,6 @@ class Memory:
         except OSError:
             os.close(self.fd)
             raise
-
-    def __len__(self) -> int:
-        return len(self._map)
 
     def fill(self, parts: Sequence[Data]) -> None:
         """Copy `parts` to the beginning, one after the other; they fit."""
@@ -94,6 +94,9 @@ class Memory:
         """Give it back to the system; who has mapped it keeps it."""
         self._map.close()
         os.close(self.fd)
+
+
+SIZE_OF: Final = attrgetter("size")
 
 
 class Pool:
@@ -133,10 +136,10 @@ class Pool:
 
     def _taken(self, size: int) -> Memory | None:
         """Return the idle memory that fits best; the last used of those, as caches know it."""
-        fitting = [one for one in reversed(self._idle) if size <= len(one) <= 4 * size + PAGE]
+        fitting = [one for one in reversed(self._idle) if size <= one.size <= 4 * size + PAGE]
         if not fitting:
             return None
-        memory = min(fitting, key=len)
+        memory = min(fitting, key=SIZE_OF)
         self._idle.remove(memory)
         return memory
 
@@ -145,11 +148,11 @@ class Pool:
         memory.users -= 1
         if memory.users:
             return
-        if self._closed or memory.spoiled or len(memory) > MAX_IDLE:
+        if self._closed or memory.spoiled or memory.size > MAX_IDLE:
             self._close(memory)
             return
         self._idle.append(memory)
-        while len(self._idle) > MOST_IDLE or sum(map(len, self._idle)) > MAX_IDLE:
+        while len(self._idle) > MOST_IDLE or sum(map(SIZE_OF, self._idle)) > MAX_IDLE:
             self._close(self._idle.pop(0))
 
     def _close(self, memory: Memory) -> None:
@@ -183,6 +186,8 @@ class Mappings:
 
     def __init__(self) -> None:
         self._maps: dict[int, mmap.mmap] = {}
+        # By the identity of the reference, which this keeps alive.
+        self._watched: dict[int, tuple[weakref.ref[Any], Callable[[], object]]] = {}
 
     def __len__(self) -> int:
         return len(self._maps)
@@ -197,7 +202,8 @@ class Mappings:
             size: Of the payload.
             fd: The memory's descriptor, if it came with the frame; it is closed.
             done: Called once, on any thread, when nothing looks at this payload any more: no view,
-                no slice of one, and no array made of one. Not called if this raises.
+                no slice of one, and no array made of one. Not called if this raises, nor after
+                `close`.
 
         Raises:
             FrameError: the memory is not known, not sealed, or smaller than `size`.
@@ -214,8 +220,14 @@ class Mappings:
         # Slices of a view keep alive only what it is a view of. Each payload has one of its own,
         # which also can say when it goes; neither holds for the mapping.
         payload: Any = np.frombuffer(found, np.uint8, size)
-        weakref.finalize(payload, done).atexit = False
+        watch = weakref.ref(payload, self._on_gone)  # weakref.finalize costs three times as much
+        self._watched[id(watch)] = watch, done
         return memoryview(payload)
+
+    def _on_gone(self, watch: weakref.ref[Any]) -> None:
+        watched = self._watched.pop(id(watch), None)
+        if watched is not None:
+            watched[1]()
 
     def forget(self, number: int) -> None:
         """Drop the mapping of a memory that its sender has closed; views of it stay valid."""
@@ -224,6 +236,7 @@ class Mappings:
     def close(self) -> None:
         """Drop all; views stay valid."""
         self._maps.clear()
+        self._watched.clear()
 
 
 def sealed_map(fd: int, size: int) -> mmap.mmap:
