@@ -32,6 +32,7 @@ __all__ = [
     "accepts",
     "checked_concurrency",
     "give_way",
+    "is_unfinished",
     "pump",
 ]
 
@@ -172,7 +173,7 @@ class Dispatch:
             CallbackCancelledError: something that the callback waited for was cancelled.
             Exception: what the callback raised.
         """
-        if not isinstance(entered, _Measured | _Offloaded):
+        if not is_unfinished(entered):
             return entered
         try:
             return await entered
@@ -330,6 +331,11 @@ class _Offloaded:
         finally:
             stats.run_time.record(perf_ns() - began_ns)
             stats.blocking.record(0)
+
+
+def is_unfinished(entered: object) -> bool:
+    """Whether `Dispatch.outcome` has to wait for what `Dispatch.enter` returned."""
+    return isinstance(entered, _Measured | _Offloaded)
 
 
 # Queues

@@ -7,9 +7,10 @@ from collections.abc import Callable, Coroutine
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from aionode.clock import perf_ns
-from aionode.endpoints.dispatch import accepts, checked_concurrency, pump
+from aionode.endpoints.dispatch import accepts, checked_concurrency, is_unfinished, pump
 from aionode.endpoints.entity import Entity
 from aionode.endpoints.inbox import Inbox
+from aionode.endpoints.shortcut import Shortcut
 from aionode.endpoints.stats import CallbackStats, ClientStats
 from aionode.errors import (
     AionodeError,
@@ -84,6 +85,9 @@ class Service(Entity, Generic[RequestT, ResponseT]):
         self._dispatch = channel.callbacks.dispatch(
             callback, self, self.stats, on_error=on_error, offload=offload
         )
+        self._shortcut: Shortcut[Request] | None = None
+        if self._dispatch.runs_through and self._concurrent is False:
+            self._shortcut = Shortcut(self._inbox, self._handle)
 
     def __repr__(self) -> str:
         return (
@@ -102,10 +106,12 @@ class Service(Entity, Generic[RequestT, ResponseT]):
         """Take what the transports returned for this server, to be closed with it."""
         self._announcements.extend(announcements)
 
-    def serve(self, request: Request, until_ns: int = 0) -> None:  # noqa: ARG002  # part of Serve
-        """Take one request from a transport."""
+    def serve(self, request: Request, until_ns: int = 0) -> None:
+        """Take one request from a transport; see `Serve` for `until_ns`."""
         if self.destroyed:
             request.drop()
+        elif until_ns and self._shortcut is not None and self._shortcut.take(request, until_ns):
+            pass
         elif self._inbox.has_room():
             self._inbox.put(request)
         else:
@@ -114,7 +120,7 @@ class Service(Entity, Generic[RequestT, ResponseT]):
 
     def run(self) -> Coroutine[Any, Any, None]:
         """Return the loop that answers requests."""
-        return pump(self._inbox, self._handle, self._concurrent)
+        return pump(self._inbox, self._handle, self._concurrent, self._shortcut)
 
     def _handle(self, entered_ns: int, request: Request) -> Coroutine[Any, Any, None] | None:
         if request.cancelled:
@@ -123,32 +129,43 @@ class Service(Entity, Generic[RequestT, ResponseT]):
             return None
         self.stats.received += 1
         self.stats.queue_wait.record(perf_ns() - entered_ns)
-        return self._answer(request)
-
-    async def _answer(self, request: Request) -> None:
         try:
-            response = await self._call(request.message)
-            self._check(response)
-            request.reply(response)
+            if self._wants_response:
+                entered = self._dispatch.enter(request.message, self.srv_type.Response())
+            else:
+                entered = self._dispatch.enter(request.message)
+            if is_unfinished(entered):
+                return self._finish(request, entered)
+            self._reply(request, entered)
         except asyncio.CancelledError:
             request.drop()
             raise
-        except Exception as error:  # noqa: BLE001  # told to the client, then as `on_error` says
-            request.fail(type(error).__name__, str(error))
-            self._dispatch.fail(error)
+        except Exception as error:  # noqa: BLE001  # see `_fail`
+            self._fail(request, error)
+        return None
 
-    async def _call(self, request: Any) -> Any:
-        if self._wants_response:
-            return await self._dispatch.call(request, self.srv_type.Response())
-        return await self._dispatch.call(request)
+    async def _finish(self, request: Request, entered: Any) -> None:
+        try:
+            self._reply(request, await self._dispatch.outcome(entered))
+        except asyncio.CancelledError:
+            request.drop()
+            raise
+        except Exception as error:  # noqa: BLE001  # see `_fail`
+            self._fail(request, error)
 
-    def _check(self, response: Any) -> None:
+    def _fail(self, request: Request, error: Exception) -> None:
+        """Tell the client of `error`, then do as `on_error` says."""
+        request.fail(type(error).__name__, str(error))
+        self._dispatch.fail(error)
+
+    def _reply(self, request: Request, response: Any) -> None:
         if not isinstance(response, self.srv_type.Response):
             given = "None" if response is None else f"a {type(response).__name__}"
             raise TypeError(
                 f"{self.subject}: the handler returned {given} in place of "
                 f"{type_name(self.srv_type.Response)}; it must end with `return response`"
             )
+        request.reply(response)
 
     def close(self) -> None:
         """Withdraw the service; requests that wait are given up."""

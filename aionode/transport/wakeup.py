@@ -31,9 +31,15 @@ SLICE_ITEMS = 32
 
 
 class Wakeup:
-    """Wakes one event loop when there is something in a lane."""
+    """Wakes one event loop when there is something in a lane.
+
+    Attributes:
+        until_ns: Until which `perf_ns` what is called by a lane may call callbacks; 0 while no
+            lane is emptied. See `Reader.deliver`.
+    """
 
     def __init__(self) -> None:
+        self.until_ns = 0
         self._ready: deque[Lane[object]] = deque()
         # Whether the loop will look by itself. Set by whoever wakes it, cleared by the loop before
         # its last look: what comes later wakes it again, so nothing is missed.
@@ -94,16 +100,14 @@ class Wakeup:
         if self._loop is None:
             return
         ready = self._ready
+        ends_ns = self.until_ns = perf_ns() + SLICE_NS
         try:
             if ready:
                 ready.popleft().take()
-            if ready:  # a single message, the usual case, does not get here
-                ends_ns = perf_ns() + SLICE_NS
-                while ready:
-                    ready.popleft().take()
-                    if perf_ns() >= ends_ns:
-                        break
+            while ready and perf_ns() < ends_ns:
+                ready.popleft().take()
         finally:
+            self.until_ns = 0
             self._armed = False
             if ready:
                 self._armed = True
@@ -141,8 +145,10 @@ class Lane(Generic[T]):
         """Handle a slice of what waits; on the loop."""
         self._queued = False  # before looking, so that whoever comes later queues it again
         items = self._items
+        left = min(len(items), SLICE_ITEMS)
         try:
-            for _ in range(min(len(items), SLICE_ITEMS)):
+            while left and items:  # what is called may clear the lane
+                left -= 1
                 self._handle(items.popleft())
         finally:
             if items and not self._queued:
@@ -190,7 +196,9 @@ class PatientLane(Lane[T]):
         """Handle a slice of what waits, as far as there is room; on the loop."""
         self._queued = False
         items = self._items
-        for _ in range(min(len(items), SLICE_ITEMS)):
+        left = min(len(items), SLICE_ITEMS)
+        while left and items:
+            left -= 1
             if not self._has_room():
                 self._queued = True  # until somebody reads, nothing that comes is news
                 self._when_room(self._resume)

@@ -11,11 +11,12 @@ import pytest
 
 from aionode.clock import perf_ns
 from aionode.errors import CallbackCancelledError
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
 from aionode.settle import one_turn
 from aionode.testing import settle
-from aionode.transport.base import Origin
+from aionode.transport.base import Origin, Request
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
@@ -41,6 +42,39 @@ def bring(subscription: Subscription[Int32], *numbers: int, until_ns: int | None
     for number in numbers:
         origin = Origin(bytes(16), number, 0, remote=True)
         subscription.deliver(Int32(data=number), origin, until_ns)
+
+
+class Asked(Request):
+    """A request for the sum of two and three, which notes what becomes of it."""
+
+    def __init__(self) -> None:
+        self.message = AddTwoInts.Request(a=2, b=3)
+        self.origin = Origin(bytes(16), 1, 0, remote=True)
+        self.outcome: list[object] = []
+
+    def reply(self, response: Any) -> None:
+        """Note a response."""
+        self.outcome.append(response.sum)
+
+    def fail(self, error_type: str, error_text: str) -> None:
+        """Note an error."""
+        self.outcome.append(f"{error_type}: {error_text}")
+
+    def drop(self) -> None:
+        """Note the end without an answer, unless there was one."""
+        if not self.outcome:
+            self.outcome.append("dropped")
+
+
+def fail(_: AddTwoInts.Request) -> AddTwoInts.Response:
+    """Answer as a handler with a bug does."""
+    raise ValueError("no sums today")
+
+
+def add(request: AddTwoInts.Request, response: AddTwoInts.Response) -> AddTwoInts.Response:
+    """Answer as the tutorial's server does."""
+    response.sum = request.a + request.b
+    return response
 
 
 # When
@@ -463,3 +497,107 @@ async def test_a_node_that_fails_calls_nobody_back(context: Context) -> None:
         with pytest.raises(ExceptionGroup):
             await node.run()
     assert heard == []
+
+
+# Services
+
+
+async def test_an_idle_service_answers_within_the_event(node: Node) -> None:
+    """With the response of a sync handler."""
+    service = node.create_service(AddTwoInts, "sums", add)
+    await settle()
+    request = Asked()
+    service.serve(request, perf_ns() + MINUTE_NS)
+    assert request.outcome == [5]
+    assert service.stats.received == service.stats.run_time.count == 1
+
+
+async def test_a_handler_of_the_request_alone_answers_within_the_event(node: Node) -> None:
+    """Either signature will do."""
+    service = node.create_service(
+        AddTwoInts, "sums", lambda request: AddTwoInts.Response(sum=request.a)
+    )
+    await settle()
+    request = Asked()
+    service.serve(request, perf_ns() + MINUTE_NS)
+    assert request.outcome == [2]
+
+
+async def test_without_a_time_a_request_waits_for_its_turn(node: Node) -> None:
+    """The client may be in a callback of the same process."""
+    service = node.create_service(AddTwoInts, "sums", add)
+    await settle()
+    requests = [Asked(), Asked()]
+    service.serve(requests[0])
+    service.serve(requests[1], perf_ns() + MINUTE_NS)
+    assert [request.outcome for request in requests] == [[], []]
+    await settle()
+    assert [request.outcome for request in requests] == [[5], [5]]
+
+
+async def test_a_failing_handler_tells_the_client_at_once(node: Node) -> None:
+    """And a node that goes on does so without its pump."""
+    service = node.create_service(AddTwoInts, "sums", fail, on_error="log")
+    await settle()
+    request = Asked()
+    service.serve(request, perf_ns() + MINUTE_NS)
+    assert request.outcome == ["ValueError: no sums today"]
+    assert service.stats.errors == 1
+
+
+async def test_a_failing_handler_ends_its_node(context: Context) -> None:
+    """Through the pump, as from the queue."""
+    node = Node("node", context=context)
+    service = node.create_service(AddTwoInts, "sums", fail)
+    request = Asked()
+
+    async def transport() -> None:
+        await settle()
+        service.serve(request, perf_ns() + MINUTE_NS)
+
+    async with asyncio.TaskGroup() as tasks:
+        tasks.create_task(transport())
+        with pytest.raises(ExceptionGroup) as caught:
+            await node.run()
+    assert caught.group_contains(ValueError, match="no sums")
+    assert request.outcome == ["ValueError: no sums today"]
+
+
+async def test_a_handler_that_is_cancelled_drops_its_request(node: Node) -> None:
+    """Its client is not left waiting."""
+
+    def handler(_: AddTwoInts.Request) -> AddTwoInts.Response:
+        raise asyncio.CancelledError
+
+    service = node.create_service(AddTwoInts, "sums", handler)
+    await settle()
+    request = Asked()
+    service.serve(request, perf_ns() + MINUTE_NS)
+    assert request.outcome == ["dropped"]
+
+
+async def test_what_a_handler_returns_is_awaited(node: Node) -> None:
+    """By the pump, which then answers."""
+
+    async def work(request: AddTwoInts.Request) -> AddTwoInts.Response:
+        await one_turn()
+        return AddTwoInts.Response(sum=request.a + request.b)
+
+    service = node.create_service(AddTwoInts, "sums", lambda request: work(request))  # noqa: PLW0108  # not known to be async
+    await settle()
+    request = Asked()
+    service.serve(request, perf_ns() + MINUTE_NS)
+    assert request.outcome == []
+    await settle()
+    assert request.outcome == [5]
+
+
+async def test_a_request_that_was_given_up_is_not_served(node: Node) -> None:
+    """Nobody waits for the answer."""
+    service = node.create_service(AddTwoInts, "sums", add)
+    await settle()
+    request = Asked()
+    request.cancelled = True
+    service.serve(request, perf_ns() + MINUTE_NS)
+    assert request.outcome == ["dropped"]
+    assert service.stats.dropped == 1

@@ -10,9 +10,10 @@ from functools import partial
 
 import pytest
 
+from aionode.clock import perf_ns
 from aionode.settle import one_turn
 from aionode.transport import wakeup
-from aionode.transport.wakeup import Lane, Wakeup
+from aionode.transport.wakeup import Lane, PatientLane, Wakeup
 
 
 @pytest.fixture(params=["eventfd", "socketpair"])
@@ -165,3 +166,41 @@ async def drained(woken: Wakeup) -> None:
     await last.wait()
     while woken._ready:
         await one_turn()
+
+
+@pytest.mark.parametrize("patient", [False, True])
+async def test_a_lane_may_be_cleared_by_what_it_calls(woken: Wakeup, *, patient: bool) -> None:
+    """A callback may run from there, and destroy its subscription."""
+    reported: list[object] = []
+    taken: list[int] = []
+    asyncio.get_running_loop().set_exception_handler(lambda _, what: reported.append(what))
+
+    def take(item: int) -> None:
+        taken.append(item)
+        lane.clear()
+
+    lane: Lane[int] = (
+        PatientLane(woken, take, 10, lambda: True, lambda _: None) if patient else Lane(woken, take)
+    )
+    in_thread(*(partial(lane.put, n) for n in range(3)))
+    await drained(woken)
+    assert taken == [0]
+    in_thread(partial(lane.put, 3))
+    await drained(woken)
+    assert taken == [0, 3]
+    assert reported == []
+
+
+async def test_callbacks_may_run_for_a_slice_of_time(
+    woken: Wakeup, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Reckoned once for all that one event brings, and over with it."""
+    seen: list[int] = []
+    lanes = [Lane[int](woken, lambda _: seen.append(woken.until_ns)) for _ in range(2)]
+    monkeypatch.setattr(wakeup, "SLICE_NS", 10**12)  # no pause of the machine is as long
+    before_ns = perf_ns()
+    in_thread(*(partial(lane.put, 0) for lane in lanes * 2))
+    await drained(woken)
+    assert len(set(seen)) == 1
+    assert before_ns + 10**12 <= seen[0] <= perf_ns() + 10**12
+    assert woken.until_ns == 0

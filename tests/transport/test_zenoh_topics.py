@@ -470,7 +470,10 @@ async def test_without_a_hash_every_definition_of_a_type_is_heard() -> None:
             b"",
         )
         reader: Any = SimpleNamespace(
-            endpoint=endpoint, raw=True, deliver=lambda data, _: heard.put_nowait(data), reject=None
+            endpoint=endpoint,
+            raw=True,
+            deliver=lambda data, *_: heard.put_nowait(data),
+            reject=None,
         )
         announcement = transport_of(node).create_reader(endpoint, String, reader)
         with raw_session() as session:

@@ -148,7 +148,7 @@ class ZenohServer(Entity):
             problem = error_payload("DecodeError", str(error))
             answer(query, lambda: query.reply_err(problem))
         else:
-            self._serve(ZenohRequest(message, origin, query, self))
+            self._serve(ZenohRequest(message, origin, query, self), self.link.wakeup.until_ns)
 
 
 def answer(query: zenoh.Query, reply: Callable[[], None] | None = None) -> None:

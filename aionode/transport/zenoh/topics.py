@@ -259,6 +259,7 @@ class ZenohReader(Entity):
         self._key = data_key(link.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
         self._transient = transient
         self._deliver = reader.deliver
+        self._wakeup = link.wakeup
         self._reject = reader.reject
         self._raw = reader.raw
         self._msg_type = msg_type
@@ -321,7 +322,7 @@ class ZenohReader(Entity):
             return  # a late subscription asks the publishers of its own context for history too
         payload = sample.payload.to_bytes()
         if self._raw:
-            self._deliver(payload, origin)
+            self._deliver(payload, origin, self._wakeup.until_ns)
             return
         decode = self._decode
         if decode is None:
@@ -332,7 +333,7 @@ class ZenohReader(Entity):
             self.link.note_garbage(self._key, str(error))
             self._reject(error)
         else:
-            self._deliver(msg, origin)
+            self._deliver(msg, origin, self._wakeup.until_ns)
 
 
 def origin_of(extra: zenoh.ZBytes | None) -> Origin | None:
