@@ -183,8 +183,12 @@ def ros_session() -> zenoh.Session:
     )
 
 
-def ros_router() -> zenoh.Session:
-    """Return a router with the settings of `rmw_zenohd`, but for its port and on loopback only."""
+def ros_router(*, readable: bool = True) -> zenoh.Session:
+    """Return a router with the settings of `rmw_zenohd`, but for its port and on loopback only.
+
+    Args:
+        readable: Whether it tells who is connected to it, as by default.
+    """
     return zenoh.open(
         zenoh_config(
             {
@@ -201,6 +205,7 @@ def ros_router() -> zenoh.Session:
                 "transport/link/tx/lease": 60_000,
                 "transport/link/tx/keep_alive": 2,
                 "transport/shared_memory/enabled": False,
+                "adminspace/enabled": readable,
             }
         )
     )

@@ -306,4 +306,6 @@ def router_settings(listen: Iterable[str] = (f"tcp/[::]:{ROUTER_PORT}",)) -> dic
         "transport/link/tx/lease": 60_000,
         "transport/link/tx/keep_alive": 2,
         "transport/shared_memory/enabled": False,
+        # For contexts that must know who listens behind it.
+        "adminspace/enabled": True,
     }

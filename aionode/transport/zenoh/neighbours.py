@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import logging
 from typing import TYPE_CHECKING, Any, Final
 
 import zenoh
 
-from aionode.transport.zenoh.handlers import direct, translated
+from aionode.transport.zenoh.handlers import direct, reason, translated
+from aionode.transport.zenoh.routers import Routers
+from aionode.wire.liveliness import PREFIX as ROS_PREFIX
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -15,27 +18,52 @@ if TYPE_CHECKING:
 
 __all__ = ["Neighbours"]
 
+logger = logging.getLogger("aionode.transport.zenoh")
+
 PREFIX: Final = "@aionode"
 
 
 class Neighbours:
-    """Tokens beside the ROS graph, and the sessions that are connected.
+    """Tokens beside the ROS graph, the sessions that are connected, and a box for post.
+
+    A session is known once it has announced a node or a context of aionode, in any domain: then
+    it announces its subscriptions as well. Anybody else is a stranger, who may subscribe to
+    anything: a session that is connected, as long as it has not announced itself; one behind a
+    router, if the router says that it subscribes to something of this domain; and a router that
+    does not say who is behind it, or was not asked.
 
     Attributes:
         beacon: What to announce, as chunks of a key that begin with the participant; None for
             nothing, and then nothing is looked for either.
         on_beacon: Called with what another context announces, and whether it is there.
         on_sessions: Called with the ids of the sessions that are connected, when that has changed.
+        strangers: Whether somebody can be reached whose subscriptions nobody announces.
+        on_strangers: Called with `strangers` when that has changed.
+        on_post: Called with what others have sent to this context; in order for each of them.
     """
 
     def __init__(self, link: Link) -> None:
         self.beacon: str | None = None
         self.on_beacon: Callable[[str, bool], None] = ignore
         self.on_sessions: Callable[[Iterable[str]], None] = ignore
+        self.strangers = False
+        self.on_strangers: Callable[[bool], None] = ignore
+        self.on_post: Callable[[bytes], None] = ignore
+        self._link = link
         self._prefix = f"{PREFIX}/{link.domain_id}/"
-        self._beacons = link.lane(self._take_beacon)
-        self._sessions = link.lane(self._take_sessions, 1)
+        self._tokens = link.lane(self._take_token)
+        self._nodes = link.lane(self._take_node)
+        self._changes = link.lane(self._take_change)
+        self._posts = link.lane(self._take_post)
+        self._routers = Routers(link, self._is_known, self._update)
+        # The tokens of each session that has announced itself. It stays known without any while
+        # it can be reached: a context announces its subscriptions, with a node or without.
+        self._known: dict[str, set[str]] = {}
+        # Contexts with strangers whom only they see.
+        self._hosts: set[str] = set()
+        self._connected: dict[str, zenoh.WhatAmI] = {}
         self._declared: list[Any] = []
+        self._warning: zenoh.LivelinessToken | None = None
         self._session: zenoh.Session | None = None
 
     def start(self, session: zenoh.Session) -> None:
@@ -43,37 +71,149 @@ class Neighbours:
         if self.beacon is None:
             return
         self._session = session
+        self._routers.start(session)
+        liveliness = session.liveliness()
         with translated("links"):
             self._declared = [
-                session.liveliness().declare_subscriber(
-                    f"{self._prefix}*/link/**", direct(self._beacons.put), history=True
+                session.declare_subscriber(
+                    self._post_key(self._link.participant), direct(self._posts.put)
                 ),
-                session.info.declare_transport_events_listener(direct(self._sessions.put)),
-                session.liveliness().declare_token(self._prefix + self.beacon),
+                liveliness.declare_subscriber(
+                    f"{PREFIX}/*/*/**", direct(self._tokens.put), history=True
+                ),
+                liveliness.declare_subscriber(
+                    f"{ROS_PREFIX}/*/*/*/*/NN/**", direct(self._nodes.put), history=True
+                ),
+                session.info.declare_transport_events_listener(direct(self._changes.put)),
+                liveliness.declare_token(self._prefix + self.beacon),
             ]
-        self.on_sessions(connected(session))
+        self._connected = {
+            str(transport.zid): transport.whatami for transport in session.info.transports()
+        }
+        self._on_connected()
 
     def stop(self) -> None:
         """Announce nothing, and listen no longer."""
+        self._routers.stop()
         self._session = None
+        self._warn(needed=False)
         declared, self._declared = self._declared, []
         for one in reversed(declared):
             one.undeclare()
-        self._beacons.clear()
-        self._sessions.clear()
+        for lane in (self._tokens, self._nodes, self._changes, self._posts):
+            lane.clear()
+        self._known.clear()
+        self._hosts.clear()
+        self._connected.clear()
+        self.strangers = False
 
-    def _take_beacon(self, sample: zenoh.Sample) -> None:
-        text = str(sample.key_expr).removeprefix(self._prefix)
-        self.on_beacon(text, sample.kind == zenoh.SampleKind.PUT)
+    def watch(self, on: bool) -> None:
+        """Ask routers who is behind them, now and each second, or no longer.
 
-    def _take_sessions(self, _: object) -> None:
-        if self._session is not None:
-            self.on_sessions(connected(self._session))
+        While they are not asked, a router counts as a stranger.
+        """
+        self._routers.watch(on=on)
+        self._update()
+
+    def post(self, participant: str, data: bytes) -> None:
+        """Send `data` to another context, from a thread; nothing is dropped while both are open."""
+        session = self._session
+        if session is not None:
+            key = self._post_key(participant)
+            self._link.bulk.submit(lambda: send(session, key, data))
+
+    def _post_key(self, participant: str) -> str:
+        return f"{self._prefix}{participant}/post"
+
+    def _take_post(self, sample: zenoh.Sample) -> None:
+        self.on_post(sample.payload.to_bytes())
+
+    # Who is there
+
+    def _take_token(self, sample: zenoh.Sample) -> None:
+        key = str(sample.key_expr)
+        present = sample.kind == zenoh.SampleKind.PUT
+        participant, _, what = key.split("/", 2)[2].partition("/")
+        self._note(participant, key, present=present)
+        if what == "strangers":
+            if participant != self._link.participant and present:
+                self._hosts.add(participant)
+            else:
+                self._hosts.discard(participant)
+        elif what.startswith("link/") and key.startswith(self._prefix):
+            self.on_beacon(key.removeprefix(self._prefix), present)
+        self._update()
+
+    def _take_node(self, sample: zenoh.Sample) -> None:
+        key = str(sample.key_expr)
+        self._note(key.split("/", 3)[2], key, present=sample.kind == zenoh.SampleKind.PUT)
+        self._update()
+
+    def _note(self, zid: str, key: str, *, present: bool) -> None:
+        if present:
+            self._known.setdefault(zid, set()).add(key)
+        elif zid in self._known:
+            self._known[zid].discard(key)
+
+    def _is_known(self, zid: str) -> bool:
+        return zid in self._known or zid == self._link.participant
+
+    def _take_change(self, event: zenoh.TransportEvent) -> None:
+        # `transports()` may still have one whose end is being told.
+        zid = str(event.transport.zid)
+        if event.kind == zenoh.SampleKind.PUT:
+            self._connected[zid] = event.transport.whatami
+        else:
+            self._connected.pop(zid, None)
+        self._on_connected()
+
+    def _on_connected(self) -> None:
+        self._routers.connect(self._of_kind(zenoh.WhatAmI.ROUTER))
+        self.on_sessions(set(self._connected))
+        self._update()
+
+    def _of_kind(self, kind: zenoh.WhatAmI) -> set[str]:
+        return {zid for zid, whatami in self._connected.items() if whatami == kind}
+
+    def _update(self) -> None:
+        """Find out whether there are strangers, and tell."""
+        if self._session is None:
+            return
+        for zid in [zid for zid, tokens in self._known.items() if not tokens]:
+            if zid not in self._connected and zid not in self._routers.behind:
+                del self._known[zid]
+        unknown = {zid for zid in self._connected if not self._is_known(zid)}
+        unknown -= self._of_kind(zenoh.WhatAmI.ROUTER)
+        # Everybody reaches the clients of this session, but nobody else sees them.
+        self._warn(needed=bool(unknown & self._of_kind(zenoh.WhatAmI.CLIENT)))
+        strangers = bool(unknown or self._hosts or self._routers.strangers)
+        if strangers != self.strangers:
+            self.strangers = strangers
+            self.on_strangers(strangers)
+
+    def _warn(self, *, needed: bool) -> None:
+        """Tell other contexts of strangers here, or no longer."""
+        if self._warning is not None and not needed:
+            self._warning.undeclare()
+            self._warning = None
+        elif self._warning is None and needed and self._session is not None:
+            with translated("links"):
+                self._warning = self._session.liveliness().declare_token(
+                    f"{self._prefix}{self._link.participant}/strangers"
+                )
 
 
-def connected(session: zenoh.Session) -> set[str]:
-    """Return the ids of the sessions that are connected to this one."""
-    return {str(transport.zid) for transport in session.info.transports()}
+def send(session: zenoh.Session, key: str, data: bytes) -> None:
+    """Send post; in a thread."""
+    try:
+        session.put(
+            key,
+            data,
+            congestion_control=zenoh.CongestionControl.BLOCK,
+            allowed_destination=zenoh.Locality.REMOTE,
+        )
+    except zenoh.ZError as error:
+        logger.debug("%s: not sent: %s", key, reason(error))
 
 
 def ignore(*_: object) -> None:
