@@ -141,6 +141,35 @@ class Dispatch:
         self._record_sync(perf_ns() - began_ns)
         return None
 
+    def receive(self, entered_ns: int, *args: Any) -> Coroutine[Any, Any, None] | None:
+        """Do `run` for a message that arrived at `entered_ns`; count it, and what it waited.
+
+        Raises:
+            Exception: what the callback raised, where `on_error` says so.
+        """
+        stats = self.stats
+        stats.received += 1
+        began_ns = perf_ns()
+        if self._offload:
+            stats.queue_wait.record(began_ns - entered_ns)
+            return self._finish(_Offloaded(self, args))
+        # `run` written out, so that one call records everything, after the callback.
+        try:
+            outcome = self.callback(*args)
+        except Exception as error:  # noqa: BLE001  # the policy decides, see `fail`
+            stats.queue_wait.record(began_ns - entered_ns)
+            self._record_sync(perf_ns() - began_ns)
+            self.fail(error)
+            return None
+        if outcome is not None and isinstance(outcome, Awaitable):
+            stats.queue_wait.record(began_ns - entered_ns)
+            return self._finish(_Measured(self, outcome))
+        took_ns = perf_ns() - began_ns
+        stats.record_call(began_ns - entered_ns, took_ns)
+        if took_ns > self.budget_ns:
+            self.report_blocking(took_ns)
+        return None
+
     async def _finish(self, outcome: Any) -> None:
         try:
             await self.outcome(outcome)

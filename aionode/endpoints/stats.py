@@ -119,6 +119,11 @@ class CallbackStats:
         self.run_time = Distribution()
         self.blocking = Distribution()
 
+    def record_call(self, waited_ns: int, took_ns: int) -> None:
+        """Add a callback without an await: what it waited, and how long it ran and blocked."""
+        self.queue_wait.record(waited_ns)
+        self.run_time.record_for_both(self.blocking, took_ns)
+
     def __repr__(self) -> str:
         return (
             f"CallbackStats(received={self.received}, dropped={self.dropped}, "

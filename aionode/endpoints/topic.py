@@ -242,7 +242,7 @@ class Subscription(Entity, Generic[ItemT]):
                 callback, self, self.stats, on_error=on_error, offload=offload
             )
             if self._dispatch.runs_through and self._concurrent is False:
-                self._shortcut = Shortcut(self._inbox, self._handle)
+                self._shortcut = Shortcut(self._inbox, self._handle())
 
     def __repr__(self) -> str:
         return (
@@ -339,9 +339,13 @@ class Subscription(Entity, Generic[ItemT]):
 
     def _count_lost(self, origin: Origin) -> None:
         sequences = self._last_sequences
-        last = sequences.pop(origin.gid, origin.sequence - 1)
-        self.stats.lost += max(origin.sequence - last - 1, 0)
-        sequences[origin.gid] = max(origin.sequence, last)
+        gid, sequence = origin.gid, origin.sequence
+        last = sequences.pop(gid, sequence - 1)
+        if sequence > last:
+            self.stats.lost += sequence - last - 1
+            sequences[gid] = sequence
+        else:
+            sequences[gid] = last
         if len(sequences) > REMEMBERED_PUBLISHERS:
             del sequences[next(iter(sequences))]  # the one silent for longest
 
@@ -361,17 +365,15 @@ class Subscription(Entity, Generic[ItemT]):
         """Return the loop that calls the callback; None without a callback."""
         if self._dispatch is None:
             return None
-        return pump(self._inbox, self._handle, self._concurrent, self._shortcut)
+        return pump(self._inbox, self._handle(), self._concurrent, self._shortcut)
 
-    def _handle(self, entered_ns: int, item: Any) -> Coroutine[Any, Any, None] | None:
-        dispatch = self._dispatch
-        assert dispatch is not None  # noqa: S101  # only a subscription with a callback runs
-        stats = self.stats
-        stats.received += 1
-        stats.queue_wait.record(perf_ns() - entered_ns)
+    def _handle(self) -> Callable[[int, Any], Coroutine[Any, Any, None] | None]:
+        """Return what takes an item of the inbox to the callback."""
+        assert self._dispatch is not None  # noqa: S101  # there is a callback
+        receive = self._dispatch.receive
         if self._wants_info:
-            return dispatch.run(*item)
-        return dispatch.run(item)
+            return lambda entered_ns, item: receive(entered_ns, *item)
+        return receive
 
     def close(self) -> None:
         """Withdraw the subscription; unread messages are kept for a reader only."""
