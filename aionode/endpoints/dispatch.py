@@ -1,7 +1,7 @@
 """Running callbacks: measured, fair to the rest of the loop, and with a policy for errors.
 
-Every callback of every entity runs through `Dispatch`, and every queue is emptied by `pump`; there
-is no other place that decides what happens around a callback.
+Every callback of every entity runs through `Dispatch`, and every queue is emptied by `pump`, or
+passed by with a `Shortcut`; there is no other place that decides what happens around a callback.
 """
 
 from __future__ import annotations
@@ -385,8 +385,8 @@ async def pump(
 
     `handle` runs what can run at once and returns what is left to await, if anything. With
     `concurrent` that runs beside the next items: in a TaskGroup, any number at once or at most so
-    many, while the others wait in the inbox. A `shortcut` past the inbox is open while one that is
-    not `concurrent` has nothing to do.
+    many, while the others wait in the inbox. Without it, a `shortcut` past the inbox is open while
+    there is nothing to do.
     """
     if concurrent is False:
         await _pump_in_order(inbox, handle, inbox if shortcut is None else shortcut)
