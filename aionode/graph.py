@@ -134,9 +134,13 @@ class Graph:
 
     Endpoints of one name are found through an index, so that a question costs what it answers and
     not what the whole system holds.
+
+    Attributes:
+        changes: Rises with each change: an answer is good as long as this is the same.
     """
 
     def __init__(self) -> None:
+        self.changes = 0
         self._nodes: dict[NodeInfo, None] = {}
         self._endpoints: dict[EndpointInfo, None] = {}
         self._by_name: dict[tuple[EndpointKind, str], dict[EndpointInfo, None]] = defaultdict(dict)
@@ -168,6 +172,7 @@ class Graph:
         self._endpoints[endpoint] = None
         self._by_name[endpoint.kind, endpoint.name][endpoint] = None
         self._by_node[endpoint.node][endpoint] = None
+        self.changes += 1  # before anybody asks
         for listener in self._listeners:
             listener(endpoint)
         self._wake()
@@ -211,6 +216,7 @@ class Graph:
         self._waiters.pop(waiter, None)
 
     def _wake(self) -> None:
+        self.changes += 1
         for waiter in list(self._waiters):
             if not waiter.done():
                 waiter.set_result(None)

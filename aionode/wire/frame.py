@@ -5,8 +5,9 @@ Each frame is a header of 40 bytes, little endian, and a payload::
     size u32 | kind u8 | flags u8 | mark u16 | sequence i64 | source_ns i64 | gid 16 bytes | payload
 
 The stream stays in step only while every frame is understood, so that anything unknown ends it with
-a `FrameError`; there is no way to find the next frame. A large payload is in memory whose
-descriptor comes beside the frame: then the flag is set, and what follows the header is a `Place`.
+a `FrameError`; there is no way to find the next frame. A large payload is in memory that both sides
+know: then a flag is set, and what follows the header is a `Place`. A second flag says that the
+descriptor of that memory comes beside the frame.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ __all__ = [
     "FrameParser",
     "Kind",
     "Place",
+    "attached",
     "pack",
 ]
 
@@ -43,6 +45,9 @@ HEADER: Final = struct.Struct("<IBBHqq16s")
 HEADER_SIZE: Final = HEADER.size
 MARK: Final = 0xA10E
 ELSEWHERE: Final = 1
+ATTACHED: Final = 3
+FLAGS: Final = (0, ELSEWHERE, ATTACHED)
+FLAGS_AT: Final = 5
 PLACE: Final = struct.Struct("<QQ")
 
 
@@ -52,7 +57,10 @@ class Kind(enum.IntEnum):
     HELLO = 1
     """Who I am: gid is the participant, sequence the `VERSION`, source_ns the domain."""
     OPEN = 2
-    """I want what publisher gid publishes: the payload is the reader, sequence its window."""
+    """I want what publisher gid publishes: the payload is the reader, sequence its window.
+
+    source_ns is 1 if it confirms what it has, 0 if it may lose messages.
+    """
     OPENED = 3
     """It comes from here on, after number sequence; the payload is the reader's gid."""
     SWITCHED = 4
@@ -76,11 +84,14 @@ class Kind(enum.IntEnum):
     CANCEL = 13
     """The client has given the request up."""
     RELEASE = 14
-    """The memory number sequence, which came by descriptor, is not in use any more."""
+    """The memory number sequence is not in use any more."""
+    FORGET = 15
+    """The memory number sequence will not be used any more."""
+    CAUGHT_UP = 16
+    """All that a broken link left unsaid has been said."""
 
 
-KINDS: Final = frozenset(int(kind) for kind in Kind)
-DATA: Final = int(Kind.DATA)
+LAST_KIND: Final = max(Kind).value
 
 
 class Frame(msgspec.Struct, frozen=True, gc=False):
@@ -93,6 +104,7 @@ class Frame(msgspec.Struct, frozen=True, gc=False):
         gid: 16 bytes that name an endpoint.
         payload: What follows.
         elsewhere: Whether that is the `Place` of the payload proper.
+        attached: Whether the descriptor of that memory comes with it.
     """
 
     kind: int
@@ -101,6 +113,7 @@ class Frame(msgspec.Struct, frozen=True, gc=False):
     gid: bytes = bytes(GID_SIZE)
     payload: bytes = b""
     elsewhere: bool = False
+    attached: bool = False
 
 
 class Place(NamedTuple):
@@ -147,20 +160,23 @@ def pack(
     return HEADER.pack(size, kind, elsewhere, MARK, sequence, source_ns, gid) + payload
 
 
-class FrameParser:
-    """Takes the stream apart, in whatever pieces it comes."""
+def attached(data: bytes) -> bytes:
+    """Return a frame whose payload is elsewhere as one that comes with the descriptor."""
+    return data[:FLAGS_AT] + bytes([ATTACHED]) + data[FLAGS_AT + 1 :]
 
-    __slots__ = ("_have", "_need", "_pieces")
+
+class FrameParser:
+    """Takes the stream apart, in whatever pieces it comes.
+
+    Attributes:
+        missing: How many bytes the frame that has begun needs at least; 1 or more.
+    """
+
+    __slots__ = ("_pieces", "missing")
 
     def __init__(self) -> None:
         self._pieces: list[bytes] = []
-        self._have = 0
-        self._need = HEADER_SIZE
-
-    @property
-    def missing(self) -> int:
-        """How many bytes the frame that has begun still needs, as far as is known; at least 1."""
-        return self._need - self._have
+        self.missing = HEADER_SIZE
 
     def feed(self, data: bytes) -> list[Frame]:
         """Return the frames that `data` completes.
@@ -170,30 +186,33 @@ class FrameParser:
         """
         if self._pieces:
             self._pieces.append(data)
-            self._have += len(data)
-            if self._have < self._need:
+            if len(data) < self.missing:
+                self.missing -= len(data)
                 return []  # pieces of a large payload are joined once, at its end
             data = b"".join(self._pieces)
             self._pieces.clear()
         frames: list[Frame] = []
         offset = 0
         end = len(data)
-        self._need = HEADER_SIZE
+        need = HEADER_SIZE
         while end - offset >= HEADER_SIZE:
             size, kind, flags, mark, sequence, source_ns, gid = HEADER.unpack_from(data, offset)
-            if mark != MARK or kind not in KINDS or flags > ELSEWHERE:
+            if mark != MARK or not 0 < kind <= LAST_KIND or flags not in FLAGS:
                 raise FrameError(f"something that is no frame (kind {kind}, mark {mark:#06x})")
             if size > MAX_INLINE:
                 raise FrameError(f"a payload of {size} bytes in the stream; {MAX_INLINE} fit")
             begin = offset + HEADER_SIZE
             if end - begin < size:
-                self._need = HEADER_SIZE + size
+                need = HEADER_SIZE + size
                 break
             offset = begin + size
-            frames.append(
-                Frame(kind, sequence, source_ns, gid, data[begin:offset], flags == ELSEWHERE)
-            )
-        self._have = end - offset
-        if self._have:
+            payload = data[begin:offset]
+            if flags:
+                one = Frame(kind, sequence, source_ns, gid, payload, True, flags == ATTACHED)
+            else:
+                one = Frame(kind, sequence, source_ns, gid, payload)
+            frames.append(one)
+        if offset < end:
             self._pieces.append(data[offset:] if offset else data)
+        self.missing = need - (end - offset)
         return frames

@@ -18,7 +18,7 @@ import pytest
 
 from aionode.context import Context
 from aionode.interfaces.std_msgs.msg import Int32
-from aionode.transport.link.topics import LinkWriter
+from aionode.transport.link.publishers import LinkWriter
 from aionode.transport.link.transport import LinkTransport
 from tests.peers import isolated_environment, quiet_node
 

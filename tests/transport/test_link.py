@@ -6,6 +6,7 @@ import asyncio
 import gc
 import logging
 import os
+import resource
 import shutil
 import socket
 import tempfile
@@ -19,13 +20,14 @@ import pytest
 
 from aionode.context import Context
 from aionode.errors import ConfigurationError, ServiceUnavailableError
+from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.sensor_msgs.msg import Image
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
 from aionode.transport.link import hub, meeting, memory
 from aionode.transport.link.connection import Connection
-from aionode.transport.link.topics import LinkWriter
+from aionode.transport.link.publishers import LinkWriter
 from aionode.transport.link.transport import LinkTransport
 from aionode.wire import cdr
 from aionode.wire.keyexpr import data_key
@@ -160,6 +162,36 @@ async def test_every_kind_of_reader_gets_each_message_once() -> None:
         assert numbers.subscription.stats.lost == 0
 
 
+async def test_what_was_in_a_broken_link_reaches_its_reader_and_nobody_twice() -> None:
+    """Also what went both ways, and what was sent before a stranger came to listen."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.until_linked()
+        before = numbers.next
+        stalled = link_of(nodes.b)
+        asyncio.get_running_loop().remove_reader(stalled._fd)
+        numbers.publish(100)
+        with raw_session() as session:
+            samples = Collector()
+            subscriber = session.declare_subscriber(NUMBERS, samples)
+            while not samples.items:
+                numbers.publish()
+                await asyncio.sleep(0)
+            numbers.publish(100)
+            stalled.close()
+            numbers.publish(100)
+            assert [
+                (await numbers.subscription.receive()).data for _ in range(before, numbers.next)
+            ] == list(range(before, numbers.next))
+            last = cdr.encode(Int32(data=numbers.next - 1))
+            while samples.items[-1].payload.to_bytes() != last:
+                await asyncio.sleep(0)
+            subscriber.undeclare()
+        heard = [cdr.decode(Int32, sample.payload.to_bytes()).data for sample in samples.items]
+        assert heard == list(range(heard[0], numbers.next))
+        assert numbers.subscription.stats.lost == 0
+
+
 async def test_a_stream_goes_on_over_zenoh_when_the_link_ends_and_back_when_it_is_there() -> None:
     """Either end may close it; nobody notices."""
     async with two_nodes() as nodes:
@@ -265,7 +297,7 @@ async def test_a_slow_reader_loses_the_oldest_and_the_publisher_counts_them() ->
         dropped = writer_of(numbers.publisher).dropped
         assert 0 < dropped < 20_000
         route = writer_of(numbers.publisher)._routes[link_of(nodes.a)]
-        assert len(route.stream.waiting) == 10
+        assert len(route._waiting) == 10
         loop.add_reader(link._fd, link._on_readable)
         while (await numbers.subscription.receive()).data != numbers.next - 1:
             pass
@@ -344,6 +376,30 @@ async def test_a_call_takes_the_link_and_ends_with_it() -> None:
         assert (await client.call(AddTwoInts.Request(a=3, b=4))).sum == 7
 
 
+async def test_an_action_takes_the_link() -> None:
+    """Its services and its feedback, in order, and the result after them."""
+    async with two_nodes() as nodes:
+
+        async def execute(goal: Any) -> Any:
+            for number in range(20):
+                goal.publish_feedback(Fibonacci.Feedback(sequence=[number]))
+                await asyncio.sleep(0)
+            goal.succeed()
+            return Fibonacci.Result(sequence=[1, 2])
+
+        nodes.b.create_action_server(Fibonacci, "count", execute)
+        client: Any = nodes.a.create_action_client(Fibonacci, "count")
+        await client.wait_for_server()
+        while not hub_of(nodes.a).links:
+            await asyncio.sleep(0)
+        for _ in range(3):
+            goal = await client.send_goal(Fibonacci.Goal(order=20))
+            got = [list(feedback.sequence) async for feedback in goal]
+            assert got == [[number] for number in range(20)]
+            assert list((await goal.result()).result.sequence) == [1, 2]
+        assert not hub_of(nodes.a).calls
+
+
 async def fails(awaitable: Any) -> Exception | None:
     """Return what it raises."""
     try:
@@ -408,12 +464,12 @@ async def test_images_come_in_shared_memory_that_is_used_again() -> None:
         assert all(memoryview(one.data).readonly for one in kept)
         kept.clear()
         gc.collect()
-        publisher.publish(image(7))  # what was returned is said with the next
+        while lent:
+            await asyncio.sleep(0)  # the receiver says so in its next turns
+        known = set(link_of(nodes.a)._known)
+        publisher.publish(image(7))
         last = await subscription.receive()
-        while len(lent) > 2:  # the kept one, and the one that was just read
-            publisher.publish(image(8))
-            await subscription.receive()
-        assert hub_of(nodes.a).pool._idle
+        assert link_of(nodes.a)._known == known
         assert bytes(last.data[:1]) == bytes([7])
 
 
@@ -432,6 +488,30 @@ async def test_without_descriptors_large_payloads_go_through_the_stream(
             publisher.publish(image(number))
             assert bytes((await subscription.receive()).data[:1]) == bytes([number])
         assert not link_of(nodes.a)._lent
+
+
+async def test_a_receiver_without_descriptors_goes_on_over_zenoh_and_loses_nothing(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """The system drops the descriptor on the way in, and with it the place of the image."""
+    async with two_nodes() as nodes:
+        publisher, subscription = await linked_images(nodes)
+        pool = hub_of(nodes.a).pool
+        fresh = pool.filled(bytes(600_000))  # which the receiver has no descriptor of
+        assert fresh is not None
+        pool.release(fresh)
+        limits = resource.getrlimit(resource.RLIMIT_NOFILE)
+        free = os.open("/dev/null", os.O_RDONLY)
+        os.close(free)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (free, limits[1]))
+        try:
+            for number in range(1, 4):
+                publisher.publish(image(number))
+            for number in range(1, 4):
+                assert bytes((await subscription.receive()).data[:1]) == bytes([number])
+        finally:
+            resource.setrlimit(resource.RLIMIT_NOFILE, limits)
+    assert "too many files are open" in caplog.text
 
 
 @pytest.mark.parametrize("size", [0, 5000])

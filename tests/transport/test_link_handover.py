@@ -23,13 +23,14 @@ def origin(number: int) -> Origin:
 
 
 class Stream:
-    """A publisher, two ways that are each in order, and a reader at their end."""
+    """A publisher, three ways that are each in order, and a reader at their end."""
 
     def __init__(self) -> None:
         self.published = 0
         self.got: list[int] = []
-        self.handover = Handover(lambda msg, _: self.got.append(msg))
+        self.handover = Handover(lambda msg, *_: self.got.append(msg))
         self.zenoh: deque[int] = deque()
+        self.post: deque[tuple[str, int]] = deque()
         self.link: deque[tuple[str, int]] = deque()
         self._linked = False
         self._needs_zenoh = True
@@ -40,22 +41,44 @@ class Stream:
         self.published += 1
         if self._linked:
             self.link.append(("data", self.published))
-            if not self._needs_zenoh:
-                self._unconfirmed.append(self.published)
+            self._unconfirmed.append(self.published)
         if self._needs_zenoh:
             self.zenoh.append(self.published)
 
     def open(self) -> None:
-        """Take the reader's wish."""
-        if not self._linked and not self.link:  # it is asked for when the last one has ended
+        """Take the reader's wish, a while after the last link has ended: its post has come."""
+        if not self._linked and not self.link and not self.post:
             self._linked = True
             self.link.append(("opened", self.published))
+
+    def meet_stranger(self) -> None:
+        """Publish both ways from now on, for somebody else."""
+        self._needs_zenoh = True
+
+    def lose_stranger(self) -> None:
+        """Publish over the link alone, if the reader has taken it."""
+        self._needs_zenoh = not (self._linked and self.handover.way is Way.LINK)
+
+    def confirm(self) -> None:
+        """Say what has been delivered."""
+        if self._linked and self.handover.way is Way.LINK:
+            self._unconfirmed = [n for n in self._unconfirmed if n > self.handover.last]
 
     def take_zenoh(self) -> None:
         """Hand over one message of Zenoh's."""
         if self.zenoh:
             number = self.zenoh.popleft()
-            self._after(self.handover.from_zenoh(number, origin(number)))
+            self.handover.from_zenoh(number, origin(number))
+            self.lose_stranger()
+
+    def take_post(self) -> None:
+        """Hand over one message of the post."""
+        if self.post:
+            what, number = self.post.popleft()
+            if what == "caught up":
+                self.handover.caught_up()
+            else:
+                self.handover.from_post(number, origin(number))
 
     def take_link(self) -> None:
         """Hand over one frame of the link's."""
@@ -64,49 +87,61 @@ class Stream:
             if what == "end":
                 self.handover.broken()
             elif what == "opened":
-                self._after(self.handover.opened(number))
+                self.handover.opened(number)
             else:
-                self._after(self.handover.from_link(number, origin(number)))
-
-    def _after(self, switched: bool) -> None:
-        if switched and self._linked and ("end", 0) not in self.link:
-            self._needs_zenoh = False
+                self.handover.from_link(number, origin(number))
+            self.lose_stranger()
 
     def end_link(self) -> None:
-        """Break the link: the publisher notices now, the reader when it has read everything."""
+        """Break the link: what is in it may be lost, and is posted by the publisher."""
         if self._linked:
             self._linked = False
             self._needs_zenoh = True
             self.link.append(("end", 0))
-            self.zenoh.extend(self._unconfirmed)
+            self.post.extend(("data", number) for number in self._unconfirmed)
+            self.post.append(("caught up", 0))
             self._unconfirmed.clear()
+
+    def lose_what_is_under_way(self) -> None:
+        """Break the link, with all that is in it."""
+        if self._linked and not any(what == "opened" for what, _ in self.link):
+            self.link.clear()
+            self.end_link()
 
     def finish(self) -> None:
         """Hand over everything, with one more message to end a hand-over."""
         self.publish()
-        while self.zenoh:
-            self.take_zenoh()
-        while self.link:
-            self.take_link()
-        while self.zenoh:
-            self.take_zenoh()
+        for take, way in (
+            (self.take_zenoh, self.zenoh),
+            (self.take_link, self.link),
+            (self.take_zenoh, self.zenoh),
+            (self.take_post, self.post),
+        ):
+            while way:
+                take()
 
 
 STEPS: list[Callable[[Stream], None]] = [
     Stream.publish,
+    Stream.publish,
     Stream.open,
+    Stream.confirm,
+    Stream.meet_stranger,
+    Stream.lose_stranger,
     Stream.take_zenoh,
+    Stream.take_post,
     Stream.take_link,
     Stream.end_link,
+    Stream.lose_what_is_under_way,
 ]
 
 
-@given(st.lists(st.sampled_from(STEPS), max_size=60))
-@settings(max_examples=400)
+@given(st.lists(st.sampled_from(STEPS), max_size=80))
+@settings(max_examples=600)
 def test_each_message_comes_once_and_in_order_whatever_the_ways_do(
     steps: list[Callable[[Stream], None]],
 ) -> None:
-    """Links come up and end at any moment of a stream, and either way may be the slower one."""
+    """Links come up and end at any moment of a stream, and any way may be the slower one."""
     stream = Stream()
     for step in steps:
         step(stream)
@@ -117,36 +152,64 @@ def test_each_message_comes_once_and_in_order_whatever_the_ways_do(
 def test_a_publisher_that_has_sent_nothing_is_taken_from_the_link_at_once() -> None:
     """Its first message has no reason to wait for Zenoh."""
     handover = Handover(lambda *_: None)
-    assert handover.opened(0)
+    handover.opened(0)
     assert handover.way is Way.LINK
+
+
+def test_the_last_message_before_the_link_shows_that_nothing_is_under_way() -> None:
+    """Then nothing has to wait for the next one."""
+    got: list[int] = []
+    handover = Handover(lambda msg, *_: got.append(msg))
+    handover.opened(5)
+    handover.from_zenoh(5, origin(5))
+    assert handover.way is Way.LINK
+    handover.from_link(6, origin(6))
+    assert got == [5, 6]
 
 
 def test_what_is_held_comes_out_when_zenoh_stays_silent() -> None:
     """Zenoh may have lost the message, or never have had it."""
     got: list[int] = []
-    handover = Handover(lambda msg, _: got.append(msg))
+    handover = Handover(lambda msg, *_: got.append(msg))
     handover.opened(5)
-    assert not handover.from_link(6, origin(6))
+    handover.from_link(6, origin(6))
     assert handover.waits
-    assert handover.switch()
-    assert not handover.from_zenoh(6, origin(6))
+    handover.switch()
+    assert handover.way is Way.LINK
+    handover.from_zenoh(6, origin(6))
     assert got == [6]
 
 
 def test_no_more_than_so_many_are_held() -> None:
     """Memory has a bound, whatever Zenoh does."""
     got: list[int] = []
-    handover = Handover(lambda msg, _: got.append(msg))
+    handover = Handover(lambda msg, *_: got.append(msg))
     handover.opened(1)
-    switched = [handover.from_link(n, origin(n)) for n in range(2, MAX_HELD + 2)]
-    assert switched == [False] * (MAX_HELD - 1) + [True]
+    for number in range(2, MAX_HELD + 1):
+        handover.from_link(number, origin(number))
+    assert handover.way is Way.BOTH
+    handover.from_link(MAX_HELD + 1, origin(MAX_HELD + 1))
+    assert handover.way is Way.LINK
     assert got == list(range(2, MAX_HELD + 2))
+
+
+def test_copies_that_zenoh_brings_ahead_of_the_link_are_bounded() -> None:
+    """They all come over the link as well, or by post when that ends."""
+    got: list[int] = []
+    handover = Handover(lambda msg, *_: got.append(msg))
+    handover.opened(0)
+    for number in range(1, MAX_HELD + 100):
+        handover.from_zenoh(number, origin(number))
+    handover.broken()
+    for number in range(1, 100):
+        handover.from_post(number, origin(number))
+    assert got == list(range(1, MAX_HELD + 100))
 
 
 def test_after_a_link_has_ended_what_came_over_it_does_not_come_again() -> None:
     """Zenoh may still bring a copy from the time when both ways were used."""
     got: list[int] = []
-    handover = Handover(lambda msg, _: got.append(msg))
+    handover = Handover(lambda msg, *_: got.append(msg))
     handover.opened(0)
     for number in (1, 2):
         handover.from_link(number, origin(number))
@@ -154,3 +217,27 @@ def test_after_a_link_has_ended_what_came_over_it_does_not_come_again() -> None:
     for number in (2, 3):
         handover.from_zenoh(number, origin(number))
     assert got == [1, 2, 3]
+
+
+def test_what_was_lost_for_good_is_waited_for_only_until_it_is_given_up() -> None:
+    """The publisher may have been killed before it could post anything."""
+    got: list[int] = []
+    handover = Handover(lambda msg, *_: got.append(msg))
+    handover.opened(0)
+    handover.from_link(1, origin(1))
+    handover.broken()
+    handover.from_zenoh(3, origin(3))
+    assert handover.waits
+    assert got == [1]
+    handover.finish()
+    assert handover.way is Way.ZENOH
+    assert got == [1, 3]
+
+
+def test_what_comes_over_a_link_for_another_reader_is_left_to_zenoh() -> None:
+    """Before it is opened, older messages may still be on their way over Zenoh."""
+    got: list[int] = []
+    handover = Handover(lambda msg, *_: got.append(msg))
+    handover.from_link(7, origin(7))
+    handover.from_zenoh(6, origin(6))
+    assert got == [6]

@@ -7,11 +7,13 @@ import logging
 import os
 import socket
 from collections import deque
-from typing import TYPE_CHECKING, Final, NamedTuple
+from contextlib import suppress
+from typing import TYPE_CHECKING, Final, Protocol
 
 from aionode.clock import perf_ns
 from aionode.errors import FrameError
-from aionode.transport.link.memory import mapped
+from aionode.transport.link.memory import Mappings
+from aionode.transport.wakeup import SLICE_NS
 from aionode.wire import frame
 from aionode.wire.frame import FrameParser, Kind, Place
 
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
     from aionode.wire.cdr import Data
     from aionode.wire.frame import Frame
 
-__all__ = ["Connection", "Packet", "Stream"]
+__all__ = ["Connection", "Queue"]
 
 logger = logging.getLogger("aionode.transport.link")
 
@@ -41,30 +43,19 @@ A system call costs more than the rest of a small message's way.
 
 NOBODY: Final = bytes(frame.GID_SIZE)
 
+# As plain numbers: those of an enumeration take their time.
+MSG_CMSG_CLOEXEC: Final = int(getattr(socket, "MSG_CMSG_CLOEXEC", 0))
+MSG_CTRUNC: Final = int(getattr(socket, "MSG_CTRUNC", 0))
+DATA: Final = int(Kind.DATA)
+RELEASE: Final = int(Kind.RELEASE)
+FORGET: Final = int(Kind.FORGET)
 
-class Packet(NamedTuple):
-    """A frame on its way out, and the memory that goes with it."""
 
-    data: bytes
-    memory: Memory | None = None
+class Queue(Protocol):
+    """What waits, elsewhere, for the socket to take more."""
 
-
-class Stream:
-    """What one publisher has not sent yet to one other process.
-
-    Attributes:
-        waiting: Its packets, the oldest first.
-        depth: How many of them there are at most, unless it keeps all.
-        dropped: How many were dropped because there was one more.
-    """
-
-    __slots__ = ("depth", "dropped", "keep_all", "waiting")
-
-    def __init__(self, depth: int, *, keep_all: bool) -> None:
-        self.waiting: deque[Packet] = deque()
-        self.depth = depth
-        self.keep_all = keep_all
-        self.dropped = 0
+    def go_on(self) -> None:
+        """Write until `Connection.write` refuses; then come again with `when_writable`."""
 
 
 class Connection:
@@ -74,11 +65,13 @@ class Connection:
         loop: The running loop.
         sock: Connected and not blocking; closed with this.
         pool: Where memory that was sent comes from.
-        handle: Called with each frame and its payload.
+        handle: Called with each frame, its payload, and until when callbacks may run at once.
         on_closed: Called once when the socket is closed from either end.
 
     Attributes:
         participant: Who is at the other end; empty before it has said so.
+        pool: Where memory that was sent comes from.
+        takers: Called in place of `handle` with the messages of a publisher, by its gid.
     """
 
     def __init__(
@@ -86,34 +79,41 @@ class Connection:
         loop: asyncio.AbstractEventLoop,
         sock: socket.socket,
         pool: Pool,
-        handle: Callable[[Connection, Frame, Data], None],
+        handle: Callable[[Connection, Frame, Data, int], None],
         on_closed: Callable[[Connection], None],
     ) -> None:
         self.participant = ""
+        self.takers: dict[bytes, Callable[[Data, Frame, int], None]] = {}
         self._loop = loop
         self._sock: socket.socket | None = sock
         self._fd = sock.fileno()
-        self._pool = pool
+        self.pool = pool
         self._handle = handle
         self._on_closed = on_closed
         self._parser = FrameParser()
         self._descriptors: deque[int] = deque()
         self._ancillary = socket.CMSG_SPACE(DESCRIPTORS * array.array("i").itemsize)
-        # In order; a stream stands here once for each of its packets, so that one that drops its
-        # oldest does not lose its place among the others.
-        self._queue: deque[Packet | Stream] = deque()
-        self._rest: memoryview | None = None
-        self._blocked = False
+        # Frames of a burst, which go out together.
+        self._batch: list[bytes] = []
+        self._batched = 0
         self._flush_planned = False
         self._sent_ns = 0
+        # The socket took no more: what is left of the last frames, and what has to wait.
+        self._full = False
+        self._rest = memoryview(b"")
+        self._urgent: deque[tuple[bytes, Memory | None]] = deque()
+        self._queues: dict[Queue, None] = {}
+        # Memory: the numbers that the other process knows, what it has now, and what came from it.
+        self._known: set[int] = set()
         self._lent: dict[int, Memory] = {}
-        self._returned: deque[int] = deque()
+        self._mappings = Mappings()
         self._waiters: list[asyncio.Future[None]] = []
+        pool.listeners.add(self._on_memory_closed)
         loop.add_reader(self._fd, self._on_readable)
 
     def __repr__(self) -> str:
-        state = "closed" if self._sock is None else "blocked" if self._blocked else "open"
-        return f"<Connection {self.participant or 'nobody'} {state} queued={len(self._queue)}>"
+        state = "closed" if self.closed else "full" if self._full else "open"
+        return f"<Connection {self.participant or 'nobody'} {state}>"
 
     @property
     def closed(self) -> bool:
@@ -122,127 +122,160 @@ class Connection:
 
     # Out
 
+    def write(self, data: bytes, memory: Memory | None = None) -> bool:
+        """Take a frame; False if the socket is full or closed, and then it was not taken.
+
+        The frame's memory is released when the other process has done so.
+        """
+        sock = self._sock
+        if self._full or sock is None:
+            return False
+        if memory is not None:
+            return self._write_with(sock, data, memory)
+        if self._batch or perf_ns() - self._sent_ns < BURST_NS:
+            self._batch.append(data)
+            self._batched += len(data)
+            if self._batched >= BATCH_BYTES:
+                self._flush()
+            elif not self._flush_planned:
+                self._flush_planned = True
+                self._loop.call_soon(self._planned_flush)
+            return True
+        try:  # `_send` written out: a call less for each message
+            sent = sock.send(data)
+        except (BlockingIOError, InterruptedError):
+            sent = 0
+        except OSError as error:
+            self.close(error)
+            return True
+        if sent < len(data):
+            self._rest = memoryview(data)[sent:]
+            self._note_full()
+        self._sent_ns = perf_ns()
+        return True
+
+    def when_writable(self, queue: Queue) -> None:
+        """Let `queue` go on once `write` does not refuse any more."""
+        self._queues[queue] = None
+
     def send(
         self, kind: Kind, sequence: int, gid: bytes, payload: bytes = b"", source_ns: int = 0
     ) -> None:
-        """Send a frame that is never dropped; nothing happens when closed."""
-        self.put(Packet(frame.pack(kind, sequence, source_ns, gid, payload)), None)
+        """Send a frame that is never dropped; nothing happens when closed.
+
+        It overtakes the queues that wait for the socket, but no other frame sent by this.
+        """
+        self._send_now_or_later(frame.pack(kind, sequence, source_ns, gid, payload), None)
 
     def send_large(
         self, kind: Kind, sequence: int, gid: bytes, payload: bytes, source_ns: int, limit: int
     ) -> None:
-        """Send a frame that is never dropped, its payload by descriptor from `limit` bytes on."""
-        memory = self._pool.filled(payload) if len(payload) >= limit else None
+        """Send a frame that is never dropped, its payload in memory from `limit` bytes on."""
+        memory = self.pool.filled(payload) if len(payload) >= limit else None
         if memory is None:
             self.send(kind, sequence, gid, payload, source_ns)
             return
         place = Place(memory.number, len(payload)).pack()
         data = frame.pack(kind, sequence, source_ns, gid, place, elsewhere=True)
-        self.put(Packet(data, memory), None)
+        self._send_now_or_later(data, memory)
 
-    def put(self, packet: Packet, stream: Stream | None) -> None:
-        """Send a packet after those before it; a full stream that may drops its oldest.
-
-        The packet's memory is released when the other process has done so.
-        """
-        if self._sock is None:
-            self.give_back(packet)
-            return
-        now_ns = perf_ns()
-        if not self._queue and self._rest is None and now_ns - self._sent_ns > BURST_NS:
-            self._queue.append(packet)
-            self._flush()
-            self._sent_ns = perf_ns()
-            return
-        if stream is not None:
-            if len(stream.waiting) >= stream.depth:
-                self._flush()
-            if not stream.keep_all and len(stream.waiting) >= stream.depth:
-                stream.dropped += 1
-                self.give_back(stream.waiting.popleft())
-                stream.waiting.append(packet)
-                return
-            stream.waiting.append(packet)
-            self._queue.append(stream)
-        else:
-            self._queue.append(packet)
-        if not self._blocked and not self._flush_planned:
-            self._flush_planned = True
-            self._loop.call_soon(self._planned_flush)
+    def _send_now_or_later(self, data: bytes, memory: Memory | None) -> None:
+        if self._urgent or not self.write(data, memory):
+            if self.closed:
+                if memory is not None:
+                    self.pool.release(memory)
+            else:
+                self._urgent.append((data, memory))
 
     def _planned_flush(self) -> None:
         self._flush_planned = False
         self._flush()
 
     def _flush(self) -> None:
-        """Send until the queue is empty or the socket is full."""
-        sock = self._sock
-        if sock is None:
+        """Send what was batched."""
+        batch, sock = self._batch, self._sock
+        if not batch or sock is None:
             return
+        data = batch[0] if len(batch) == 1 else b"".join(batch)
+        batch.clear()
+        self._batched = 0
+        self._send(sock, data)
+        self._sent_ns = perf_ns()
+        if not self._full:
+            self.wake()
+
+    def _send(self, sock: socket.socket, data: bytes | memoryview) -> None:
+        """Send what the socket takes, and keep the rest."""
         try:
-            while self._queue or self._rest is not None:
-                if self._rest is not None:
-                    sent = sock.send(self._rest)
-                    self._rest = self._rest[sent:] if sent < len(self._rest) else None
-                else:
-                    self._send_next(sock)
+            sent = sock.send(data)
         except (BlockingIOError, InterruptedError):
-            if not self._blocked:
-                self._blocked = True
-                self._loop.add_writer(self._fd, self._flush)
-            return
+            sent = 0
         except OSError as error:
             self.close(error)
             return
-        if self._blocked:
-            self._blocked = False
-            self._loop.remove_writer(self._fd)
-        self.wake()
+        if sent < len(data):
+            self._rest = memoryview(data)[sent:]
+            self._note_full()
 
-    def _send_next(self, sock: socket.socket) -> None:
-        """Send the oldest packet, and with it those after it that are small."""
-        packet = self._take()
-        if packet.memory is not None:
-            self._send_with_memory(sock, packet, packet.memory)
-            return
-        batch = [packet.data]
-        size = len(packet.data)
-        while self._queue and size < BATCH_BYTES:
-            packet = self._take()
-            if packet.memory is not None:
-                self._queue.appendleft(packet)
-                break
-            batch.append(packet.data)
-            size += len(packet.data)
-        data = b"".join(batch) if len(batch) > 1 else batch[0]
-        self._rest = memoryview(data)
-        sent = sock.send(data)
-        self._rest = self._rest[sent:] if sent < size else None
+    def _note_full(self) -> None:
+        if not self._full:
+            self._full = True
+            self._loop.add_writer(self._fd, self._on_writable)
 
-    def _send_with_memory(self, sock: socket.socket, packet: Packet, memory: Memory) -> None:
-        self._queue.appendleft(packet)  # its place, should the socket be full
-        sent = socket.send_fds(sock, [packet.data], [memory.fd])
-        self._queue.popleft()
+    def _write_with(self, sock: socket.socket, data: bytes, memory: Memory) -> bool:
+        if memory.number in self._known:
+            if not self.write(data) or self.closed:
+                return False
+        else:
+            self._flush()
+            if self._full or self.closed:
+                return False
+            data = frame.attached(data)
+            try:
+                sent = socket.send_fds(sock, [data], [memory.fd])
+            except (BlockingIOError, InterruptedError):
+                self._note_full()
+                return False
+            except OSError as error:
+                self.close(error)
+                return False
+            self._known.add(memory.number)
+            if sent < len(data):
+                self._rest = memoryview(data)[sent:]
+                self._note_full()
         self._lent[memory.number] = memory
-        if sent < len(packet.data):
-            self._rest = memoryview(packet.data)[sent:]
+        return True
 
-    def _take(self) -> Packet:
-        first = self._queue.popleft()
-        return first.waiting.popleft() if isinstance(first, Stream) else first
+    def _on_memory_closed(self, number: int) -> None:
+        if number in self._known:
+            self._known.discard(number)
+            self.send(Kind.FORGET, number, NOBODY)
 
-    def give_back(self, packet: Packet) -> None:
-        """Release the memory of a packet that is not sent."""
-        if packet.memory is not None:
-            self._pool.release(packet.memory)
+    def _on_writable(self) -> None:
+        """Send what has waited: the rest of a frame, what is urgent, then the queues in turn."""
+        rest, self._rest = self._rest, memoryview(b"")
+        if self._sock is not None and rest:
+            self._send(self._sock, rest)
+            if self._rest:
+                return
+        self._full = False
+        self._loop.remove_writer(self._fd)
+        while self._urgent and self.write(*self._urgent[0]):
+            self._urgent.popleft()
+        queues, self._queues = self._queues, {}
+        for queue in queues:
+            queue.go_on()
+        self._flush()
+        if self.idle:
+            self.wake()
 
     @property
     def idle(self) -> bool:
         """Whether everything was handed to the system."""
-        return self._rest is None and not self._queue
+        return not (self._batch or self._full)
 
     def progress(self) -> asyncio.Future[None]:
-        """Return what is done when the queue gets empty, credit comes, or the socket closes."""
+        """Return what is done when everything was sent, credit comes, or the socket closes."""
         waiter: asyncio.Future[None] = self._loop.create_future()
         if self._sock is None:
             waiter.set_result(None)
@@ -252,10 +285,11 @@ class Connection:
 
     def wake(self) -> None:
         """End each `progress`."""
-        waiters, self._waiters = self._waiters, []
-        for waiter in waiters:
-            if not waiter.done():
-                waiter.set_result(None)
+        if self._waiters:
+            waiters, self._waiters = self._waiters, []
+            for waiter in waiters:
+                if not waiter.done():
+                    waiter.set_result(None)
 
     # In
 
@@ -264,30 +298,43 @@ class Connection:
         if sock is None:
             return
         try:
+            missing = self._parser.missing
             data, ancillary, flags, _ = sock.recvmsg(
-                max(READ_BYTES, min(self._parser.missing, READ_MAX)),
+                READ_BYTES if missing < READ_BYTES else min(missing, READ_MAX),
                 self._ancillary,
-                socket.MSG_CMSG_CLOEXEC,
+                MSG_CMSG_CLOEXEC,
             )
-            if ancillary:
-                self._take_descriptors(ancillary)
-            if flags & socket.MSG_CTRUNC:
-                raise FrameError("a descriptor that could not be taken: too many are open")
-            if not data:
-                self.close()
-                return
-            for one in self._parser.feed(data):
-                payload: Data = one.payload
-                if one.elsewhere:
-                    payload = self._map(one)
-                if one.kind == Kind.RELEASE:
-                    self._on_release(one.sequence)
-                else:
-                    self._handle(self, one, payload)
         except (BlockingIOError, InterruptedError):
             return
-        except OSError as error:  # a FrameError is one as well
+        except OSError as error:
             self.close(error)
+            return
+        if ancillary:
+            self._take_descriptors(ancillary)
+        if flags & MSG_CTRUNC:
+            self.close(FrameError("a descriptor could not be taken: too many files are open"))
+        elif not data:
+            self.close()
+        else:
+            try:
+                self._hand_out(self._parser.feed(data), perf_ns() + SLICE_NS)
+            except FrameError as error:
+                self.close(error)
+
+    def _hand_out(self, frames: list[Frame], until_ns: int) -> None:
+        takers = self.takers
+        for one in frames:
+            payload: Data = self._map(one) if one.elsewhere else one.payload
+            if one.kind == DATA:
+                take = takers.get(one.gid)
+                if take is not None:  # else it was closed meanwhile
+                    take(payload, one, until_ns)
+            elif one.kind == RELEASE:
+                self._on_release(one.sequence)
+            elif one.kind == FORGET:
+                self._mappings.forget(one.sequence)
+            else:
+                self._handle(self, one, payload, until_ns)
 
     def _take_descriptors(self, ancillary: list[tuple[int, int, bytes]]) -> None:
         for level, kind, data in ancillary:
@@ -297,18 +344,23 @@ class Connection:
                 self._descriptors.extend(found)
 
     def _map(self, one: Frame) -> memoryview:
-        while self._returned:  # noted by whatever thread saw the last user go
-            self.send(Kind.RELEASE, self._returned.popleft(), NOBODY)
         number, size = Place.unpack(one.payload)
-        if not self._descriptors:
-            raise FrameError("a place in memory without its descriptor")
-        returned = self._returned
-        return mapped(self._descriptors.popleft(), size, lambda: returned.append(number))
+        fd = None
+        if one.attached:
+            if not self._descriptors:
+                raise FrameError("a place in memory without its descriptor")
+            fd = self._descriptors.popleft()
+        return self._mappings.view(number, size, fd, lambda: self._give_back(number))
+
+    def _give_back(self, number: int) -> None:
+        """Note, on any thread and perhaps within any other call, that nobody looks at a memory."""
+        with suppress(RuntimeError):  # the loop is closed, and the socket as well
+            self._loop.call_soon_threadsafe(self.send, Kind.RELEASE, number, NOBODY)
 
     def _on_release(self, number: int) -> None:
         memory = self._lent.pop(number, None)
         if memory is not None:
-            self._pool.release(memory)
+            self.pool.release(memory)
 
     # The end
 
@@ -324,17 +376,23 @@ class Connection:
                 reason,
             )
         self._loop.remove_reader(self._fd)
-        if self._blocked:
+        if self._full:
             self._loop.remove_writer(self._fd)
         sock.close()
         while self._descriptors:
             os.close(self._descriptors.popleft())
-        while self._queue:
-            self.give_back(self._take())
+        self._batch.clear()
+        self._rest = memoryview(b"")
+        self._queues.clear()
+        for _, memory in self._urgent:
+            if memory is not None:
+                self.pool.release(memory)
+        self._urgent.clear()
         for memory in self._lent.values():
             memory.spoiled = True  # the other process may look at it as long as it likes
-            self._pool.release(memory)
+            self.pool.release(memory)
         self._lent.clear()
-        self._rest = None
+        self.pool.listeners.discard(self._on_memory_closed)
+        self._mappings.close()
         self.wake()
         self._on_closed(self)

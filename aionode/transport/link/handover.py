@@ -5,22 +5,21 @@ A reader hears a publisher of another process over Zenoh first. When the two pro
 1. The reader asks for the publisher (`OPEN`).
 2. The publisher answers with the number of its last message (`OPENED`), and from the next one on
    writes to both ways.
-3. The reader goes on with what comes over Zenoh, and holds what comes over the link. The first
-   message over Zenoh that has come over the link as well shows that everything before it is here:
-   from then on the reader takes the link, and forgets Zenoh. If that message does not come soon,
-   Zenoh has lost it, or never had the two matched: then the reader takes the link as well.
-4. It says so (`SWITCHED`), and the publisher stops writing to Zenoh if nobody else listens there.
+3. The reader goes on with what comes over Zenoh, and holds what comes over the link, until Zenoh
+   has brought that number or a later one: nothing older is under way then. If Zenoh stays silent,
+   it has lost the message, or the two were not matched when it was sent: waiting ends as well.
+4. The reader takes the link and says so (`SWITCHED`), and the publisher stops writing to Zenoh if
+   nobody else listens there. A copy that Zenoh brings ahead of the link is held until then.
 
-A publisher that has sent nothing yet, or nothing that is still under way, needs no step 3.
-When the link ends, the publisher sends over Zenoh what it has no confirmation for, and goes on
-there; the reader takes what comes from the number after its last. The publisher may notice first:
-what Zenoh brings ahead of the link is kept until the link brings it too, or has ended.
+When the link ends, the publisher goes on over Zenoh, and sends what the reader has not confirmed
+to the reader's process alone (its post), where nobody else can hear it twice; then it says that
+this was all (`CAUGHT_UP`). Meanwhile the reader mends the stream: it takes the next number whatever
+brings it, and holds what is further ahead.
 """
 
 from __future__ import annotations
 
 import enum
-from collections import deque
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -44,76 +43,132 @@ class Way(enum.Enum):
     BOTH = "both"
     """From Zenoh still; what the link brings is held."""
     LINK = "link"
+    """From the link; what Zenoh brings ahead of it is held."""
+    MENDING = "mending"
+    """The next number from anywhere; what is further ahead is held."""
 
 
 class Handover:
-    """One reader and one publisher. Each call returns whether it made the reader take the link.
+    """One reader and one publisher.
 
     Args:
-        deliver: Takes the messages, each once and in order.
+        deliver: Takes the messages, each once and in order, with the time until when a callback
+            may run at once.
 
     Attributes:
         way: Where they come from now.
+        last: The number of the last one that was delivered.
+        steady: Whether all that comes over the link from now on can be delivered if it is newer
+            than `last`, which is then to be set: what `from_link` does, without the call.
     """
 
-    __slots__ = ("_ahead", "_base", "_deliver", "_held", "_last", "way")
+    __slots__ = ("_base", "_caught_up", "_deliver", "_held", "last", "steady", "way")
 
-    def __init__(self, deliver: Callable[[Any, Origin], None]) -> None:
+    def __init__(self, deliver: Callable[[Any, Origin, int], None]) -> None:
         self.way = Way.ZENOH
+        self.last = 0
+        self.steady = False
         self._deliver = deliver
-        self._last = 0
         self._base = 0
-        self._held: deque[tuple[Any, Origin]] = deque()
-        self._ahead: deque[tuple[Any, Origin]] = deque(maxlen=MAX_HELD)
-
-    def opened(self, sequence: int) -> bool:
-        """Note that what follows number `sequence` comes over the link."""
-        self._base = sequence
-        self.way = Way.BOTH
-        return self.switch() if sequence <= self._last else False
-
-    def from_zenoh(self, msg: Any, origin: Origin) -> bool:
-        """Take a message that came over Zenoh."""
-        number = origin.sequence
-        if number <= self._last:
-            return False
-        if self.way is Way.LINK:
-            self._ahead.append((msg, origin))
-            return False
-        self._last = number
-        self._deliver(msg, origin)
-        return self.switch() if self.way is Way.BOTH and number > self._base else False
-
-    def from_link(self, msg: Any, origin: Origin) -> bool:
-        """Take a message that came over the link."""
-        if self.way is Way.LINK:
-            if origin.sequence > self._last:
-                self._last = origin.sequence
-                self._deliver(msg, origin)
-                while self._ahead and self._ahead[0][1].sequence <= self._last:
-                    self._ahead.popleft()
-        elif self.way is Way.BOTH:
-            self._held.append((msg, origin))
-            return self.switch() if len(self._held) >= MAX_HELD else False
-        return False
+        self._caught_up = False
+        self._held: dict[int, tuple[Any, Origin]] = {}
 
     @property
     def waits(self) -> bool:
-        """Whether messages are held."""
-        return bool(self._held)
+        """Whether messages are held until others have come."""
+        return bool(self._held) and self.way in (Way.BOTH, Way.MENDING)
 
-    def switch(self) -> bool:
-        """Take the link from now on, and what was held first."""
-        if self.way is not Way.BOTH:
-            return False
-        self.way = Way.LINK
-        while self._held:
-            self.from_link(*self._held.popleft())
-        return True
+    def opened(self, sequence: int) -> None:
+        """Note that what follows number `sequence` comes over the link."""
+        self.finish()
+        self.way = Way.BOTH
+        self._base = sequence
+        self._caught_up = False
+        if self.last >= sequence:
+            self.switch()
+
+    def from_zenoh(self, msg: Any, origin: Origin, until_ns: int = 0) -> None:
+        """Take a message that came over Zenoh."""
+        number = origin.sequence
+        if number <= self.last:
+            return
+        if self.way is Way.LINK or self.way is Way.MENDING:
+            self._hold(msg, origin)
+            self._mend()
+            return
+        self._next(msg, origin, until_ns)
+        if self.way is Way.BOTH and number >= self._base:
+            self.switch()
+
+    def from_link(self, msg: Any, origin: Origin, until_ns: int = 0) -> None:
+        """Take a message that came over the link; before `opened` it is for another reader."""
+        if self.way is Way.BOTH:
+            self._hold(msg, origin)
+            if len(self._held) >= MAX_HELD:
+                self.switch()
+        elif self.way is Way.LINK and origin.sequence > self.last:
+            self._next(msg, origin, until_ns)
+            held = self._held
+            while held and (oldest := next(iter(held))) <= self.last:
+                del held[oldest]
+            self.steady = not held
+
+    def from_post(self, msg: Any, origin: Origin) -> None:
+        """Take a message that a broken link has left unsaid."""
+        if origin.sequence <= self.last:
+            return
+        if self.way is Way.ZENOH:  # it was never opened here: what is older was sent over Zenoh
+            self.way = Way.MENDING
+            self._base = origin.sequence - 1
+        self._hold(msg, origin)
+        self._mend()
+
+    def switch(self) -> None:
+        """Take the link from now on, and what it brought so far first."""
+        if self.way is Way.BOTH:
+            self._release()
+            self.way = Way.LINK
+            self.steady = True
 
     def broken(self) -> None:
-        """Take Zenoh again: the link has ended. What was held comes, or came, over Zenoh too."""
-        self.way = Way.ZENOH
-        self._held.clear()
-        while self._ahead:
-            self.from_zenoh(*self._ahead.popleft())
+        """Take Zenoh again, as soon as nothing is missing: the link has ended."""
+        if self.way is Way.BOTH or self.way is Way.LINK:
+            self.way = Way.MENDING
+            self.steady = False
+            self._mend()
+
+    def caught_up(self) -> None:
+        """Note that all that a broken link left unsaid has been said."""
+        self._caught_up = True
+        self._mend()
+
+    def finish(self) -> None:
+        """Mend no longer: what has not come by now was lost."""
+        if self.way is Way.MENDING:
+            self._release()
+            self.way = Way.ZENOH
+
+    def _next(self, msg: Any, origin: Origin, until_ns: int = 0) -> None:
+        self.last = origin.sequence
+        self._deliver(msg, origin, until_ns)
+
+    def _hold(self, msg: Any, origin: Origin) -> None:
+        self._held[origin.sequence] = (msg, origin)
+        self.steady = False
+        if self.way is Way.LINK and len(self._held) > MAX_HELD:
+            del self._held[next(iter(self._held))]  # a copy: it comes over the link, or by post
+
+    def _mend(self) -> None:
+        if self.way is not Way.MENDING:
+            return
+        while self.last + 1 in self._held:
+            self._next(*self._held.pop(self.last + 1))
+        if self._caught_up and self.last >= self._base:
+            self.finish()
+
+    def _release(self) -> None:
+        """Deliver all that is held."""
+        held, self._held = self._held, {}
+        for number in sorted(held):
+            if number > self.last:
+                self._next(*held[number])

@@ -4,34 +4,62 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Protocol
 
 from aionode.clock import MachineTime
 from aionode.errors import FrameError, TransportError
 from aionode.graph import EndpointKind
 from aionode.transport.link.connection import Connection
 from aionode.transport.link.memory import Pool
+from aionode.transport.link.publishers import can_link
 from aionode.transport.link.services import server_of
-from aionode.transport.link.topics import can_link
-from aionode.wire.frame import GID_SIZE, VERSION, Kind
+from aionode.wire import frame
+from aionode.wire.frame import GID_SIZE, VERSION, Frame, FrameParser, Kind
 
 if TYPE_CHECKING:
     import socket
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable
 
     from aionode.graph import EndpointInfo, Graph
     from aionode.transport.link.meeting import Beacon, Meeting
+    from aionode.transport.link.publishers import LinkWriter
     from aionode.transport.link.services import LinkCall, LinkServer
-    from aionode.transport.link.topics import Inlet, LinkReader, LinkWriter
+    from aionode.transport.link.subscriptions import Inlet, LinkReader
     from aionode.wire.cdr import Data
-    from aionode.wire.frame import Frame
 
-__all__ = ["Hub"]
+__all__ = ["Hub", "Neighbours"]
 
 logger = logging.getLogger("aionode.transport.link")
 
 AGAIN_S: Final = 1.0
 """How long after a link has ended, or no descriptor was left, it is tried again."""
+
+POST_BYTES: Final = 1 << 20
+"""How much is posted at once, or one frame more."""
+
+
+class Neighbours(Protocol):
+    """What the other transport knows of who is there, apart from the graph.
+
+    Attributes:
+        beacon: What it announces of this context; None for nothing.
+        on_beacon: Called with what another context announces, and whether it is there.
+        strangers: Whether somebody may listen whose subscriptions nobody announces.
+        on_strangers: Called when that has changed.
+        on_post: Called with what another context has posted to this one.
+    """
+
+    beacon: str | None
+    on_beacon: Callable[[str, bool], None]
+    strangers: bool
+    on_strangers: Callable[[bool], None]
+    on_post: Callable[[bytes], None]
+
+    def watch(self, on: bool) -> None:
+        """Look out for strangers that nothing tells of, or no longer."""
+
+    def post(self, participant: str, data: bytes) -> None:
+        """Send bytes to one other context, in order."""
 
 
 class Hub:
@@ -40,46 +68,56 @@ class Hub:
     Of two contexts the one with the smaller id dials, as soon as they have matching endpoints;
     both see the same graph, so that both know.
 
+    Args:
+        participant: Id of the context.
+        domain_id: The ROS domain.
+        neighbours: Who else is there.
+
     Attributes:
+        gid: The id of the context as bytes.
         pool: Memory for large payloads.
         writers: Publishers that may use links, by gid.
         readers: Subscriptions, by gid.
         servers: Servers, by gid.
         calls: Requests under way over links, by the client's gid and number.
-        inlets: What listens to a publisher over a connection.
         now_ns: The system time, in nanoseconds since 1970.
     """
 
-    def __init__(self, participant: str, domain_id: int) -> None:
+    def __init__(self, participant: str, domain_id: int, neighbours: Neighbours) -> None:
         self.participant = participant
-        self.domain_id = domain_id
         self.pool = Pool()
         self.writers: dict[bytes, LinkWriter] = {}
         self.readers: dict[bytes, LinkReader] = {}
         self.servers: dict[bytes, LinkServer] = {}
         self.calls: dict[tuple[bytes, int], LinkCall] = {}
-        self.inlets: dict[tuple[Connection, bytes], list[Inlet]] = {}
         self.now_ns = MachineTime().system_ns
+        self._neighbours = neighbours
+        self.gid = int(participant, 16).to_bytes(GID_SIZE, "big")
+        self._hello = frame.pack(Kind.HELLO, VERSION, domain_id, self.gid)
+        self._domain_id = domain_id
         self._graph: Graph | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
         self._meeting: Meeting | None = None
         self._near: set[str] = set()
-        self._connected: set[str] = set()
-        self._strangers: set[str] = set()
         self._links: dict[str, Connection] = {}
+        self._inlets: dict[tuple[Connection, bytes], list[Inlet]] = {}
         self._opening: set[Connection] = set()
         self._barred: set[str] = set()
         self._timers: set[asyncio.TimerHandle] = set()
+        self._link_changes = 0
 
     # The whole
 
-    def open(self, graph: Graph, meeting: Meeting) -> None:
-        """Begin to accept links, and to dial."""
+    def open(self, graph: Graph, meeting: Meeting | None) -> None:
+        """Begin to accept links, and to dial; without a place to meet there are none."""
         self.pool = Pool()
         self._graph = graph
         self._loop = asyncio.get_running_loop()
         self._meeting = meeting
-        self._loop.add_reader(meeting.listener.fileno(), self._accept)
+        if meeting is not None:
+            self._neighbours.on_post = self._on_post
+            self._neighbours.on_strangers = self._on_strangers
+            self._loop.add_reader(meeting.listener.fileno(), self._accept)
 
     def close(self) -> None:
         """End all links."""
@@ -92,8 +130,8 @@ class Hub:
         self._timers.clear()
         for connection in [*self._links.values(), *self._opening]:
             connection.close()
-        for known in (self._near, self._connected, self._strangers, self._barred):
-            known.clear()
+        self._near.clear()
+        self._barred.clear()
         self.pool.close()
         self._graph = None
 
@@ -123,9 +161,14 @@ class Hub:
         return list(self._links)
 
     @property
-    def has_strangers(self) -> bool:
-        """Whether Zenoh is connected to somebody whose subscriptions nobody announces."""
-        return bool(self._strangers)
+    def strangers(self) -> bool:
+        """Whether somebody may listen whose subscriptions nobody announces."""
+        return self._neighbours.strangers
+
+    @property
+    def changes(self) -> int:
+        """Is another number when endpoints or links have come or gone meanwhile."""
+        return self._link_changes + (0 if self._graph is None else self._graph.changes)
 
     def linked(self, participant: str) -> Connection | None:
         """Return the link to a context, if there is one."""
@@ -148,16 +191,9 @@ class Hub:
             self._barred.discard(beacon.participant)
             return
         self._near.add(beacon.participant)
-        self._strangers.discard(beacon.participant)
         self._consider(beacon.participant)
 
-    def on_sessions(self, connected: Iterable[str]) -> None:
-        """Note whom Zenoh is connected to."""
-        self._connected = set(connected) - {self.participant}
-        announced = set(self._near)
-        if self._graph is not None:
-            announced |= {node.participant for node in self._graph.nodes()}
-        self._strangers = self._connected - announced
+    def _on_strangers(self, _: bool) -> None:
         for writer in self.writers.values():
             writer.update()
 
@@ -167,7 +203,6 @@ class Hub:
             return
         participant = endpoint.node.participant
         if participant != self.participant:
-            self._strangers.discard(participant)
             if endpoint.kind is EndpointKind.SUBSCRIPTION:
                 for writer in list(self.writers.values()):
                     if writer.endpoint.name == endpoint.name:
@@ -252,12 +287,11 @@ class Hub:
         assert self._loop is not None  # noqa: S101  # set before anything is dialled or accepted
         connection = Connection(self._loop, sock, self.pool, self._on_frame, self._on_closed)
         self._opening.add(connection)
-        gid = int(self.participant, 16).to_bytes(GID_SIZE, "big")
-        connection.send(Kind.HELLO, VERSION, gid, source_ns=self.domain_id)
+        connection.write(self._hello)
 
     def _on_hello(self, connection: Connection, one: Frame) -> None:
-        participant = f"{int.from_bytes(one.gid, 'big'):x}"
-        if one.sequence != VERSION or one.source_ns != self.domain_id or connection.participant:
+        participant = participant_of(one)
+        if one.sequence != VERSION or one.source_ns != self._domain_id or connection.participant:
             raise FrameError(f"a greeting of version {one.sequence}, domain {one.source_ns}")
         if participant in self._links or participant == self.participant:
             raise FrameError(f"a second link to {participant}")
@@ -265,8 +299,10 @@ class Hub:
         self._opening.discard(connection)
         self._barred.discard(participant)
         self._links[participant] = connection
+        self._link_changes += 1
         logger.debug("linked to %s", participant)
         self._near.add(participant)
+        self._neighbours.watch(True)
         self._meet(connection)
 
     def _on_closed(self, connection: Connection) -> None:
@@ -275,11 +311,13 @@ class Hub:
         if self._links.get(participant) is not connection:
             return
         del self._links[participant]
-        for key in [key for key in self.inlets if key[0] is connection]:
-            for inlet in self.inlets.pop(key):
+        self._link_changes += 1
+        if not self._links:
+            self._neighbours.watch(False)
+        for key in [key for key in self._inlets if key[0] is connection]:
+            for inlet in self._inlets.pop(key):
                 inlet.broken()
-        for writer in list(self.writers.values()):
-            writer.broken(connection)
+        self._post_unsaid(connection)
         for server in self.servers.values():
             server.broken(connection)
         for call in list(self.calls.values()):
@@ -288,47 +326,95 @@ class Hub:
         self._barred.add(participant)
         self.later(AGAIN_S, lambda: self._try_again(participant))
 
+    def _post_unsaid(self, connection: Connection) -> None:
+        """Send what may not have arrived to the process that it was for, and to nobody else."""
+        unsaid = [
+            data for writer in list(self.writers.values()) for data in writer.broken(connection)
+        ]
+        unsaid.append(frame.pack(Kind.CAUGHT_UP, 0, 0, self.gid))
+        letter = [self._hello]
+        size = 0
+        for data in unsaid:
+            letter.append(data)
+            size += len(data)
+            if size >= POST_BYTES or data is unsaid[-1]:
+                self._neighbours.post(connection.participant, b"".join(letter))
+                letter = [self._hello]
+                size = 0
+
+    def _on_post(self, data: bytes) -> None:
+        """Take what another context could not say over its link."""
+        try:
+            frames = FrameParser().feed(data)
+        except FrameError as error:
+            logger.warning("something came by post that is not understood: %s", error)
+            return
+        sender = participant_of(frames[0]) if frames else ""
+        for one in frames[1:]:
+            for reader in list(self.readers.values()):
+                for inlet in list(reader.inlets.values()):
+                    if inlet.participant != sender:
+                        continue
+                    if one.kind == Kind.CAUGHT_UP:
+                        inlet.caught_up()
+                    elif one.kind == Kind.DATA and inlet.publisher == one.gid:
+                        inlet.from_post(one.payload, one)
+
     def _try_again(self, participant: str) -> None:
         self._barred.discard(participant)
         self._consider(participant)
 
+    def listen(self, inlet: Inlet, connection: Connection) -> None:
+        """Deliver what comes from the inlet's publisher to it."""
+        inlets = self._inlets.setdefault((connection, inlet.publisher), [])
+        inlets.append(inlet)
+        connection.takers[inlet.publisher] = taker(inlets)
+
     def forget(self, inlet: Inlet) -> None:
         """Deliver to `inlet` no longer."""
-        if inlet.connection is None:
+        connection = inlet.connection
+        if connection is None:
             return
-        key = (inlet.connection, inlet.publisher)
-        beside = self.inlets.get(key, [])
-        if inlet in beside:
-            beside.remove(inlet)
-            if not beside:
-                del self.inlets[key]
+        inlets = self._inlets.get((connection, inlet.publisher), [])
+        if inlet in inlets:
+            inlets.remove(inlet)
+        if inlets:
+            connection.takers[inlet.publisher] = taker(inlets)
+        else:
+            self._inlets.pop((connection, inlet.publisher), None)
+            connection.takers.pop(inlet.publisher, None)
 
     # Frames
 
-    def _on_frame(self, connection: Connection, one: Frame, payload: Data) -> None:
+    def _on_frame(self, connection: Connection, one: Frame, payload: Data, until_ns: int) -> None:
         kind = one.kind
-        if kind == Kind.DATA:
-            for inlet in self.inlets.get((connection, one.gid), ()):
-                inlet.from_link(payload, one)
+        if kind == Kind.REQUEST and connection.participant:
+            gid, request = server_of(payload)
+            asked = self.servers.get(gid)
+            if asked is None:
+                connection.send(Kind.END, one.sequence, one.gid)
+            else:
+                asked.take(connection, one, request, until_ns)
         elif kind == Kind.HELLO:
             self._on_hello(connection, one)
         elif not connection.participant:
             raise FrameError("something else before the greeting")
+        elif kind in (Kind.REPLY, Kind.FAIL, Kind.END):
+            self._on_answer(connection, one, payload)
         elif kind in (Kind.OPEN, Kind.SWITCHED, Kind.CLOSE, Kind.CREDIT):
             self._on_wish(connection, one)
         elif kind in (Kind.OPENED, Kind.GONE):
             self._on_publisher(connection, one)
-        elif kind in (Kind.REQUEST, Kind.CANCEL):
-            self._on_request(connection, one, payload)
-        else:
-            self._on_answer(connection, one, payload)
+        elif kind == Kind.CANCEL:
+            for server in self.servers.values():
+                server.cancel(one.gid, one.sequence)
 
     def _on_wish(self, connection: Connection, one: Frame) -> None:
         writer = self.writers.get(one.gid)
         if writer is None:  # it has gone, and GONE is on its way
             return
         if one.kind == Kind.OPEN:
-            writer.open(connection, one.payload, one.sequence)
+            writer.open(connection, one.payload, one.sequence, confirms=bool(one.source_ns))
         elif one.kind == Kind.SWITCHED:
             writer.switched(connection, one.payload)
         elif one.kind == Kind.CREDIT:
@@ -337,26 +423,14 @@ class Hub:
             writer.leave(connection, one.payload)
 
     def _on_publisher(self, connection: Connection, one: Frame) -> None:
-        key = (connection, one.gid)
-        if one.kind == Kind.GONE:
-            for inlet in self.inlets.pop(key, []):
+        inlets = self._inlets.get((connection, one.gid), [])
+        for inlet in list(inlets):
+            if one.kind == Kind.GONE:
+                inlet.gone()
+                self.forget(inlet)
                 inlet.reader.inlets.pop(one.gid, None)
-            return
-        for inlet in list(self.inlets.get(key, ())):
-            if inlet.gid == one.payload:
+            elif inlet.gid == one.payload:
                 inlet.opened(one.sequence)
-
-    def _on_request(self, connection: Connection, one: Frame, payload: Data) -> None:
-        if one.kind == Kind.CANCEL:
-            for server in self.servers.values():
-                server.cancel(one.gid, one.sequence)
-            return
-        gid, request = server_of(payload)
-        asked = self.servers.get(gid)
-        if asked is None:
-            connection.send(Kind.END, one.sequence, one.gid)
-        else:
-            asked.take(connection, one, request)
 
     def _on_answer(self, connection: Connection, one: Frame, payload: Data) -> None:
         call = self.calls.get((one.gid, one.sequence))
@@ -368,3 +442,20 @@ class Hub:
             call.failed(payload)
         else:
             call.ended(connection)
+
+
+def participant_of(one: Frame) -> str:
+    """Return who says a greeting."""
+    return f"{int.from_bytes(one.gid, 'big'):x}"
+
+
+def taker(inlets: list[Inlet]) -> Callable[[Data, Frame, int], None]:
+    """Return what gives a publisher's messages to its subscriptions here; mostly there is one."""
+    if len(inlets) == 1:
+        return inlets[0].from_link
+
+    def take(payload: Data, one: Frame, until_ns: int) -> None:
+        for inlet in tuple(inlets):
+            inlet.from_link(payload, one, until_ns)
+
+    return take

@@ -19,10 +19,8 @@ from aionode.wire import cdr
 from aionode.wire.frame import GID_SIZE, Kind
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from aionode.graph import EndpointInfo
-    from aionode.transport.base import Call, ReplyTo
+    from aionode.transport.base import Call, ReplyTo, Serve
     from aionode.transport.link.connection import Connection
     from aionode.transport.link.hub import Hub
     from aionode.wire.cdr import Data
@@ -52,7 +50,7 @@ class LinkServer(Announcement):
         hub: Hub,
         endpoint: EndpointInfo,
         srv_type: Any,
-        serve: Callable[[Request], None],
+        serve: Serve,
         zenoh: Announcement,
     ) -> None:
         self.endpoint = endpoint
@@ -64,8 +62,8 @@ class LinkServer(Announcement):
         self._hub = hub
         hub.servers[endpoint.gid] = self
 
-    def take(self, connection: Connection, one: Frame, payload: Data) -> None:
-        """Take a request."""
+    def take(self, connection: Connection, one: Frame, payload: Data, until_ns: int) -> None:
+        """Take a request; a handler may run at once until `until_ns`."""
         origin = Origin(one.gid, one.sequence, one.source_ns, True)
         try:
             message = cdr.decode(self.srv_type.Request, payload)
@@ -74,7 +72,7 @@ class LinkServer(Announcement):
             return
         request = LinkRequest(message, origin, connection, self)
         self.unanswered[origin.gid, origin.sequence] = request
-        self._serve(request)
+        self._serve(request, until_ns)
 
     def cancel(self, gid: bytes, sequence: int) -> None:
         """Note that a client has given a request up."""
@@ -123,7 +121,7 @@ class LinkRequest(Request):
 
     def reply(self, response: Any) -> None:
         """Send the response, with the client's own number."""
-        payload = cdr.encoder(self._server.srv_type.Response)(response)
+        payload = cdr.encode(response)
         if self._finish():
             self.connection.send_large(
                 Kind.REPLY,
@@ -165,35 +163,50 @@ class LinkRequester(Requester):
         self.over_zenoh: set[ZenohCall] = set()
         self._hub = hub
         self._zenoh = zenoh
+        self._asked_at = -1
+        self._servers = 0
+        self._ways: list[tuple[bytes, Connection]] = []
+        self._reaches_all = False
 
     @property
     def servers(self) -> int:
         """How many servers of other contexts are matched."""
-        return self._zenoh.servers
+        if self._asked_at != self._hub.changes:
+            self._ask()
+        return self._servers
+
+    def _ask(self) -> None:
+        """Find out which servers there are, and whether links reach them all."""
+        hub = self._hub
+        self._asked_at = hub.changes
+        self._servers = self._zenoh.servers
+        servers = [
+            server
+            for server in hub.remote(EndpointKind.SERVER, self.endpoint.name)
+            if self.endpoint.matches(server)
+        ]
+        links = [(server.gid, hub.linked(server.node.participant)) for server in servers]
+        self._ways = [(gid, link) for gid, link in links if link is not None]
+        self._reaches_all = bool(links) and len(self._ways) == len(links) == self._servers
 
     def send(self, request: Any, origin: Origin, reply_to: ReplyTo) -> Call:
         """Send `request` to every server of other contexts."""
-        servers = [
-            server
-            for server in self._hub.remote(EndpointKind.SERVER, self.endpoint.name)
-            if self.endpoint.matches(server)
-        ]
-        ways = [self._hub.linked(server.node.participant) for server in servers]
-        if not ways or None in ways or self.over_zenoh:
+        if self._asked_at != self._hub.changes:
+            self._ask()
+        if not self._reaches_all or self.over_zenoh:
             return ZenohCall(self, request, origin, reply_to, self._zenoh)
-        payload = cdr.encoder(self.srv_type.Request)(request)
+        payload = cdr.encode(request)
         call = LinkCall(self._hub, self, origin.sequence, reply_to)
-        for server, way in zip(servers, ways, strict=True):
-            if way is not None:
-                call.ways.append(way)
-                way.send_large(
-                    Kind.REQUEST,
-                    origin.sequence,
-                    self.endpoint.gid,
-                    server.gid + payload,
-                    origin.source_ns,
-                    SHARED_FROM,
-                )
+        for server, way in self._ways:
+            call.ways.append(way)
+            way.send_large(
+                Kind.REQUEST,
+                origin.sequence,
+                self.endpoint.gid,
+                server + payload,
+                origin.source_ns,
+                SHARED_FROM,
+            )
         return call
 
     def close(self) -> None:

@@ -6,41 +6,27 @@ import asyncio
 import logging
 import os
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, Final, Protocol
+from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import TransportError
 from aionode.transport.base import Transport
 from aionode.transport.link.hub import Hub
 from aionode.transport.link.meeting import Beacon, Meeting, meeting_folder
+from aionode.transport.link.publishers import LinkWriter, can_link
 from aionode.transport.link.services import LinkRequester, LinkServer
-from aionode.transport.link.topics import LinkReader, LinkWriter, Tap, can_link
+from aionode.transport.link.subscriptions import LinkReader, Tap
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-
     from aionode.graph import EndpointInfo, Graph, NodeInfo
-    from aionode.transport.base import Announcement, Reader, Request, Requester, Writer
+    from aionode.transport.base import Announcement, Reader, Requester, Serve, Writer
+    from aionode.transport.link.hub import Neighbours
 
-__all__ = ["LinkTransport", "Neighbours"]
+__all__ = ["LinkTransport"]
 
 logger = logging.getLogger("aionode.transport.link")
 
 FLUSH_S: Final = 0.15
 """How long `close` waits for what is still to be sent."""
-
-
-class Neighbours(Protocol):
-    """What the other transport knows of who is there, apart from the graph.
-
-    Attributes:
-        beacon: What it announces of this context; None for nothing.
-        on_beacon: Called with what another context announces, and whether it is there.
-        on_sessions: Called with the ids of all who are connected, when that has changed.
-    """
-
-    beacon: str | None
-    on_beacon: Callable[[str, bool], None]
-    on_sessions: Callable[[Iterable[str]], None]
 
 
 class LinkTransport(Transport):
@@ -57,7 +43,7 @@ class LinkTransport(Transport):
         self, participant: str, domain_id: int, zenoh: Transport, neighbours: Neighbours
     ) -> None:
         self.zenoh = zenoh
-        self.hub = Hub(participant, domain_id)
+        self.hub = Hub(participant, domain_id, neighbours)
         self._neighbours = neighbours
         self._graph: Graph | None = None
 
@@ -66,19 +52,19 @@ class LinkTransport(Transport):
 
     async def open(self, graph: Graph) -> None:
         """Connect; without a folder to meet in, or descriptors, over the other transport only."""
+        meeting = None
         try:
             meeting = Meeting(meeting_folder(os.environ), self.hub.participant)
         except TransportError as error:
             logger.warning("%s; Zenoh is used between processes of this host as well", error)
         else:
             own = Beacon.own(self.hub.participant)
-            self.hub.open(graph, meeting)
             self._neighbours.beacon = own.text()
             self._neighbours.on_beacon = lambda text, present: self._on_beacon(own, text, present)
-            self._neighbours.on_sessions = self.hub.on_sessions
-            if self._graph is not graph:
-                self._graph = graph
-                graph.on_endpoint(self.hub.on_endpoint)
+        self.hub.open(graph, meeting)
+        if self._graph is not graph:
+            self._graph = graph
+            graph.on_endpoint(self.hub.on_endpoint)
         try:
             await self.zenoh.open(graph)
         except BaseException:
@@ -116,9 +102,7 @@ class LinkTransport(Transport):
         zenoh = self.zenoh.create_reader(endpoint, msg_type, tap)
         return LinkReader(self.hub, msg_type, reader, tap, zenoh)
 
-    def create_server(
-        self, endpoint: EndpointInfo, srv_type: Any, serve: Callable[[Request], None]
-    ) -> Announcement:
+    def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Announcement:
         """Announce a server."""
         zenoh = self.zenoh.create_server(endpoint, srv_type, serve)
         return LinkServer(self.hub, endpoint, srv_type, serve, zenoh)

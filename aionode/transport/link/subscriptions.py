@@ -1,0 +1,292 @@
+"""Subscriptions, each with two ways from every publisher."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode.errors import DecodeError
+from aionode.qos import ReliabilityPolicy
+from aionode.transport.base import Announcement, Origin
+from aionode.transport.link.handover import Handover, Way
+from aionode.transport.link.publishers import can_link, keeps_all
+from aionode.wire import cdr
+from aionode.wire.frame import Kind
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.graph import EndpointInfo
+    from aionode.transport.base import Reader
+    from aionode.transport.link.connection import Connection
+    from aionode.transport.link.hub import Hub
+    from aionode.wire.cdr import Data
+    from aionode.wire.frame import Frame
+
+__all__ = ["Inlet", "LinkReader", "Tap"]
+
+WINDOW: Final = 1_000
+"""How many messages a KEEP_ALL reader lets a publisher send ahead of what it has used."""
+
+CONFIRM_MESSAGES: Final = 64
+CONFIRM_BYTES: Final = 1 << 16
+"""After so many messages, or bytes, a reader says what it has."""
+
+ZENOH_LATE_S: Final = 0.1
+"""How long a reader that holds messages waits for the other way to say anything more."""
+
+MEND_S: Final = 0.5
+"""The same after a link has ended, when the other process has to notice and to send again."""
+
+
+class Tap:
+    """What Zenoh delivers to in place of the subscription: it leaves out what the link brings."""
+
+    def __init__(self, reader: Reader) -> None:
+        self.endpoint = reader.endpoint
+        self.raw = reader.raw
+        self.reject = reader.reject
+        self.wait_for_room = reader.wait_for_room
+        self.when_room = reader.when_room
+        self.inlets: dict[bytes, Inlet] = {}
+        self._deliver = reader.deliver
+        self._has_room = reader.has_room
+
+    def deliver(self, msg: Any, origin: Origin, until_ns: int = 0) -> None:
+        """Take a message that came over Zenoh."""
+        inlet = self.inlets.get(origin.gid)
+        if inlet is None:
+            self._deliver(msg, origin, until_ns)
+        else:
+            inlet.from_zenoh(msg, origin, until_ns)
+
+    def has_room(self) -> bool:
+        """Whether a message can be taken without losing one that should be kept."""
+        return self._has_room() and not any(inlet.full for inlet in self.inlets.values())
+
+
+class Inlet:
+    """One subscription and one publisher of another process."""
+
+    def __init__(self, hub: Hub, reader: LinkReader, publisher: EndpointInfo) -> None:
+        self.reader = reader
+        self.publisher = publisher.gid
+        self.participant = publisher.node.participant
+        self.connection: Connection | None = None
+        # What a KEEP_ALL reader has no room for yet.
+        self.full: deque[tuple[Any, Origin]] = deque()
+        patient = keeps_all(reader.endpoint.qos)
+        self.handover = Handover(self._deliver_patiently if patient else reader.deliver)
+        self._deliver = reader.deliver
+        self._patient = patient
+        self._hub = hub
+        self._decode = reader.decoder()
+        self._window = WINDOW if patient else 0
+        reliable = ReliabilityPolicy.RELIABLE
+        self._confirms = (
+            reader.endpoint.qos.resolved().reliability is reliable
+            and publisher.qos.resolved().reliability is reliable
+        )
+        self._used = 0
+        self._used_bytes = 0
+        self._waiting_for_room = False
+        self._looking = False
+        self._moved = False
+
+    @property
+    def gid(self) -> bytes:
+        """Of the subscription."""
+        return self.reader.gid
+
+    def open(self, connection: Connection) -> None:
+        """Ask for the publisher's messages over `connection`."""
+        self.connection = connection
+        self._used = self._used_bytes = 0
+        connection.send(Kind.OPEN, self._window, self.publisher, self.gid, int(self._confirms))
+
+    def opened(self, sequence: int) -> None:
+        """Note from where on they come."""
+        self.handover.opened(sequence)
+        self._after()
+
+    def from_zenoh(self, msg: Any, origin: Origin, until_ns: int) -> None:
+        """Take a message that came over Zenoh."""
+        handover = self.handover
+        if handover.way is Way.ZENOH:
+            handover.from_zenoh(msg, origin, until_ns)
+            return
+        self._moved = True
+        before = handover.way
+        handover.from_zenoh(msg, origin, until_ns)
+        if handover.way is not before or handover.waits:
+            self._after()
+
+    def from_post(self, payload: Data, one: Frame) -> None:
+        """Take what a broken link left unsaid."""
+        try:
+            msg = self._decode(payload)
+        except DecodeError as error:
+            self.reader.reject(error)
+            return
+        self._moved = True
+        self.handover.from_post(msg, Origin(one.gid, one.sequence, one.source_ns, True))
+        self._after()
+
+    def caught_up(self) -> None:
+        """Note that this was all."""
+        self.handover.caught_up()
+
+    def from_link(self, payload: Data, one: Frame, until_ns: int) -> None:
+        """Take a message that came over the link."""
+        try:
+            msg = self._decode(payload)
+        except DecodeError as error:
+            self.reader.reject(error)
+            return
+        origin = Origin(one.gid, one.sequence, one.source_ns, True)
+        handover = self.handover
+        if handover.steady and not self._patient:  # what `from_link` does, in fewer calls
+            if one.sequence > handover.last:
+                handover.last = one.sequence
+                self._deliver(msg, origin, until_ns)
+        else:
+            before = handover.way
+            handover.from_link(msg, origin, until_ns)
+            if handover.way is not before or handover.waits:
+                self._after()
+        if self._confirms:
+            self._used += 1
+            self._used_bytes += len(payload)
+            if self._used >= CONFIRM_MESSAGES or self._used_bytes >= CONFIRM_BYTES or one.elsewhere:
+                self._confirm()
+
+    def _after(self) -> None:
+        """Say that the way has changed, or look again soon for what is waited for."""
+        handover = self.handover
+        if handover.way is Way.LINK and self.connection is not None:
+            self.connection.send(Kind.SWITCHED, 0, self.publisher, self.gid)
+            self._confirm()
+        elif handover.waits and not self._looking:
+            self._look_later()
+
+    def _look_later(self) -> None:
+        self._looking = True
+        self._moved = False
+        mending = self.handover.way is Way.MENDING
+        self._hub.later(MEND_S if mending else ZENOH_LATE_S, self._look_again)
+
+    def _look_again(self) -> None:
+        """Wait no longer if nothing has come all the while."""
+        self._looking = False
+        handover = self.handover
+        if not handover.waits:
+            return
+        if self._moved:
+            self._look_later()
+        elif handover.way is Way.MENDING:
+            handover.finish()
+        else:
+            handover.switch()
+            self._after()
+
+    def _deliver_patiently(self, msg: Any, origin: Origin, until_ns: int) -> None:
+        """Give a KEEP_ALL reader a message as soon as it has room for it."""
+        if self.full or not self.reader.has_room():
+            self.full.append((msg, origin))
+            self._wait_for_room()
+        else:
+            self._deliver(msg, origin, until_ns)
+
+    def _wait_for_room(self) -> None:
+        if not self._waiting_for_room:
+            self._waiting_for_room = True
+            self.reader.when_room(self._look_for_room)
+
+    def _look_for_room(self) -> None:
+        self._waiting_for_room = False
+        full = self.full
+        while full and self.reader.has_room():
+            self._deliver(*full.popleft(), 0)
+        if full:
+            self._wait_for_room()
+        else:
+            self._confirm()
+
+    def _confirm(self) -> None:
+        """Say what is here, unless a KEEP_ALL reader has no room for it, or it is still held."""
+        if self._used and self.connection is not None and not self.full:
+            if self.handover.way is not Way.LINK:
+                return
+            used, self._used, self._used_bytes = self._used, 0, 0
+            last = self.handover.last
+            self.connection.send(Kind.CREDIT, used, self.publisher, self.gid, last)
+
+    def gone(self) -> None:
+        """Wait for nothing more: the publisher has said its last."""
+        self.handover.switch()
+        self.handover.finish()
+
+    def broken(self) -> None:
+        """Take Zenoh again."""
+        self.connection = None
+        self.handover.broken()
+        self._after()
+
+
+class LinkReader(Announcement):
+    """A subscription with its inlets, one for each publisher that it hears over a link.
+
+    Args:
+        hub: The links of this context.
+        msg_type: Its messages.
+        reader: Where they go.
+        tap: What Zenoh delivers to.
+        zenoh: Its other way.
+    """
+
+    def __init__(
+        self, hub: Hub, msg_type: type[Any], reader: Reader, tap: Tap, zenoh: Announcement
+    ) -> None:
+        self.endpoint = reader.endpoint
+        self.deliver = reader.deliver
+        self.reject = reader.reject
+        self.has_room = reader.has_room
+        self.when_room = reader.when_room
+        self._raw = reader.raw
+        self._msg_type = msg_type
+        self._hub = hub
+        self._tap = tap
+        self._zenoh = zenoh
+        # Others know it by its token, which may say more than the graph does (`CPU_BACKEND`).
+        self.gid: bytes = getattr(zenoh, "gid", self.endpoint.gid)
+        hub.readers[self.gid] = self
+
+    def decoder(self) -> Callable[[Data], Any]:
+        """Return what makes its messages of bytes."""
+        return bytes if self._raw else cdr.decoder(self._msg_type)
+
+    @property
+    def inlets(self) -> dict[bytes, Inlet]:
+        """By the publisher's gid."""
+        return self._tap.inlets
+
+    def meet(self, publisher: EndpointInfo, connection: Connection) -> None:
+        """Ask for the messages of `publisher`, if that was not done yet."""
+        if not can_link(publisher) or not self.endpoint.matches(publisher):
+            return
+        inlet = self.inlets.get(publisher.gid)
+        if inlet is None:
+            inlet = self.inlets[publisher.gid] = Inlet(self._hub, self, publisher)
+        if inlet.connection is None:
+            self._hub.listen(inlet, connection)
+            inlet.open(connection)
+
+    def close(self) -> None:
+        """Withdraw the subscription."""
+        self._hub.readers.pop(self.gid, None)
+        self._zenoh.close()
+        for inlet in self.inlets.values():
+            if inlet.connection is not None:
+                inlet.connection.send(Kind.CLOSE, 0, inlet.publisher, inlet.gid)
+            self._hub.forget(inlet)
+        self.inlets.clear()
