@@ -25,7 +25,8 @@ from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.sensor_msgs.msg import Image
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
-from aionode.transport.link import hub, meeting, memory
+from aionode.settle import one_turn
+from aionode.transport.link import hub, meeting
 from aionode.transport.link.connection import Connection
 from aionode.transport.link.publishers import LinkWriter
 from aionode.transport.link.transport import LinkTransport
@@ -176,7 +177,7 @@ async def test_what_was_in_a_broken_link_reaches_its_reader_and_nobody_twice() -
             subscriber = session.declare_subscriber(NUMBERS, samples)
             while not samples.items:
                 numbers.publish()
-                await asyncio.sleep(0)
+                await one_turn()
             numbers.publish(100)
             stalled.close()
             numbers.publish(100)
@@ -185,7 +186,7 @@ async def test_what_was_in_a_broken_link_reaches_its_reader_and_nobody_twice() -
             ] == list(range(before, numbers.next))
             last = cdr.encode(Int32(data=numbers.next - 1))
             while samples.items[-1].payload.to_bytes() != last:
-                await asyncio.sleep(0)
+                await one_turn()
             subscriber.undeclare()
         heard = [cdr.decode(Int32, sample.payload.to_bytes()).data for sample in samples.items]
         assert heard == list(range(heard[0], numbers.next))
@@ -383,7 +384,7 @@ async def test_an_action_takes_the_link() -> None:
         async def execute(goal: Any) -> Any:
             for number in range(20):
                 goal.publish_feedback(Fibonacci.Feedback(sequence=[number]))
-                await asyncio.sleep(0)
+                await one_turn()
             goal.succeed()
             return Fibonacci.Result(sequence=[1, 2])
 
@@ -391,7 +392,7 @@ async def test_an_action_takes_the_link() -> None:
         client: Any = nodes.a.create_action_client(Fibonacci, "count")
         await client.wait_for_server()
         while not hub_of(nodes.a).links:
-            await asyncio.sleep(0)
+            await one_turn()
         for _ in range(3):
             goal = await client.send_goal(Fibonacci.Goal(order=20))
             got = [list(feedback.sequence) async for feedback in goal]
@@ -465,7 +466,7 @@ async def test_images_come_in_shared_memory_that_is_used_again() -> None:
         kept.clear()
         gc.collect()
         while lent:
-            await asyncio.sleep(0)  # the receiver says so in its next turns
+            await one_turn()  # the receiver says so in its next turns
         known = set(link_of(nodes.a)._known)
         publisher.publish(image(7))
         last = await subscription.receive()
@@ -504,25 +505,18 @@ async def test_a_receiver_without_descriptors_goes_on_over_zenoh_and_loses_nothi
         free = os.open("/dev/null", os.O_RDONLY)
         os.close(free)
         resource.setrlimit(resource.RLIMIT_NOFILE, (free, limits[1]))
+        link = link_of(nodes.a)
         try:
             for number in range(1, 4):
                 publisher.publish(image(number))
-            for number in range(1, 4):
-                assert bytes((await subscription.receive()).data[:1]) == bytes([number])
+            while not link.closed:
+                await one_turn()
         finally:
+            # Zenoh itself loses large messages meanwhile: it has shared memory of its own.
             resource.setrlimit(resource.RLIMIT_NOFILE, limits)
+        for number in range(1, 4):
+            assert bytes((await subscription.receive()).data[:1]) == bytes([number])
     assert "too many files are open" in caplog.text
-
-
-@pytest.mark.parametrize("size", [0, 5000])
-def test_memory_that_could_change_or_shrink_is_refused(size: int) -> None:
-    """Reading it would end the process (SIGBUS)."""
-    fd = os.memfd_create("test", os.MFD_ALLOW_SEALING)
-    os.ftruncate(fd, 5000)
-    with pytest.raises(ConnectionError):
-        memory.mapped(fd, size, lambda: None)
-    with pytest.raises(OSError, match="Bad file"):
-        os.fstat(fd)
 
 
 # What stays

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from aionode.wire.cdr import Data
 
-__all__ = ["SHARED_FROM", "Mappings", "Memory", "Pool", "mapped"]
+__all__ = ["SHARED_FROM", "Mappings", "Memory", "Pool"]
 
 SHARED_FROM: Final = 1 << 17
 """From this size on, in bytes, a payload is shared: below it costs less to send it.
@@ -263,19 +263,3 @@ def sealed_map(fd: int, size: int) -> mmap.mmap:
     if found is None:
         raise FrameError(f"memory that is not sealed, or smaller than {size} bytes")
     return found
-
-
-def mapped(fd: int, size: int, done: Callable[[], object]) -> memoryview:
-    """Return the first `size` bytes behind `fd`, read-only; `fd` is closed.
-
-    Args:
-        fd: A descriptor from another process.
-        size: How much of it to map.
-        done: Called, on any thread, when nobody looks at the memory any more.
-
-    Raises:
-        FrameError: it is no sealed memory of this size.
-    """
-    memory = sealed_map(fd, size)
-    weakref.finalize(memory, done).atexit = False
-    return memoryview(memory)[:size]
