@@ -263,17 +263,23 @@ class Client(Entity, Generic[RequestT, ResponseT]):
             EntityDestroyedError: the client was destroyed before the call.
             CancelledError: the client was destroyed during the call.
         """
-        self.refuse_if_destroyed("called")
+        if self.destroyed:
+            self.refuse_if_destroyed("called")
         if type(request) is not self.srv_type.Request:
             self._check(request)
         self.stats.calls += 1
         began_ns = perf_ns()
+        limit = None if timeout_sec is None else asyncio.timeout(timeout_sec)
+        response: ResponseT
         try:
-            async with asyncio.timeout(timeout_sec) as limit:
-                response: ResponseT = await self._exchange(request)
+            if limit is None:
+                response = await self._exchange(request)
+            else:
+                async with limit:
+                    response = await self._exchange(request)
         except TimeoutError as error:
             self.stats.errors += 1
-            if limit.expired() and timeout_sec is not None:
+            if limit is not None and timeout_sec is not None and limit.expired():
                 raise RequestTimeoutError(self.srv_name, timeout_sec, self._servers()) from error
             raise
         except asyncio.CancelledError as error:
@@ -306,20 +312,26 @@ class Client(Entity, Generic[RequestT, ResponseT]):
 
     async def _exchange(self, request: Any) -> Any:
         """Send through every transport and return the first answer."""
-        servers = self._servers()
+        servers = 0
+        reached = []
+        for requester in self._requesters:
+            matched = requester.servers
+            if matched:
+                servers += matched
+                reached.append(requester)
         if servers == 0:
             self._check(request)
             self._warn_of_silence()
         answer: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
-        origin = Origin(self._channel.endpoint.gid, self.stats.calls, self._now_ns())
-        exchange = _Exchange(self.srv_name, answer, servers)
+        endpoint = self._channel.endpoint
+        origin = Origin(endpoint.gid, self.stats.calls, self._now_ns())
+        exchange = _Exchange(endpoint.name, answer, servers)
         calls: list[Call] = []
         self._answers.add(answer)
         try:
-            for requester in self._requesters:
-                if requester.servers:
-                    exchange.open += 1
-                    calls.append(requester.send(request, origin, exchange))
+            for requester in reached:
+                exchange.open += 1
+                calls.append(requester.send(request, origin, exchange))
             return await answer
         finally:
             self._answers.discard(answer)

@@ -332,7 +332,9 @@ class LocalRequester(Requester):
         self._snapshot = snapshotter(srv_type.Request)
 
     def _matched(self) -> list[LocalServer]:
-        servers = self._servers.get(self._endpoint.name, ())
+        servers = self._servers.get(self._endpoint.name)
+        if servers is None:
+            return []
         return [server for server in servers if self._endpoint.matches(server.endpoint)]
 
     @property

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, Protocol
 
 from aionode.clock import perf_ns
 from aionode.errors import FrameError
-from aionode.transport.link.memory import Mappings
+from aionode.transport.link.memory import SHARED_FROM, Mappings
 from aionode.transport.wakeup import SLICE_NS
 from aionode.wire import frame
 from aionode.wire.frame import FrameParser, Kind, Place
@@ -167,25 +167,27 @@ class Connection:
         """
         self._send_now_or_later(frame.pack(kind, sequence, source_ns, gid, payload), None)
 
-    def send_large(
-        self, kind: Kind, sequence: int, gid: bytes, payload: bytes, source_ns: int, limit: int
+    def send_data(
+        self, kind: int, sequence: int, source_ns: int, gid: bytes, payload: bytes
     ) -> None:
-        """Send a frame that is never dropped, its payload in memory from `limit` bytes on."""
-        memory = self.pool.filled(payload) if len(payload) >= limit else None
+        """Do `send` with a payload that may be large: then it goes in memory."""
+        memory = self.pool.filled(payload) if len(payload) >= SHARED_FROM else None
         if memory is None:
-            self.send(kind, sequence, gid, payload, source_ns)
-            return
-        place = Place(memory.number, len(payload)).pack()
-        data = frame.pack(kind, sequence, source_ns, gid, place, elsewhere=True)
-        self._send_now_or_later(data, memory)
+            data = frame.pack(kind, sequence, source_ns, gid, payload)
+            if self._urgent or not self.write(data):
+                self._send_now_or_later(data, None)
+        else:
+            place = Place(memory.number, len(payload)).pack()
+            data = frame.pack(kind, sequence, source_ns, gid, place, elsewhere=True)
+            self._send_now_or_later(data, memory)
 
     def _send_now_or_later(self, data: bytes, memory: Memory | None) -> None:
-        if self._urgent or not self.write(data, memory):
-            if self.closed:
-                if memory is not None:
-                    self.pool.release(memory)
-            else:
-                self._urgent.append((data, memory))
+        if not self._urgent and self.write(data, memory):
+            return
+        if not self.closed:
+            self._urgent.append((data, memory))
+        elif memory is not None:
+            self.pool.release(memory)
 
     def _planned_flush(self) -> None:
         self._flush_planned = False

@@ -12,7 +12,7 @@ from aionode.graph import EndpointKind
 from aionode.transport.link.connection import Connection
 from aionode.transport.link.memory import Pool
 from aionode.transport.link.publishers import can_link
-from aionode.transport.link.services import server_of
+from aionode.transport.link.services import REPLY, REQUEST, server_of
 from aionode.wire import frame
 from aionode.wire.frame import GID_SIZE, VERSION, Frame, FrameParser, Kind
 
@@ -33,6 +33,8 @@ logger = logging.getLogger("aionode.transport.link")
 
 AGAIN_S: Final = 1.0
 """How long after a link has ended, or no descriptor was left, it is tried again."""
+
+WISHES: Final = frozenset(map(int, (Kind.OPEN, Kind.SWITCHED, Kind.CLOSE, Kind.CREDIT)))
 
 POST_BYTES: Final = 1 << 20
 """How much is posted at once, or one frame more."""
@@ -290,8 +292,10 @@ class Hub:
         connection.write(self._hello)
 
     def _on_hello(self, connection: Connection, one: Frame) -> None:
+        if one.kind != Kind.HELLO:
+            raise FrameError("something else before the greeting")
         participant = participant_of(one)
-        if one.sequence != VERSION or one.source_ns != self._domain_id or connection.participant:
+        if one.sequence != VERSION or one.source_ns != self._domain_id:
             raise FrameError(f"a greeting of version {one.sequence}, domain {one.source_ns}")
         if participant in self._links or participant == self.participant:
             raise FrameError(f"a second link to {participant}")
@@ -388,26 +392,25 @@ class Hub:
 
     def _on_frame(self, connection: Connection, one: Frame, payload: Data, until_ns: int) -> None:
         kind = one.kind
-        if kind == Kind.REQUEST and connection.participant:
+        if not connection.participant:
+            self._on_hello(connection, one)
+        elif kind == REPLY:
+            call = self.calls.get((one.gid, one.sequence))
+            if call is not None:  # else it was cancelled meanwhile
+                call.replied(one, payload)
+        elif kind == REQUEST:
             gid, request = server_of(payload)
             asked = self.servers.get(gid)
             if asked is None:
                 connection.send(Kind.END, one.sequence, one.gid)
             else:
                 asked.take(connection, one, request, until_ns)
-        elif kind == Kind.HELLO:
-            self._on_hello(connection, one)
-        elif not connection.participant:
-            raise FrameError("something else before the greeting")
-        elif kind in (Kind.REPLY, Kind.FAIL, Kind.END):
-            self._on_answer(connection, one, payload)
-        elif kind in (Kind.OPEN, Kind.SWITCHED, Kind.CLOSE, Kind.CREDIT):
+        elif kind in WISHES:
             self._on_wish(connection, one)
         elif kind in (Kind.OPENED, Kind.GONE):
             self._on_publisher(connection, one)
-        elif kind == Kind.CANCEL:
-            for server in self.servers.values():
-                server.cancel(one.gid, one.sequence)
+        else:
+            self._on_call_end(connection, one, payload)
 
     def _on_wish(self, connection: Connection, one: Frame) -> None:
         writer = self.writers.get(one.gid)
@@ -432,13 +435,17 @@ class Hub:
             elif inlet.gid == one.payload:
                 inlet.opened(one.sequence)
 
-    def _on_answer(self, connection: Connection, one: Frame, payload: Data) -> None:
+    def _on_call_end(self, connection: Connection, one: Frame, payload: Data) -> None:
+        if one.kind == Kind.CANCEL:
+            for server in self.servers.values():
+                server.cancel(one.gid, one.sequence)
+            return
+        if one.kind not in (Kind.FAIL, Kind.END):
+            raise FrameError(f"a frame of kind {one.kind} at this place")
         call = self.calls.get((one.gid, one.sequence))
         if call is None:  # it was cancelled meanwhile
             return
-        if one.kind == Kind.REPLY:
-            call.replied(one, payload)
-        elif one.kind == Kind.FAIL:
+        if one.kind == Kind.FAIL:
             call.failed(payload)
         else:
             call.ended(connection)

@@ -14,7 +14,6 @@ import msgspec
 from aionode.errors import DecodeError, FrameError, ServiceError
 from aionode.graph import EndpointKind
 from aionode.transport.base import Announcement, Origin, Request, Requester
-from aionode.transport.link.memory import SHARED_FROM
 from aionode.wire import cdr
 from aionode.wire.frame import GID_SIZE, Kind
 
@@ -26,7 +25,10 @@ if TYPE_CHECKING:
     from aionode.wire.cdr import Data
     from aionode.wire.frame import Frame
 
-__all__ = ["LinkCall", "LinkRequester", "LinkServer", "server_of"]
+__all__ = ["REPLY", "REQUEST", "LinkCall", "LinkRequester", "LinkServer", "server_of"]
+
+REQUEST: Final = int(Kind.REQUEST)
+REPLY: Final = int(Kind.REPLY)
 
 ERROR: Final = msgspec.json.Decoder(tuple[str, str])
 
@@ -123,14 +125,9 @@ class LinkRequest(Request):
         """Send the response, with the client's own number."""
         payload = cdr.encode(response)
         if self._finish():
-            self.connection.send_large(
-                Kind.REPLY,
-                self.origin.sequence,
-                self.origin.gid,
-                payload,
-                self._server.now_ns(),
-                SHARED_FROM,
-            )
+            origin = self.origin
+            now_ns = self._server.now_ns()
+            self.connection.send_data(REPLY, origin.sequence, now_ns, origin.gid, payload)
 
     def fail(self, error_type: str, error_text: str) -> None:
         """Send an error."""
@@ -199,14 +196,7 @@ class LinkRequester(Requester):
         call = LinkCall(self._hub, self, origin.sequence, reply_to)
         for server, way in self._ways:
             call.ways.append(way)
-            way.send_large(
-                Kind.REQUEST,
-                origin.sequence,
-                self.endpoint.gid,
-                server + payload,
-                origin.source_ns,
-                SHARED_FROM,
-            )
+            way.send_data(REQUEST, origin.sequence, origin.source_ns, origin.gid, server + payload)
         return call
 
     def close(self) -> None:
