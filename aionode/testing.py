@@ -156,6 +156,15 @@ class _FaultyWriter(Writer):
         """Wait for the inner writer."""
         await self._inner.drain()
 
+    @property
+    def dropped(self) -> int:
+        """What the inner writer has dropped; what was lost by fate, nobody counts."""
+        return self._inner.dropped
+
+    def way_of(self, reader: EndpointInfo) -> str | None:
+        """Return the way of the inner writer."""
+        return self._inner.way_of(reader)
+
     def write(self, msg: Any, origin: Origin) -> None:
         """Let fate decide about `msg`."""
         faults = self._faults

@@ -45,6 +45,17 @@ class Channel:
             wait.cancel(f"{self.endpoint.kind.value} of {self.endpoint.name}: destroyed")
         self._graph.remove_endpoint(self.endpoint)
 
+    def matched(self) -> list[EndpointInfo]:
+        """Return the endpoints of the opposite kind that this one reaches; none when closed."""
+        if self._closed:
+            return []
+        opposite = self.endpoint.kind.opposite
+        return [
+            other
+            for other in self._graph.endpoints(opposite, name=self.endpoint.name)
+            if self.endpoint.matches(other)
+        ]
+
     def count_matched(self, kind: EndpointKind) -> int:
         """Return how many endpoints of the opposite `kind` this one reaches."""
         return sum(

@@ -6,7 +6,18 @@ machine spent, not what the program believes the time to be.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from aionode.graph import EndpointInfo
+    from aionode.transport.base import Writer
+
 __all__ = ["CallbackStats", "ClientStats", "Distribution", "PublisherStats"]
+
+ID_DIGITS: Final = 8
+"""So much of an id tells the endpoints of a system apart."""
 
 # A bucket is one sixteenth of a power of two, so a percentile is off by 3 % at most. The offset
 # keeps the smallest values in buckets of their own.
@@ -133,19 +144,49 @@ class CallbackStats:
 
 
 class PublisherStats:
-    """What one publisher sent.
+    """What one publisher sent, and which way.
 
     Attributes:
         published: Messages that `publish` took.
     """
 
-    __slots__ = ("published",)
+    __slots__ = ("_matched", "_writers", "published")
 
-    def __init__(self) -> None:
+    def __init__(
+        self, writers: Sequence[Writer], matched: Callable[[], list[EndpointInfo]]
+    ) -> None:
         self.published = 0
+        self._writers = writers
+        self._matched = matched
 
     def __repr__(self) -> str:
-        return f"PublisherStats(published={self.published})"
+        return (
+            f"PublisherStats(published={self.published}, dropped={self.dropped}, ways={self.ways})"
+        )
+
+    @property
+    def dropped(self) -> int:
+        """Messages dropped on their way to other processes, because a link or Zenoh was slow.
+
+        What a full subscription drops, that subscription counts.
+        """
+        return sum(writer.dropped for writer in self._writers)
+
+    @property
+    def ways(self) -> dict[str, str]:
+        """Which way each matched subscription gets its messages now.
+
+        The key is the full name of its node with the beginning of its id, as in
+        ``/listener 6f00a1c2``. The value is ``local`` within the context, ``link`` or ``zenoh`` to
+        another one, and ``link and zenoh`` as long as somebody keeps the publisher from leaving
+        Zenoh: a subscription without a link, or one that has just got it.
+        """
+        return {
+            f"{reader.node.fully_qualified_name} {reader.gid.hex()[:ID_DIGITS]}": way
+            for reader in self._matched()
+            for writer in self._writers
+            if (way := writer.way_of(reader)) is not None
+        }
 
 
 class ClientStats:

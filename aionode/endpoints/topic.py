@@ -75,7 +75,7 @@ class Publisher(Entity, Generic[MsgT]):
     Attributes:
         msg_type: The class of its messages.
         qos_profile: Its profile.
-        stats: What it sent.
+        stats: What it sent, and which way.
     """
 
     def __init__(
@@ -88,7 +88,7 @@ class Publisher(Entity, Generic[MsgT]):
         super().__init__(f"publisher of {channel.endpoint.name}")
         self.msg_type = msg_type
         self.qos_profile: QoSProfile = channel.endpoint.qos
-        self.stats = PublisherStats()
+        self.stats = PublisherStats(writers, channel.matched)
         self._channel = channel
         self._writers = tuple(writers)
         self._gid = channel.endpoint.gid

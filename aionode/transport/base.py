@@ -124,6 +124,17 @@ class Writer(Announcement):
     async def drain(self) -> None:
         """Wait until `has_room`, and what was written has been handed on."""
 
+    # For whoever looks at it; not asked for each message.
+
+    @property
+    def dropped(self) -> int:
+        """How many messages were dropped on their way because it was slow."""
+        return 0
+
+    def way_of(self, reader: EndpointInfo) -> str | None:  # noqa: ARG002  # knows of none
+        """Return in a word how messages reach a matched reader, or None if not through this."""
+        return None
+
 
 # Services
 

@@ -214,6 +214,10 @@ class LocalWriter(Writer):
                 if reader.bounded:
                     await reader.reader.wait_for_room()
 
+    def way_of(self, reader: EndpointInfo) -> str | None:
+        """Return ``local`` for the subscriptions of this context."""
+        return "local" if any(one.endpoint == reader for one in self._matched) else None
+
     def close(self) -> None:
         """Leave every subscription."""
         self._topic.leave(self)

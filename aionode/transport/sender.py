@@ -83,9 +83,13 @@ class Outlet:
         wakeup: Wakes the loop when everything was sent.
         limit: How many sends wait at most.
         keep_all: Whether a full queue has no room, or else drops its oldest.
+
+    Attributes:
+        dropped: How many sends were dropped.
     """
 
     def __init__(self, sender: Sender, wakeup: Wakeup, limit: int, *, keep_all: bool) -> None:
+        self.dropped = 0
         self._sender = sender
         self._limit = limit
         self._keep_all = keep_all
@@ -107,6 +111,7 @@ class Outlet:
             except IndexError:  # the thread was faster
                 pass
             else:
+                self.dropped += 1
                 self._waiting.append(send)  # and takes the place, and the job, of the oldest
                 return
         self._put += 1

@@ -500,6 +500,36 @@ async def test_a_delayed_message_is_what_was_published(manual_clock: Any) -> Non
     assert (await reader.receive()).data == 1
 
 
+async def test_the_statistics_name_each_subscription_and_its_way(node: Node) -> None:
+    """Two of one node are told apart; what does not match gets nothing, and is not named."""
+    publisher = node.create_publisher(String, "words", 10)
+    readers = [node.create_subscription(String, "words") for _ in range(2)]
+    node.create_subscription(Int8, "words")
+
+    assert publisher.stats.ways == {
+        f"/node {reader.endpoint.gid.hex()[:8]}": "local" for reader in readers
+    }
+    readers[0].destroy()
+    (name,) = publisher.stats.ways
+    fill(publisher, "a")
+    assert repr(publisher.stats) == (
+        f"PublisherStats(published=1, dropped=0, ways={{'{name}': 'local'}})"
+    )
+    publisher.destroy()
+    assert publisher.stats.ways == {}
+
+
+async def test_a_faulty_transport_tells_the_way_of_the_one_within() -> None:
+    """What is lost by fate is not counted as dropped: who sends does not know."""
+    context = Context(transport=FaultyTransport(LocalTransport(), drop=1.0))
+    async with Node("node", context=context) as node:
+        node.create_subscription(String, "words")
+        publisher = node.create_publisher(String, "words", 10)
+        fill(publisher, "a")
+        assert list(publisher.stats.ways.values()) == ["local"]
+        assert publisher.stats.dropped == 0
+
+
 @pytest.mark.parametrize(
     ("faults", "expected"), [({"duplicate": 1.0}, [0, 0, 1, 1]), ({"drop": 1.0}, [])]
 )

@@ -74,6 +74,7 @@ async def test_a_full_queue_that_keeps_the_last_drops_its_oldest(sender: Sender)
     await outlet.drain()
 
     assert sent == [8, 9]
+    assert outlet.dropped == 8
     await sender.flush()
 
 

@@ -276,8 +276,15 @@ class LinkWriter(Writer):
 
     @property
     def dropped(self) -> int:
-        """How many messages were dropped because a link was slow."""
-        return self._dropped + sum(route.dropped for route in self._routes.values())
+        """How many messages were dropped because a link was slow, or Zenoh."""
+        linked = sum(route.dropped for route in self._routes.values())
+        return self._dropped + linked + self._zenoh.dropped
+
+    def way_of(self, reader: EndpointInfo) -> str | None:
+        """Return ``link``, ``zenoh``, or both while somebody else still needs Zenoh."""
+        if not any(reader.gid in route.readers for route in self._routes.values()):
+            return self._zenoh.way_of(reader)
+        return "link and zenoh" if self.update() else "link"
 
     @property
     def linked(self) -> int:

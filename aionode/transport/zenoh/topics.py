@@ -205,6 +205,15 @@ class ZenohWriter(Entity, Writer):
         """Wait until everything was handed to Zenoh."""
         await self._outlet.drain()
 
+    @property
+    def dropped(self) -> int:
+        """How many large messages were dropped before Zenoh took them."""
+        return self._outlet.dropped
+
+    def way_of(self, reader: EndpointInfo) -> str | None:
+        """Return ``zenoh`` for the subscriptions of others."""
+        return "zenoh" if reader.node.participant != self.link.participant else None
+
     def close(self) -> None:
         """Withdraw the publisher for good."""
         updates = self.link.on_reader.get(self.endpoint.name, [])
