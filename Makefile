@@ -7,7 +7,6 @@
 #   make docs    the documentation as pages, in site/
 #   make fuzz    the property tests with many more examples, and damaged messages by the million
 #   make soak    everything at once, for SOAK_SECONDS seconds: nothing may grow
-#   make experimental  the tests of what is off by default: the link between processes
 #   make quotes  brings the code quoted in README.md and docs/ up to date
 #   make clean   removes what was made, .venv included
 
@@ -19,10 +18,10 @@ BIN := .venv/bin
 SOAK_SECONDS ?= 60
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check bench docs fuzz soak experimental quotes clean
+.PHONY: help demo test check bench docs fuzz soak quotes clean
 
 help:
-	@sed -n '3,12s/^# *//p' Makefile
+	@sed -n '3,11s/^# *//p' Makefile
 
 demo: .venv/installed
 	$(BIN)/python -m aionode.examples.pubsub
@@ -52,9 +51,6 @@ fuzz: .venv/installed-dev
 
 soak: .venv/installed-dev
 	$(BIN)/python benchmarks/soak.py --seconds $(SOAK_SECONDS)
-
-experimental: .venv/installed-dev
-	$(BIN)/python -m pytest -q -m experimental
 
 quotes: .venv/installed-dev
 	$(BIN)/python docs/quotes.py

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 __all__ = ["Context"]
 
 LINK_VARIABLE = "AIONODE_LINK"
-LINK_WORDS = {"on": True, "off": False, "": False}
+LINK_WORDS = {"on": True, "off": False, "": True}
 
 
 def wants_link(asked: bool | None, environ: Mapping[str, str]) -> bool:
@@ -73,7 +73,7 @@ class Context:
             single settings by their key path.
         link: Whether other processes of this user on this host are reached through a Unix socket
             in the event loop, where the system has what it needs; ``AIONODE_LINK`` (``on`` or
-            ``off``) without it, and off without that.
+            ``off``) without it, and on without that.
 
     Attributes:
         network: Domain, discovery and peers, from the arguments and the environment.

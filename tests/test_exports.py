@@ -101,7 +101,7 @@ def undocumented(module: ModuleType) -> list[str]:
     silent = [] if module.__doc__ else [module.__name__]
     for name in exported_by(module):
         member = getattr(module, name)
-        is_ours = getattr(member, "__module__", "").startswith("aionode")
+        is_ours = (getattr(member, "__module__", None) or "").startswith("aionode")
         if is_ours and (inspect.isroutine(member) or inspect.isclass(member)):
             silent += [] if inspect.getdoc(member) else [name]
         if is_ours and inspect.isclass(member):

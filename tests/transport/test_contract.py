@@ -40,7 +40,7 @@ class Pair(NamedTuple):
     beside_right: Context
 
 
-@pytest.fixture(params=["local", "zenoh", pytest.param("link", marks=pytest.mark.experimental)])
+@pytest.fixture(params=["local", "zenoh", "link"])
 async def pair(request: pytest.FixtureRequest) -> AsyncIterator[Pair]:
     """Two nodes that know each other."""
     async with AsyncExitStack() as stack, asyncio.timeout(30):

@@ -35,8 +35,6 @@ from aionode.wire.keyexpr import data_key
 from aionode.wire.typehash import type_hash
 from tests.peers import DOMAIN_ID, KEEP_ALL, Collector, quiet_node, raw_session
 
-pytestmark = pytest.mark.experimental  # the link is off by default
-
 NUMBERS = data_key(DOMAIN_ID, "/n", "std_msgs/msg/Int32", type_hash(Int32))
 
 
@@ -558,20 +556,20 @@ async def test_sockets_of_the_killed_are_removed(folder: Path) -> None:
 # The switch
 
 
-def test_a_link_is_used_only_when_it_was_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_link_is_used_unless_it_was_switched_off(monkeypatch: pytest.MonkeyPatch) -> None:
     """By the variable, unless the argument says otherwise."""
 
     def linked(**options: Any) -> bool:
         return isinstance(Context(**options).transports[-1], LinkTransport)
 
     monkeypatch.delenv("AIONODE_LINK", raising=False)
-    assert not linked()
-    assert linked(link=True)
-    monkeypatch.setenv("AIONODE_LINK", "on")
     assert linked()
     assert not linked(link=False)
     monkeypatch.setenv("AIONODE_LINK", "off")
     assert not linked()
+    assert linked(link=True)
+    monkeypatch.setenv("AIONODE_LINK", "on")
+    assert linked()
     monkeypatch.setenv("AIONODE_LINK", "perhaps")
     with pytest.raises(ConfigurationError):
         linked()

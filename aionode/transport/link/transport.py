@@ -18,7 +18,7 @@ from aionode.transport.link.subscriptions import LinkReader, Tap
 
 if TYPE_CHECKING:
     from aionode.graph import EndpointInfo, Graph, NodeInfo
-    from aionode.transport.base import Announcement, Reader, Requester, Serve, Writer
+    from aionode.transport.base import Announcement, Links, Reader, Requester, Serve, Writer
     from aionode.transport.link.hub import Neighbours
 
 __all__ = ["LinkTransport"]
@@ -50,6 +50,11 @@ class LinkTransport(Transport):
     def __repr__(self) -> str:
         return f"<LinkTransport links={len(self.hub.links)} beside {self.zenoh!r}>"
 
+    @property
+    def other_domains(self) -> frozenset[int]:
+        """Domains of nodes that can be reached, but are not heard."""
+        return frozenset(getattr(self.zenoh, "other_domains", ()))
+
     async def open(self, graph: Graph) -> None:
         """Connect; without a folder to meet in, or descriptors, over the other transport only."""
         meeting = None
@@ -75,6 +80,10 @@ class LinkTransport(Transport):
         beacon = Beacon.parse(text)
         if beacon is not None and own.is_near(beacon):
             self.hub.on_beacon(beacon, present)
+
+    async def links(self) -> Links:
+        """Ask everybody who can be linked, and who is."""
+        return await self.zenoh.links()
 
     async def close(self) -> None:
         """Withdraw everything and disconnect, within a second."""
