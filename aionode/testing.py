@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from aionode.clock import TimeBase
     from aionode.graph import EndpointInfo, Graph, NodeInfo
-    from aionode.transport.base import Call, Reader, ReplyTo, Serve
+    from aionode.transport.base import Call, Links, Reader, ReplyTo, Serve
 
 __all__ = ["FaultyTransport", "ManualClock", "local_context", "settle"]
 
@@ -102,6 +102,10 @@ class FaultyTransport(Transport):
     async def open(self, graph: Graph) -> None:
         """Open the inner transport."""
         await self.inner.open(graph)
+
+    async def links(self) -> Links:
+        """Ask through the inner transport."""
+        return await self.inner.links()
 
     async def close(self) -> None:
         """Close the inner transport."""

@@ -13,12 +13,13 @@ a loop runs; they are reached by other processes once `Transport.open` has retur
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import msgspec
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from collections.abc import Set as AbstractSet
 
     from aionode.errors import DecodeError, ServiceError
     from aionode.graph import EndpointInfo, Graph, NodeInfo
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Announcement",
     "Call",
+    "Links",
     "Origin",
     "Reader",
     "ReplyTo",
@@ -219,6 +221,18 @@ class Serve(Protocol):
 # The whole
 
 
+class Links(NamedTuple):
+    """What contexts of the domain say of links between them.
+
+    Attributes:
+        beacons: What each of them announces so that others can link to it.
+        pairs: The ids of each two that are linked.
+    """
+
+    beacons: AbstractSet[str]
+    pairs: AbstractSet[frozenset[str]]
+
+
 class Transport(ABC):
     """One way for messages to travel."""
 
@@ -236,6 +250,10 @@ class Transport(ABC):
     @abstractmethod
     async def close(self) -> None:
         """Withdraw everything and disconnect, within a second; it can be opened again."""
+
+    async def links(self) -> Links:
+        """Return who of the others can be linked, and who is. For tools: everybody is asked."""
+        return Links(set(), set())
 
     @abstractmethod
     def create_node(self, node: NodeInfo) -> Announcement:

@@ -6,11 +6,18 @@ import asyncio
 
 from aionode.context import Context
 from aionode.interfaces.std_msgs.msg import Int32
-from tests.peers import kept, quiet_node, raw_session
+from aionode.settle import one_turn
+from aionode.testing import FaultyTransport
+from aionode.transport.base import Links
+from aionode.transport.local import LocalTransport
+from aionode.transport.zenoh.transport import ZenohTransport
+from tests.peers import DOMAIN_ID, kept, known, quiet_node, raw_session
 from tests.transport.test_link import (
     Counting,
     folder,
+    hub_of,
     link_of,
+    transport_of,
     two_nodes,
     writer_of,
 )
@@ -70,3 +77,58 @@ async def test_a_publisher_counts_what_a_slow_link_dropped() -> None:
         dropped = numbers.publisher.stats.dropped
         assert 0 < dropped < 20_000
         assert f"dropped={dropped}, ways={{'/b " in repr(numbers.publisher.stats)
+
+
+# What contexts announce
+
+
+async def links_seen_by(context: Context) -> Links:
+    """Return what a context is told."""
+    _, transport = context.transports
+    return await transport.links()
+
+
+async def test_a_link_is_announced_once_while_it_is_there() -> None:
+    """Also to a context that takes part in none."""
+    async with Context(link=False) as aside, two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.until_linked()
+        both = frozenset(node.context.participant for node in nodes)
+        while (seen := await links_seen_by(aside)).pairs != {both}:
+            await numbers.go()
+        assert {text.partition("/")[0] for text in seen.beacons} == both
+        with raw_session() as session:
+            (key,) = await known(session, "@aionode/*/*/linked/*")
+        smaller, larger = sorted(both)
+        assert key == f"@aionode/{DOMAIN_ID}/{smaller}/linked/{larger}"
+        assert await links_seen_by(nodes.a.context) == seen
+
+        nodes.b.destroy_node()
+        transport_of(nodes.b).hub.close()
+        while (await links_seen_by(aside)).pairs:
+            await one_turn()
+
+
+async def test_a_link_that_comes_again_is_announced_again() -> None:
+    """The old token has gone before."""
+    async with Context(link=False) as aside, two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.until_linked()
+        first = link_of(nodes.a)
+        first.close()
+        while first in [hub_of(nodes.a).linked(p) for p in hub_of(nodes.a).links]:
+            await numbers.go()
+        await numbers.until_linked()
+        for node in nodes:
+            zenoh = transport_of(node).zenoh
+            assert isinstance(zenoh, ZenohTransport)
+            await zenoh._link.flush()  # both announcements, and the withdrawal between them
+        both = frozenset(node.context.participant for node in nodes)
+        assert (await links_seen_by(aside)).pairs == {both}
+
+
+async def test_a_context_that_is_closed_or_has_no_network_knows_of_no_links() -> None:
+    """There is nobody to ask."""
+    closed = Context(link=True)
+    assert await links_seen_by(closed) == Links(set(), set())
+    assert await FaultyTransport(LocalTransport()).links() == Links(set(), set())

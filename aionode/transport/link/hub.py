@@ -63,6 +63,9 @@ class Neighbours(Protocol):
     def post(self, participant: str, data: bytes) -> None:
         """Send bytes to one other context, in order."""
 
+    def announce_link(self, participant: str, on: bool) -> None:
+        """Tell whoever asks that there is a link to another context, or no longer."""
+
 
 class Hub:
     """The links of one context.
@@ -307,6 +310,7 @@ class Hub:
         logger.debug("linked to %s", participant)
         self._near.add(participant)
         self._neighbours.watch(True)
+        self._neighbours.announce_link(participant, True)
         self._meet(connection)
 
     def _on_closed(self, connection: Connection) -> None:
@@ -316,6 +320,7 @@ class Hub:
             return
         del self._links[participant]
         self._link_changes += 1
+        self._neighbours.announce_link(participant, False)
         if not self._links:
             self._neighbours.watch(False)
         for key in [key for key in self._inlets if key[0] is connection]:

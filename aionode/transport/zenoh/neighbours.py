@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 from typing import TYPE_CHECKING, Any, Final
 
 import zenoh
 
+from aionode.transport.base import Links
 from aionode.transport.zenoh.handlers import direct, reason, translated
 from aionode.transport.zenoh.routers import Routers
 from aionode.wire.liveliness import PREFIX as ROS_PREFIX
@@ -21,6 +23,9 @@ __all__ = ["Neighbours"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 PREFIX: Final = "@aionode"
+
+LINKS_S: Final = 0.5
+"""How long `links` waits for everybody's answers; it takes a millisecond."""
 
 
 class Neighbours:
@@ -64,6 +69,8 @@ class Neighbours:
         self._connected: dict[str, zenoh.WhatAmI] = {}
         self._declared: list[Any] = []
         self._warning: zenoh.LivelinessToken | None = None
+        # By the other context, in this session; only the thread that sends touches them.
+        self._linked: dict[str, zenoh.LivelinessToken] = {}
         self._session: zenoh.Session | None = None
 
     def start(self, session: zenoh.Session) -> None:
@@ -71,6 +78,7 @@ class Neighbours:
         if self.beacon is None:
             return
         self._session = session
+        self._linked = {}
         self._routers.start(session)
         liveliness = session.liveliness()
         with translated("links"):
@@ -121,6 +129,57 @@ class Neighbours:
         if session is not None:
             key = self._post_key(participant)
             self._link.bulk.submit(lambda: send(session, key, data))
+
+    def announce_link(self, participant: str, on: bool) -> None:
+        """Tell whoever asks that there is a link to another context, or no longer.
+
+        Of the two the one with the smaller id does it. From a thread, since the other end may hang
+        just now, and Zenoh may wait for it.
+        """
+        session, linked = self._session, self._linked
+        if session is None or participant < self._link.participant:
+            return
+        key = f"{self._prefix}{self._link.participant}/linked/{participant}"
+
+        def announce() -> None:
+            token = linked.pop(participant, None)
+            try:
+                if token is not None:
+                    token.undeclare()
+                if on:
+                    linked[participant] = session.liveliness().declare_token(key)
+            except zenoh.ZError as error:  # it was closed meanwhile
+                logger.debug("%s: not announced: %s", key, reason(error))
+
+        self._link.bulk.submit(announce)
+
+    async def links(self) -> Links:
+        """Ask everybody who can be linked, and who is; without answers after a while, nobody."""
+        session = self._link.session
+        beacons: set[str] = set()
+        pairs: set[frozenset[str]] = set()
+        if session is None:
+            return Links(beacons, pairs)
+        answered: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+
+        def take(reply: zenoh.Reply | None) -> None:
+            if reply is None:
+                if not answered.done():
+                    answered.set_result(None)
+            elif reply.ok is not None:
+                text = str(reply.ok.key_expr).removeprefix(self._prefix)
+                participant, _, what = text.partition("/")
+                if what.startswith("link/"):
+                    beacons.add(text)
+                elif what.startswith("linked/"):
+                    pairs.add(frozenset((participant, what.removeprefix("linked/"))))
+
+        lane = self._link.lane(take)
+        session.liveliness().get(
+            f"{self._prefix}*/**", direct(lane.put, lambda: lane.put(None)), timeout=LINKS_S
+        )
+        await answered
+        return Links(beacons, pairs)
 
     def _post_key(self, participant: str) -> str:
         return f"{self._prefix}{participant}/post"

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections import Counter
 
     from aionode.graph import EndpointInfo, Graph, NodeInfo
-    from aionode.transport.base import Announcement, Reader, Requester, Serve, Writer
+    from aionode.transport.base import Announcement, Links, Reader, Requester, Serve, Writer
     from aionode.transport.zenoh_config import Network
 
 __all__ = ["ZenohTransport"]
@@ -63,6 +63,10 @@ class ZenohTransport(Transport):
     def other_domains(self) -> frozenset[int]:
         """The domains of nodes that can be reached, but do not hear this one."""
         return self._watcher.other_domains
+
+    async def links(self) -> Links:
+        """Ask everybody who can be linked, and who is."""
+        return await self.neighbours.links()
 
     async def open(self, graph: Graph) -> None:
         """Connect; return when those who are there are known, as far as can be told."""
