@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from aionode.clock import TimeBase
     from aionode.graph import EndpointInfo, Graph, NodeInfo
-    from aionode.transport.base import Call, Links, Reader, ReplyTo, Serve
+    from aionode.transport.base import Call, Linkage, Reader, ReplyTo, Serve
 
 __all__ = ["FaultyTransport", "ManualClock", "local_context", "settle"]
 
@@ -103,7 +103,7 @@ class FaultyTransport(Transport):
         """Open the inner transport."""
         await self.inner.open(graph)
 
-    async def links(self) -> Links:
+    async def links(self) -> Linkage:
         """Ask through the inner transport."""
         return await self.inner.links()
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Announcement",
     "Call",
-    "Links",
+    "Linkage",
     "Origin",
     "Reader",
     "ReplyTo",
@@ -221,7 +221,7 @@ class Serve(Protocol):
 # The whole
 
 
-class Links(NamedTuple):
+class Linkage(NamedTuple):
     """What contexts of the domain say of links between them.
 
     Attributes:
@@ -251,9 +251,9 @@ class Transport(ABC):
     async def close(self) -> None:
         """Withdraw everything and disconnect, within a second; it can be opened again."""
 
-    async def links(self) -> Links:
+    async def links(self) -> Linkage:
         """Return who of the others can be linked, and who is. For tools: everybody is asked."""
-        return Links(set(), set())
+        return Linkage(set(), set())
 
     @abstractmethod
     def create_node(self, node: NodeInfo) -> Announcement:

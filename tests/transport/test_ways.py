@@ -8,7 +8,7 @@ from aionode.context import Context
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.settle import one_turn
 from aionode.testing import FaultyTransport
-from aionode.transport.base import Links
+from aionode.transport.base import Linkage
 from aionode.transport.local import LocalTransport
 from aionode.transport.zenoh.transport import ZenohTransport
 from tests.peers import DOMAIN_ID, kept, known, quiet_node, raw_session
@@ -82,7 +82,7 @@ async def test_a_publisher_counts_what_a_slow_link_dropped() -> None:
 # What contexts announce
 
 
-async def links_seen_by(context: Context) -> Links:
+async def links_seen_by(context: Context) -> Linkage:
     """Return what a context is told."""
     _, transport = context.transports
     return await transport.links()
@@ -130,5 +130,5 @@ async def test_a_link_that_comes_again_is_announced_again() -> None:
 async def test_a_context_that_is_closed_or_has_no_network_knows_of_no_links() -> None:
     """There is nobody to ask."""
     closed = Context(link=True)
-    assert await links_seen_by(closed) == Links(set(), set())
-    assert await FaultyTransport(LocalTransport()).links() == Links(set(), set())
+    assert await links_seen_by(closed) == Linkage(set(), set())
+    assert await FaultyTransport(LocalTransport()).links() == Linkage(set(), set())

@@ -18,7 +18,7 @@ from aionode.transport.link.subscriptions import LinkReader, Tap
 
 if TYPE_CHECKING:
     from aionode.graph import EndpointInfo, Graph, NodeInfo
-    from aionode.transport.base import Announcement, Links, Reader, Requester, Serve, Writer
+    from aionode.transport.base import Announcement, Linkage, Reader, Requester, Serve, Writer
     from aionode.transport.link.hub import Neighbours
 
 __all__ = ["LinkTransport"]
@@ -81,7 +81,7 @@ class LinkTransport(Transport):
         if beacon is not None and own.is_near(beacon):
             self.hub.on_beacon(beacon, present)
 
-    async def links(self) -> Links:
+    async def links(self) -> Linkage:
         """Ask everybody who can be linked, and who is."""
         return await self.zenoh.links()
 

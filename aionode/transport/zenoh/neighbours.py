@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import zenoh
 
-from aionode.transport.base import Links
+from aionode.transport.base import Linkage
 from aionode.transport.zenoh.handlers import direct, reason, translated
 from aionode.transport.zenoh.routers import Routers
 from aionode.wire.liveliness import PREFIX as ROS_PREFIX
@@ -153,13 +153,13 @@ class Neighbours:
 
         self._link.bulk.submit(announce)
 
-    async def links(self) -> Links:
+    async def links(self) -> Linkage:
         """Ask everybody who can be linked, and who is; without answers after a while, nobody."""
         session = self._link.session
         beacons: set[str] = set()
         pairs: set[frozenset[str]] = set()
         if session is None:
-            return Links(beacons, pairs)
+            return Linkage(beacons, pairs)
         answered: asyncio.Future[None] = asyncio.get_running_loop().create_future()
 
         def take(reply: zenoh.Reply | None) -> None:
@@ -179,7 +179,7 @@ class Neighbours:
             f"{self._prefix}*/**", direct(lane.put, lambda: lane.put(None)), timeout=LINKS_S
         )
         await answered
-        return Links(beacons, pairs)
+        return Linkage(beacons, pairs)
 
     def _post_key(self, participant: str) -> str:
         return f"{self._prefix}{participant}/post"

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections import Counter
 
     from aionode.graph import EndpointInfo, Graph, NodeInfo
-    from aionode.transport.base import Announcement, Links, Reader, Requester, Serve, Writer
+    from aionode.transport.base import Announcement, Linkage, Reader, Requester, Serve, Writer
     from aionode.transport.zenoh_config import Network
 
 __all__ = ["ZenohTransport"]
@@ -64,7 +64,7 @@ class ZenohTransport(Transport):
         """The domains of nodes that can be reached, but do not hear this one."""
         return self._watcher.other_domains
 
-    async def links(self) -> Links:
+    async def links(self) -> Linkage:
         """Ask everybody who can be linked, and who is."""
         return await self.neighbours.links()
 
