@@ -284,6 +284,7 @@ def main() -> None:
     args = parser.parse_args()
     os.environ["AIONODE_MEETING_PORTS"] = PORTS  # hear nobody else
     os.environ["AIONODE_ROUTER_PORT"] = "18465"
+    os.environ["AIONODE_LINK"] = "off"  # link.py measures what a link makes of it
     if args.echo:
         with asyncio.Runner(loop_factory=loop_factory(args.loop)) as runner:
             runner.run(echo(args.echo))
