@@ -13,6 +13,7 @@ from aionode.cli.completing import complete_names
 from aionode.cli.diagnosis import Finding, diagnose
 from aionode.cli.options import json_option, ros2_options
 from aionode.cli.session import run_verb
+from aionode.cli.ways import ask_for_links, link_findings, pairs_of
 from aionode.graph import EndpointKind
 from aionode.transport.zenoh_config import DiscoveryRange
 
@@ -37,7 +38,7 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
 
     Args:
         node: The command's node.
-        names: Look only at these nodes, topics and services.
+        names: Look only at these nodes, topics and services, and show which way messages take.
         output: Where to print.
 
     Raises:
@@ -47,6 +48,13 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
     has_router = await answers(network.router_port)
     domains = other_domains(node)
     nodes, endpoints = chosen(node, names)
+    links = await ask_for_links(node)
+    wanted = full_names(names)
+    pairs = [
+        pair
+        for pair in pairs_of(endpoints, links)
+        if not wanted or wanted & {pair.publisher.name, *pair.nodes}
+    ]
     record = {
         "domain_id": network.domain_id,
         "other_domains": domains,
@@ -57,9 +65,15 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
         "nodes": len(nodes),
         "topics": count(endpoints, EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION),
         "services": count(endpoints, EndpointKind.SERVER, EndpointKind.CLIENT),
+        "links": len(links.pairs),
+        "pairs": [pair.record() for pair in pairs],
     }
-    output.item("\n".join(summary(record, network.router_port)), record)
+    lines = summary(record, network.router_port)
+    if names:
+        lines += [f"  {pair.text()}" for pair in pairs]
+    output.item("\n".join(lines), record)
     found = diagnose(nodes, endpoints)
+    found += link_findings(pairs)
     found += network_findings(
         network, os.environ, has_router=has_router, domains=domains, alone=not nodes
     )
@@ -90,6 +104,7 @@ def summary(record: Mapping[str, Any], router_port: int) -> list[str]:
         f"Nodes: {record['nodes']}",
         f"Topics: {record['topics']}",
         f"Services: {record['services']}",
+        f"Pairs of linked processes: {record['links']}",
     ]
 
 
@@ -104,7 +119,7 @@ def chosen(node: Node, names: Sequence[str]) -> tuple[list[NodeInfo], list[Endpo
     endpoints = [e for e in lookup.endpoints(node) if not e.node.name.startswith("_")]
     if not names:
         return nodes, endpoints
-    wanted = {name if name.startswith("/") else f"/{name}" for name in names}
+    wanted = full_names(names)
     known = {one.fully_qualified_name for one in nodes} | {one.name for one in endpoints}
     for name in sorted(wanted - known):
         raise lookup.unknown("No node, topic or service", name, known, "node list")
@@ -119,6 +134,11 @@ def chosen(node: Node, names: Sequence[str]) -> tuple[list[NodeInfo], list[Endpo
         [one for one in nodes if one.fully_qualified_name in wanted] or nodes,
         [one for one in endpoints if one.name in wanted | of_nodes | near],
     )
+
+
+def full_names(names: Sequence[str]) -> set[str]:
+    """Return names as they are in the graph."""
+    return {name if name.startswith("/") else f"/{name}" for name in names}
 
 
 def other_domains(node: Node) -> list[int]:
@@ -215,7 +235,7 @@ def rmw_findings(environ: Mapping[str, str]) -> list[Finding]:
 def doctor_command(names: tuple[str, ...], json: bool) -> None:
     """Say what is on the network, and why two endpoints do not talk.
 
-    NAMES of nodes, topics and services limit it to those. The exit status is 1 if something does
-    not work.
+    NAMES of nodes, topics and services limit it to those, and show which way each publisher
+    reaches each subscription. The exit status is 1 if something does not work.
     """
     run_verb(lambda node, output: doctor(node, names, output=output), json=json)

@@ -12,10 +12,12 @@ from typing import Any
 
 import pytest
 
+from aionode.transport.link import available
 from tests.peers import isolated_environment
 
 pexpect = pytest.importorskip("pexpect", reason="pseudo-terminals are of Unix")
 
+ROOT = Path(__file__).parents[2]
 ROBOT = Path(__file__).with_name("robot.py")
 AIONODE = [sys.executable, "-m", "aionode"]
 STARTED_S = 20.0
@@ -30,6 +32,7 @@ class Terminals:
         self.env = {
             **os.environ,
             **isolated_environment(),
+            "AIONODE_LINK": "on",
             "TERM": "xterm",
             "COLUMNS": "200",
             "PYTHONUNBUFFERED": "1",
@@ -293,6 +296,23 @@ def test_the_doctor_finds_a_sound_robot_sound(terminals: Terminals) -> None:
     assert "Nodes: 4\n" in text
     assert "none" in text
     assert "0 problem(s), 0 hint(s)" in text
+
+
+@pytest.mark.skipif(not available(), reason="links are of Linux")
+def test_the_doctor_says_which_way_a_pair_uses(terminals: Terminals) -> None:
+    """Seen from a process that takes part in no link."""
+    listener = terminals.open("run", f"{ROOT}/examples/listener.py:Listener")
+    try:
+        listener.expect("I heard: Hello")
+        linked = terminals.run("doctor", "/chatter", AIONODE_LINK="off")
+    finally:
+        listener.sendintr()
+        listener.expect(pexpect.EOF)
+        listener.close()
+    alone = terminals.run("doctor", "/chatter")
+
+    assert "Pairs of linked processes: 1\n  /talker -> /listener on /chatter: link" in linked.stdout
+    assert "Pairs of linked processes: 0\n\n" in alone.stdout
 
 
 def test_the_doctor_sees_nodes_of_another_domain(terminals: Terminals) -> None:
