@@ -22,8 +22,6 @@ from aionode.transport.link.publishers import LinkWriter
 from aionode.transport.link.transport import LinkTransport
 from tests.peers import isolated_environment, quiet_node
 
-pytestmark = pytest.mark.experimental  # the link is off by default
-
 MEMBER = Path(__file__).with_name("link_member.py")
 
 
