@@ -3,24 +3,31 @@
 from __future__ import annotations
 
 import asyncio
+import copy
 import os
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
+import numpy as np
 import pytest
 
 from aionode.context import Context
-from aionode.interfaces.std_msgs.msg import Int32
+from aionode.interfaces.std_msgs.msg import Int32, UInt8MultiArray
+from aionode.settle import one_turn
+from aionode.transport.link.connection import Connection
+from aionode.transport.link.handover import Way
 from aionode.transport.link.publishers import LinkWriter
 from aionode.transport.link.transport import LinkTransport
 from tests.peers import isolated_environment, quiet_node
+from tests.processes.link_member import STREAMED_BYTES
 
 MEMBER = Path(__file__).with_name("link_member.py")
 
@@ -37,11 +44,11 @@ def isolated(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 @contextmanager
-def other_process() -> Iterator[subprocess.Popen[bytes]]:
+def other_process(*arguments: str) -> Iterator[subprocess.Popen[bytes]]:
     """Run the echoing process meanwhile."""
     root = Path(__file__).parents[2]
     with subprocess.Popen(
-        [sys.executable, MEMBER], stdin=subprocess.PIPE, cwd=root, env=os.environ.copy()
+        [sys.executable, MEMBER, *arguments], stdin=subprocess.PIPE, cwd=root, env=os.environ.copy()
     ) as process:
         try:
             yield process
@@ -135,3 +142,110 @@ async def test_a_frozen_process_costs_nothing_but_its_messages() -> None:
             while ping.back._inbox:
                 await ping.back.receive()
             await ping.go()
+
+
+class Stream:
+    """Large arrays from the other process, over a link whose reading can be stopped."""
+
+    def __init__(self, node: Any) -> None:
+        self.node = node
+        self.subscription = node.create_subscription(UInt8MultiArray, "stream", None, 10)
+
+    @property
+    def link(self) -> Connection:
+        """The only link."""
+        hub = self.node.context.transports[1].hub
+        (participant,) = hub.links
+        return cast(Connection, hub.linked(participant))
+
+    async def next(self) -> int:
+        """Return the number that fills the next array, and nothing else but it."""
+        data = np.frombuffer((await self.subscription.receive()).data, np.uint8)
+        assert len(data) == STREAMED_BYTES
+        assert data.min() == data.max()
+        return int(data[0])
+
+    async def until_linked(self) -> None:
+        """Go on until the arrays come over the link."""
+        while not any(
+            inlet.handover.way is Way.LINK
+            for reader in self.node.context.transports[1].hub.readers.values()
+            for inlet in reader.inlets.values()
+        ):
+            await self.next()
+
+    async def freeze_in_mid_frame(self, process: subprocess.Popen[bytes]) -> None:
+        """Read no more, and stop the sender when it waits to send the rest of a frame."""
+        asyncio.get_running_loop().remove_reader(self.link._fd)
+        while True:
+            stop(process)
+            if in_mid_frame(self.link):
+                return
+            process.send_signal(signal.SIGCONT)
+            await one_turn()
+
+    def go_on(self) -> None:
+        """Read again."""
+        asyncio.get_running_loop().add_reader(self.link._fd, self.link._on_readable)
+
+
+def stop(process: subprocess.Popen[bytes]) -> None:
+    """Freeze a process, and see it frozen."""
+    process.send_signal(signal.SIGSTOP)
+    os.waitpid(process.pid, os.WUNTRACED)
+
+
+def in_mid_frame(link: Connection) -> bool:
+    """Return whether what waits in the socket ends within a frame."""
+    assert link._sock is not None
+    parser = copy.deepcopy(link._parser)
+    try:
+        parser.feed(link._sock.recv(1 << 20, socket.MSG_PEEK))
+    except BlockingIOError:  # nothing waits
+        return False
+    return bool(parser._pieces)
+
+
+@asynccontextmanager
+async def streams() -> AsyncIterator[Stream]:
+    """A node that hears a stream."""
+    async with (
+        asyncio.timeout(40),
+        Context(link=True) as context,
+        quiet_node("hear", context) as node,
+    ):
+        yield Stream(node)
+
+
+async def test_a_sender_that_is_killed_in_mid_frame_ends_its_stream_and_the_next_is_heard() -> None:
+    """What it has not sent to the end is nothing; what it has is whole."""
+    async with streams() as stream:
+        for _ in range(2):
+            with other_process("stream") as process:
+                await stream.until_linked()
+                await stream.freeze_in_mid_frame(process)
+                process.kill()
+                process.wait()
+                link = stream.link
+                stream.go_on()
+                while not link.closed:
+                    await one_turn()
+                while stream.subscription._inbox:
+                    await stream.next()
+            while stream.subscription.get_publisher_count():
+                await stream.node.graph.changed()
+
+
+async def test_a_sender_that_is_frozen_in_mid_frame_goes_on_where_it_was() -> None:
+    """Its link stays, and the rest of the frame comes with the next."""
+    async with streams() as stream:
+        with other_process("stream") as process:
+            await stream.until_linked()
+            await stream.freeze_in_mid_frame(process)
+            stream.go_on()
+            while not stream.link._parser._pieces:
+                await one_turn()
+            process.send_signal(signal.SIGCONT)
+            for _ in range(20):
+                await stream.next()
+            assert not stream.link.closed

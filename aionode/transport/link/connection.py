@@ -295,10 +295,19 @@ class Connection:
 
     # In
 
-    def _on_readable(self) -> None:
+    def read_out(self) -> None:
+        """Read all that is there, and then its end: the other process may have closed its own.
+
+        Where it did so with something unread, uvloop calls once and never again.
+        """
+        if self._on_readable():
+            self._loop.call_soon(self.read_out)
+
+    def _on_readable(self) -> bool:
+        """Read once; return whether there was something, so that there may be more."""
         sock = self._sock
         if sock is None:
-            return
+            return False
         try:
             missing = self._parser.missing
             data, ancillary, flags, _ = sock.recvmsg(
@@ -307,10 +316,10 @@ class Connection:
                 MSG_CMSG_CLOEXEC,
             )
         except (BlockingIOError, InterruptedError):
-            return
+            return False
         except OSError as error:
             self.close(error)
-            return
+            return False
         if ancillary:
             self._take_descriptors(ancillary)
         if flags & MSG_CTRUNC:
@@ -322,6 +331,7 @@ class Connection:
                 self._hand_out(self._parser.feed(data), perf_ns() + SLICE_NS)
             except FrameError as error:
                 self.close(error)
+        return True
 
     def _hand_out(self, frames: list[Frame], until_ns: int) -> None:
         takers = self.takers

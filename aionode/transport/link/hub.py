@@ -194,9 +194,16 @@ class Hub:
         if not present:
             self._near.discard(beacon.participant)
             self._barred.discard(beacon.participant)
+            self._read_out(beacon.participant)
             return
         self._near.add(beacon.participant)
         self._consider(beacon.participant)
+
+    def _read_out(self, participant: str) -> None:
+        """See the end of a link of which something else has told."""
+        connection = self._links.get(participant)
+        if connection is not None:
+            connection.read_out()
 
     def _on_strangers(self, _: bool) -> None:
         for writer in self.writers.values():
@@ -359,6 +366,7 @@ class Hub:
             logger.warning("something came by post that is not understood: %s", error)
             return
         sender = participant_of(frames[0]) if frames else ""
+        self._read_out(sender)
         for one in frames[1:]:
             for reader in list(self.readers.values()):
                 for inlet in list(reader.inlets.values()):
