@@ -25,6 +25,7 @@ from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.sensor_msgs.msg import Image
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
+from aionode.qos import QoSProfile, ReliabilityPolicy
 from aionode.settle import one_turn
 from aionode.transport.link import hub, meeting
 from aionode.transport.link.connection import Connection
@@ -98,9 +99,9 @@ async def two_nodes() -> AsyncIterator[Two]:
 class Counting:
     """A publisher of rising numbers and a subscription that expects them."""
 
-    def __init__(self, nodes: Two, profile: Any = 1000) -> None:
-        self.publisher = nodes.a.create_publisher(Int32, "n", profile)
-        self.subscription = nodes.b.create_subscription(Int32, "n", None, profile)
+    def __init__(self, nodes: Two, profile: Any = 1000, topic: str = "n") -> None:
+        self.publisher = nodes.a.create_publisher(Int32, topic, profile)
+        self.subscription = nodes.b.create_subscription(Int32, topic, None, profile)
         self.next = 0
 
     def publish(self, count: int = 1) -> None:
@@ -206,6 +207,33 @@ async def test_a_stream_goes_on_over_zenoh_when_the_link_ends_and_back_when_it_i
                 await numbers.go()
         await numbers.until_linked()
         assert numbers.subscription.stats.lost == 0
+
+
+async def test_the_end_is_seen_where_something_is_left_to_read_and_nothing_to_write() -> None:
+    """An event loop may tell once, and no more, of a socket whose other end left data unread."""
+    async with two_nodes() as nodes:
+        unconfirmed = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
+        numbers = Counting(nodes, unconfirmed)
+        back = Counting(Two(nodes.b, nodes.a), topic="back")
+        await numbers.until_linked()
+        await back.until_linked()
+        ends = [link_of(node) for node in nodes]
+        loop = asyncio.get_running_loop()
+        for end in ends:
+            loop.remove_reader(end._fd)
+        first = numbers.next
+        numbers.publish(20)
+        back.publish(1)
+        while not all(end.idle for end in ends):
+            await one_turn()
+        ends[0].close()
+        loop.add_reader(ends[1]._fd, ends[1]._on_readable)
+        while not ends[1].closed:
+            await one_turn()
+        assert [(await numbers.subscription.receive()).data for _ in range(20)] == list(
+            range(first, numbers.next)
+        )
+        assert (await back.subscription.receive()).data == back.next - 1
 
 
 @pytest.mark.parametrize(
