@@ -72,7 +72,9 @@ class Stream:
             self.lose_stranger()
 
     def take_post(self) -> None:
-        """Hand over one message of the post."""
+        """Hand over one message of the post, which is behind all of the link and its end."""
+        while self.link and self.post:
+            self.take_link()
         if self.post:
             what, number = self.post.popleft()
             if what == "caught up":
@@ -104,7 +106,7 @@ class Stream:
 
     def lose_what_is_under_way(self) -> None:
         """Break the link, with all that is in it."""
-        if self._linked and not any(what == "opened" for what, _ in self.link):
+        if self._linked:
             self.link.clear()
             self.end_link()
 

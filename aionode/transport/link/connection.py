@@ -296,12 +296,12 @@ class Connection:
     # In
 
     def read_out(self) -> None:
-        """Read all that is there, and then its end: the other process may have closed its own.
+        """Read all that is there, and then its end: something else has told of it already.
 
-        Where it did so with something unread, uvloop calls once and never again.
+        uvloop may not: of a socket whose other end was closed with data unread, it tells once.
         """
-        if self._on_readable():
-            self._loop.call_soon(self.read_out)
+        while self._on_readable():
+            pass
 
     def _on_readable(self) -> bool:
         """Read once; return whether there was something, so that there may be more."""

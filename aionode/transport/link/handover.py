@@ -14,7 +14,7 @@ A reader hears a publisher of another process over Zenoh first. When the two pro
 When the link ends, the publisher goes on over Zenoh, and sends what the reader has not confirmed
 to the reader's process alone (its post), where nobody else can hear it twice; then it says that
 this was all (`CAUGHT_UP`). Meanwhile the reader mends the stream: it takes the next number whatever
-brings it, and holds what is further ahead.
+brings it, also a new link, and holds what is further ahead.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class Handover:
             than `last`, which is then to be set: what `from_link` does, without the call.
     """
 
-    __slots__ = ("_base", "_caught_up", "_deliver", "_held", "last", "steady", "way")
+    __slots__ = ("_base", "_deliver", "_held", "_linked", "_owed", "last", "steady", "way")
 
     def __init__(self, deliver: Callable[[Any, Origin, int], None]) -> None:
         self.way = Way.ZENOH
@@ -70,7 +70,8 @@ class Handover:
         self.steady = False
         self._deliver = deliver
         self._base = 0
-        self._caught_up = False
+        self._linked = False
+        self._owed = 0  # links that have ended, and whose publisher has not caught up
         self._held: dict[int, tuple[Any, Origin]] = {}
 
     @property
@@ -80,10 +81,12 @@ class Handover:
 
     def opened(self, sequence: int) -> None:
         """Note that what follows number `sequence` comes over the link."""
-        self.finish()
-        self.way = Way.BOTH
         self._base = sequence
-        self._caught_up = False
+        self._linked = True
+        if self.way is Way.MENDING:
+            self._mend()
+            return
+        self.way = Way.BOTH
         if self.last >= sequence:
             self.switch()
 
@@ -112,6 +115,9 @@ class Handover:
             while held and (oldest := next(iter(held))) <= self.last:
                 del held[oldest]
             self.steady = not held
+        elif self.way is Way.MENDING and self._linked and origin.sequence > self.last:
+            self._hold(msg, origin)
+            self._mend()
 
     def from_post(self, msg: Any, origin: Origin) -> None:
         """Take a message that a broken link has left unsaid."""
@@ -120,6 +126,7 @@ class Handover:
         if self.way is Way.ZENOH:  # it was never opened here: what is older was sent over Zenoh
             self.way = Way.MENDING
             self._base = origin.sequence - 1
+            self._owed = max(self._owed, 1)
         self._hold(msg, origin)
         self._mend()
 
@@ -132,21 +139,25 @@ class Handover:
 
     def broken(self) -> None:
         """Take Zenoh again, as soon as nothing is missing: the link has ended."""
-        if self.way is Way.BOTH or self.way is Way.LINK:
+        self._owed += 1
+        self._linked = False
+        self.steady = False
+        if self.way is not Way.ZENOH:
             self.way = Way.MENDING
-            self.steady = False
             self._mend()
 
     def caught_up(self) -> None:
         """Note that all that a broken link left unsaid has been said."""
-        self._caught_up = True
+        self._owed = max(self._owed - 1, 0)
         self._mend()
 
     def finish(self) -> None:
         """Mend no longer: what has not come by now was lost."""
         if self.way is Way.MENDING:
+            self._owed = 0
             self._release()
-            self.way = Way.ZENOH
+            self.way = Way.LINK if self._linked else Way.ZENOH
+            self.steady = self._linked
 
     def _next(self, msg: Any, origin: Origin, until_ns: int = 0) -> None:
         self.last = origin.sequence
@@ -163,8 +174,12 @@ class Handover:
             return
         while self.last + 1 in self._held:
             self._next(*self._held.pop(self.last + 1))
-        if self._caught_up and self.last >= self._base:
-            self.finish()
+        if not self._owed and self.last >= self._base:
+            if self._linked:  # what is held came over Zenoh, ahead of the link
+                self.way = Way.LINK
+                self.steady = not self._held
+            else:
+                self.finish()
 
     def _release(self) -> None:
         """Deliver all that is held."""

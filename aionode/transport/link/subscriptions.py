@@ -135,6 +135,7 @@ class Inlet:
     def caught_up(self) -> None:
         """Note that this was all."""
         self.handover.caught_up()
+        self._after()
 
     def from_link(self, payload: Data, one: Frame, until_ns: int) -> None:
         """Take a message that came over the link."""
@@ -183,11 +184,10 @@ class Inlet:
             return
         if self._moved:
             self._look_later()
-        elif handover.way is Way.MENDING:
-            handover.finish()
-        else:
-            handover.switch()
-            self._after()
+            return
+        handover.switch()
+        handover.finish()
+        self._after()
 
     def _deliver_patiently(self, msg: Any, origin: Origin, until_ns: int) -> None:
         """Give a KEEP_ALL reader a message as soon as it has room for it."""
