@@ -165,7 +165,7 @@ async def test_every_kind_of_reader_gets_each_message_once() -> None:
 async def test_what_was_in_a_broken_link_reaches_its_reader_and_nobody_twice() -> None:
     """Also what went both ways, and what was sent before a stranger came to listen."""
     async with two_nodes() as nodes:
-        numbers = Counting(nodes)
+        numbers = Counting(nodes, 10_000)
         await numbers.until_linked()
         before = numbers.next
         stalled = link_of(nodes.b)
@@ -174,6 +174,8 @@ async def test_what_was_in_a_broken_link_reaches_its_reader_and_nobody_twice() -
         with raw_session() as session:
             samples = Collector()
             subscriber = session.declare_subscriber(NUMBERS, samples)
+            while not writer_of(numbers.publisher).update():  # until the stranger is known
+                await one_turn()
             while not samples.items:
                 numbers.publish()
                 await one_turn()
