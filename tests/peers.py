@@ -5,9 +5,10 @@ from __future__ import annotations
 import asyncio
 import json
 import os
+import secrets
 import socket
 from collections.abc import AsyncIterator, Iterator, Mapping
-from contextlib import asynccontextmanager, closing, contextmanager
+from contextlib import ExitStack, asynccontextmanager, closing, contextmanager, suppress
 from typing import Any
 
 import zenoh  # noqa: TID251  # plays the other participants, without aionode
@@ -53,15 +54,20 @@ def ros_value(value: Any) -> Any:
 
 
 def free_ports(count: int) -> list[int]:
-    """Return ports of loopback on which nobody listens."""
-    with_sockets = [socket.socket() for _ in range(count)]
-    try:
-        for each in with_sockets:
-            each.bind(("127.0.0.1", 0))
-        return [each.getsockname()[1] for each in with_sockets]
-    finally:
-        for each in with_sockets:
-            each.close()
+    """Return ports of loopback on which nobody listens, nor will by chance.
+
+    They lie below those that the system gives to whoever wants any, such as the sessions of another
+    run of these tests.
+    """
+    found: list[int] = []
+    with ExitStack() as until_all_are_found:
+        while len(found) < count:
+            port = 10_000 + secrets.randbelow(22_000)
+            one = until_all_are_found.enter_context(socket.socket())
+            with suppress(OSError):
+                one.bind(("127.0.0.1", port))
+                found.append(port)
+    return found
 
 
 def isolated_environment() -> dict[str, str]:
