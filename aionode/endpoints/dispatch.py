@@ -234,7 +234,8 @@ class Dispatch:
 
     def _record_sync(self, took_ns: int) -> None:
         stats = self.stats
-        stats.run_time.record_for_both(stats.blocking, took_ns)
+        stats.run_time.record(took_ns)
+        stats.blocking.record(took_ns)
         if took_ns > self.budget_ns:
             self.report_blocking(took_ns)
 

@@ -19,6 +19,12 @@ __all__ = ["CallbackStats", "ClientStats", "Distribution", "PublisherStats"]
 ID_DIGITS: Final = 8
 """So much of an id tells the endpoints of a system apart."""
 
+NOTED_CALLS: Final = 64
+"""Calls are recorded so many at a time: code that has just run takes a third of the time.
+
+Between two messages of a robot the processor forgets it.
+"""
+
 # A bucket is one sixteenth of a power of two, so a percentile is off by 3 % at most. The offset
 # keeps the smallest values in buckets of their own.
 _SUB_BUCKETS_LOG2 = 4
@@ -28,15 +34,16 @@ _OFFSET = 1 << _SUB_BUCKETS_LOG2
 class Distribution:
     """How often which duration was seen, in constant memory.
 
-    Attributes:
-        max_ns: The longest duration seen, 0 before the first.
+    Args:
+        before_reading: Called before anything is read, to record what was only noted so far.
     """
 
-    __slots__ = ("_buckets", "max_ns")
+    __slots__ = ("_before_reading", "_buckets", "_max_ns")
 
-    def __init__(self) -> None:
+    def __init__(self, before_reading: Callable[[], None] | None = None) -> None:
         self._buckets: dict[int, int] = {}
-        self.max_ns = 0
+        self._max_ns = 0
+        self._before_reading = before_reading
 
     def __repr__(self) -> str:
         return (
@@ -46,8 +53,8 @@ class Distribution:
 
     def record(self, duration_ns: int) -> None:
         """Add one duration, which must not be negative."""
-        if duration_ns > self.max_ns:  # noqa: PLR1730  # max() is a call, on the path of messages
-            self.max_ns = duration_ns
+        if duration_ns > self._max_ns:  # noqa: PLR1730  # max() is a call, on the path of messages
+            self._max_ns = duration_ns
         shifted = duration_ns + _OFFSET
         octave = shifted.bit_length() - _SUB_BUCKETS_LOG2 - 1
         bucket = (octave << _SUB_BUCKETS_LOG2) + (shifted >> octave)
@@ -56,25 +63,39 @@ class Distribution:
         except KeyError:
             self._buckets[bucket] = 1
 
-    def record_for_both(self, other: Distribution, duration_ns: int) -> None:
-        """Do `record` for this and for `other`, in less time than twice."""
-        if duration_ns > self.max_ns:  # noqa: PLR1730  # as above
-            self.max_ns = duration_ns
-        if duration_ns > other.max_ns:  # noqa: PLR1730  # as above
-            other.max_ns = duration_ns
-        shifted = duration_ns + _OFFSET
-        octave = shifted.bit_length() - _SUB_BUCKETS_LOG2 - 1
-        bucket = (octave << _SUB_BUCKETS_LOG2) + (shifted >> octave)
-        for buckets in (self._buckets, other._buckets):
-            try:
-                buckets[bucket] += 1
-            except KeyError:
-                buckets[bucket] = 1
+    def record_all(self, durations_ns: Sequence[int], *others: Distribution) -> None:
+        """Do `record` for each duration, in this and in `others`, in a third of the time."""
+        found: dict[int, int] = {}
+        for duration_ns in durations_ns:  # `record`, with everything in reach
+            shifted = duration_ns + _OFFSET
+            octave = shifted.bit_length() - _SUB_BUCKETS_LOG2 - 1
+            bucket = (octave << _SUB_BUCKETS_LOG2) + (shifted >> octave)
+            found[bucket] = found.get(bucket, 0) + 1
+        longest_ns = max(durations_ns, default=0)
+        for one in (self, *others):
+            one.merge(found, longest_ns)
+
+    def merge(self, buckets: dict[int, int], longest_ns: int) -> None:
+        """Add what was counted elsewhere."""
+        self._max_ns = max(self._max_ns, longest_ns)
+        for bucket, count in buckets.items():
+            self._buckets[bucket] = self._buckets.get(bucket, 0) + count
+
+    def _read(self) -> dict[int, int]:
+        if self._before_reading is not None:
+            self._before_reading()
+        return self._buckets
+
+    @property
+    def max_ns(self) -> int:
+        """The longest duration seen, 0 before the first."""
+        self._read()
+        return self._max_ns
 
     @property
     def count(self) -> int:
         """How many durations were recorded."""
-        return sum(self._buckets.values())
+        return sum(self._read().values())
 
     @property
     def p50_ns(self) -> int:
@@ -93,7 +114,7 @@ class Distribution:
         for bucket in sorted(self._buckets):
             seen += self._buckets[bucket]
             if seen >= wanted:
-                return min(_middle_ns(bucket), self.max_ns)
+                return min(_middle_ns(bucket), self._max_ns)
         return 0
 
 
@@ -119,21 +140,42 @@ class CallbackStats:
         blocking: The longest stretch of each callback without an await: what others waited for.
     """
 
-    __slots__ = ("blocking", "dropped", "errors", "lost", "queue_wait", "received", "run_time")
+    __slots__ = (
+        "_took_ns",
+        "_waited_ns",
+        "blocking",
+        "dropped",
+        "errors",
+        "lost",
+        "queue_wait",
+        "received",
+        "run_time",
+    )
 
     def __init__(self) -> None:
         self.received = 0
         self.dropped = 0
         self.errors = 0
         self.lost = 0
-        self.queue_wait = Distribution()
-        self.run_time = Distribution()
-        self.blocking = Distribution()
+        self.queue_wait = Distribution(self._record_noted)
+        self.run_time = Distribution(self._record_noted)
+        self.blocking = Distribution(self._record_noted)
+        self._waited_ns: list[int] = []
+        self._took_ns: list[int] = []
 
     def record_call(self, waited_ns: int, took_ns: int) -> None:
         """Add a callback without an await: what it waited, and how long it ran and blocked."""
-        self.queue_wait.record(waited_ns)
-        self.run_time.record_for_both(self.blocking, took_ns)
+        self._waited_ns.append(waited_ns)
+        took = self._took_ns
+        took.append(took_ns)
+        if len(took) >= NOTED_CALLS:
+            self._record_noted()
+
+    def _record_noted(self) -> None:
+        self.queue_wait.record_all(self._waited_ns)
+        self.run_time.record_all(self._took_ns, self.blocking)
+        self._waited_ns.clear()
+        self._took_ns.clear()
 
     def __repr__(self) -> str:
         return (

@@ -314,7 +314,15 @@ class Subscription(Entity, Generic[ItemT]):
         if self.destroyed:
             return
         if origin.remote:
-            self._count_lost(origin)
+            # The publisher becomes the last one, so that the first is silent for longest.
+            sequences = self._last_sequences
+            gid, sequence = origin.gid, origin.sequence
+            last = sequences.pop(gid, sequence - 1)
+            sequences[gid] = sequence
+            if sequence != last + 1:
+                self._note_gap(gid, last, sequence)
+            elif len(sequences) > REMEMBERED_PUBLISHERS:
+                del sequences[next(iter(sequences))]
         item = (msg, self._info(origin)) if self._wants_info else msg
         if until_ns and self._shortcut is not None and self._shortcut.take(item, until_ns):
             return
@@ -337,17 +345,11 @@ class Subscription(Entity, Generic[ItemT]):
         while not self.destroyed and not self._inbox.has_room():
             await self._inbox.wait_for_room()
 
-    def _count_lost(self, origin: Origin) -> None:
-        sequences = self._last_sequences
-        gid, sequence = origin.gid, origin.sequence
-        last = sequences.pop(gid, sequence - 1)
+    def _note_gap(self, gid: bytes, last: int, sequence: int) -> None:
         if sequence > last:
             self.stats.lost += sequence - last - 1
-            sequences[gid] = sequence
-        else:
-            sequences[gid] = last
-        if len(sequences) > REMEMBERED_PUBLISHERS:
-            del sequences[next(iter(sequences))]  # the one silent for longest
+        else:  # an old one once more
+            self._last_sequences[gid] = last
 
     def _info(self, origin: Origin) -> MessageInfo:
         self._reception_sequence += 1

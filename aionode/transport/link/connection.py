@@ -322,31 +322,33 @@ class Connection:
             return False
         if ancillary:
             self._take_descriptors(ancillary)
-        if flags & MSG_CTRUNC:
-            self.close(FrameError("a descriptor could not be taken: too many files are open"))
-        elif not data:
-            self.close()
+        if flags & MSG_CTRUNC or not data:
+            lost = FrameError("a descriptor could not be taken: too many files are open")
+            self.close(lost if flags & MSG_CTRUNC else None)
         else:
             try:
-                self._hand_out(self._parser.feed(data), perf_ns() + SLICE_NS)
+                frames = self._parser.feed(data)
+                until_ns = perf_ns() + SLICE_NS
+                takers = self.takers
+                for one in frames:
+                    payload: Data = self._map(one) if one.elsewhere else one.payload
+                    if one.kind == DATA:
+                        take = takers.get(one.gid)
+                        if take is not None:  # else it was closed meanwhile
+                            take(payload, one, until_ns)
+                    else:
+                        self._take_other(one, payload, until_ns)
             except FrameError as error:
                 self.close(error)
         return True
 
-    def _hand_out(self, frames: list[Frame], until_ns: int) -> None:
-        takers = self.takers
-        for one in frames:
-            payload: Data = self._map(one) if one.elsewhere else one.payload
-            if one.kind == DATA:
-                take = takers.get(one.gid)
-                if take is not None:  # else it was closed meanwhile
-                    take(payload, one, until_ns)
-            elif one.kind == RELEASE:
-                self._on_release(one.sequence)
-            elif one.kind == FORGET:
-                self._mappings.forget(one.sequence)
-            else:
-                self._handle(self, one, payload, until_ns)
+    def _take_other(self, one: Frame, payload: Data, until_ns: int) -> None:
+        if one.kind == RELEASE:
+            self._on_release(one.sequence)
+        elif one.kind == FORGET:
+            self._mappings.forget(one.sequence)
+        else:
+            self._handle(self, one, payload, until_ns)
 
     def _take_descriptors(self, ancillary: list[tuple[int, int, bytes]]) -> None:
         for level, kind, data in ancillary:

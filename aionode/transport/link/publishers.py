@@ -307,7 +307,11 @@ class LinkWriter(Writer):
             elif len(payload := encode(msg)) >= SHARED_FROM:
                 self._write_parts([payload], origin)
             else:
-                data = frame.pack(DATA, sequence, origin.source_ns, self._gid, payload)
+                # `frame.pack` written out: a call less for each message.
+                head = frame.HEADER.pack(
+                    len(payload), DATA, 0, frame.MARK, sequence, origin.source_ns, self._gid
+                )
+                data = head + payload
                 for route in tuple(routes.values()):  # one may turn out to be broken
                     route.send(sequence, data)
             self._sequence = sequence
