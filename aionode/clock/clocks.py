@@ -142,6 +142,11 @@ class Clock:
             del self._sleepers[sleeper]
             alarm.cancel()
 
+    @property
+    def follows_machine(self) -> bool:
+        """Whether alarms ring by themselves, and not because somebody sets the time."""
+        return not self._active and isinstance(self._base, MachineTime)
+
     def call_at(self, when_ns: int, callback: Callable[[], None]) -> Alarm:
         """Have `callback` called when this clock shows `when_ns`.
 

@@ -40,13 +40,14 @@ class KernelAlarms(Agenda):
         NotImplementedError: The loop cannot wait for files.
     """
 
-    __slots__ = ("__weakref__", "_fd", "_loop", "_set_ns")
+    __slots__ = ("__weakref__", "_fd", "_loop", "_set_ns", "_spec")
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         super().__init__()
         self._loop = weakref.ref(loop)  # whose registry holds this object
         self._fd = -1
         self._set_ns = 0  # when the file will become readable; 0 when it will not
+        self._spec = itimerspec()
         self._open(loop)
 
     def add(self, when_ns: int, callback: Callable[[], None]) -> Entry:
@@ -77,7 +78,7 @@ class KernelAlarms(Agenda):
     def _set_for(self, when_ns: int) -> None:
         if not 0 < self._set_ns <= when_ns:
             self._set_ns = max(when_ns, 1)  # 0 would switch it off
-            set_timer(self._fd, self._set_ns)
+            set_timer(self._fd, self._set_ns, self._spec)
 
     def _ring(self) -> None:
         """Call what is due: the file became readable."""
@@ -136,10 +137,14 @@ def open_timer() -> int:
     return fd
 
 
-def set_timer(fd: int, when_ns: int) -> None:
-    """Let `fd` become readable when the monotonic clock is at `when_ns`."""
+def itimerspec() -> Any:
+    """Return a ``struct itimerspec`` of zeros: an interval and a time, in s and ns each."""
     import ctypes
 
-    # struct itimerspec: an interval, not used, and a time; each in seconds and nanoseconds
-    spec = (ctypes.c_long * 4)(0, 0, *divmod(when_ns, 1_000_000_000))
+    return (ctypes.c_long * 4)()
+
+
+def set_timer(fd: int, when_ns: int, spec: Any) -> None:
+    """Let `fd` become readable when the monotonic clock is at `when_ns`; `spec` is written to."""
+    spec[2], spec[3] = divmod(when_ns, 1_000_000_000)
     libc().timerfd_settime(fd, TFD_TIMER_ABSTIME, spec, None)

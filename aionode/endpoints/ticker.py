@@ -9,7 +9,10 @@ from aionode.clock import ClockChange, ClockType, Duration, JumpThreshold
 from aionode.endpoints.schedule import Schedule
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from aionode.clock import Clock, TimeJump
+    from aionode.clock.base import Alarm
 
 __all__ = ["Ticker"]
 
@@ -44,20 +47,33 @@ class Ticker:
         """Whether a call is due."""
         return self.schedule.is_ready(self.clock.now_ns())
 
-    async def wait(self) -> None:
+    async def wait(self, on_ring: Callable[[], bool] | None = None) -> None:
         """Return when a call is probably due, or `wake` was called: look at the schedule then.
 
         While the schedule is canceled only `wake` ends the wait. Cancelling is safe. Nothing is
         lost between two waits, because the schedule remembers what is due.
+
+        Args:
+            on_ring: Called when the event loop's own alarm rings; if it returns True, it has made
+                the call, and the wait goes on until the next is due.
         """
         waiter = asyncio.get_running_loop().create_future()
         schedule = self.schedule
+        call_at = self.clock.call_at
+        alarm: Alarm | None = None
 
         def ring() -> None:
-            if not waiter.done():
+            nonlocal alarm
+            if waiter.done():
+                return
+            if on_ring is not None and self.clock.follows_machine and on_ring():
+                if not waiter.done():  # the call may have woken or cancelled who waits here
+                    alarm = call_at(schedule.next_ns, ring)
+            else:
                 waiter.set_result(None)
 
-        alarm = None if schedule.canceled else self.clock.call_at(schedule.next_ns, ring)
+        if not schedule.canceled:
+            alarm = call_at(schedule.next_ns, ring)
         self._waiters[waiter] = None
         try:
             await waiter
