@@ -12,6 +12,10 @@ each round trip ("100 Hz").
 - Images of 4 MB, all of whose data is read in place; a small message answers. Half of a small
   round trip taken off gives the time of one way. The floor copies 4 MB into memory that both
   processes have mapped, says so over a bare Unix socket, and reads it there with the same call.
+- All this with each process on a core of its own, and the round trips and calls of small messages
+  once more with both processes on one core. Left alone, the system chooses one or the other, and
+  times differ by a factor of up to six: to wake another core takes time, above all in a virtual
+  machine, while on one core neither process ever has to be woken from idleness.
 - Bursts of 20 000 small messages into one callback; the rate is that of arrival.
 - The processor time of a publisher with a timer of 100 Hz and of its reader: fresh processes that
   contain nothing else, over a link, over Zenoh, and as a bare timer and Unix socket.
@@ -22,8 +26,8 @@ each round trip ("100 Hz").
 The last table puts each target beside what was found. p50 is the median of the slices' medians,
 p99 is of all round trips, and the first round trips of each slice do not count.
 
-Run it with ``python benchmarks/link.py``; it takes up to four minutes, and ``--quick`` gives a
-first look within 40 seconds. It prints the tables and writes ``link.json`` to
+Run it with ``python benchmarks/link.py``; it takes up to six minutes, and ``--quick`` gives a
+first look within a minute. It prints the tables and writes ``link.json`` to
 ``benchmarks/results/``.
 """
 
@@ -36,6 +40,7 @@ import mmap
 import os
 import platform
 import statistics
+import subprocess
 import sys
 import tempfile
 import threading
@@ -73,6 +78,10 @@ OVER_LINK: Final = "aionode over a link"
 CALL_ZENOH: Final = "service over Zenoh"
 CALL_LINK: Final = "service over a link"
 RCLPY: Final = "rclpy, events executor"
+OWN: Final = "own"
+ONE: Final = "one"
+CORES: Final = {OWN: "own cores", ONE: "one core", "any": "any core"}
+OTHERS: Final = ("echo", "reader", "rclpy-echo")  # parts that run on the second core
 IMAGE_FLOOR: Final = "4 MB, bare memory and socket"
 IMAGE_ZENOH: Final = "4 MB image over Zenoh"
 IMAGE_LINK: Final = "4 MB image over a link"
@@ -284,11 +293,20 @@ def zenoh_pair(
 
 @dataclass(frozen=True)
 class Place:
-    """Where the processes of one run meet, and nobody else: a folder, and ports from `port` on."""
+    """Where the processes of one run meet, and nobody else: a folder, and ports from `port` on.
+
+    `cores` are those of the process that measures and of the other one; empty for any.
+    """
 
     folder: str
     loop: str
     port: int
+    cores: tuple[int, ...]
+
+    @property
+    def cores_text(self) -> str:
+        """The cores in a word, for tables."""
+        return {0: "any", 1: ONE, 2: OWN}[len(set(self.cores))]
 
     def context(self, number: int, *, link: bool) -> Context:
         """Return a context that hears those of the same number only: it meets no strangers."""
@@ -504,7 +522,7 @@ async def child(part: str, place: Place, kind: str = "") -> AsyncIterator[Child]
     """Run another process meanwhile, which is ready."""
     process = await asyncio.create_subprocess_exec(
         sys.executable, __file__, "--part", part, "--folder", place.folder, "--loop", place.loop,
-        "--port", str(place.port), "--kind", kind,
+        "--port", str(place.port), "--kind", kind, "--cores", ",".join(map(str, place.cores)),
         stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE,
     )  # fmt: skip
     try:
@@ -821,12 +839,18 @@ async def measure(place: Place, plan: Plan) -> dict[str, list[dict[str, Any]]]:
         for ball in (small[1], large[1]):
             while not is_linked(ball.publisher):
                 await ball.play(10, PERIOD_S)
+        if place.cores_text == ONE:
+            players = {name: player for name, player in players.items() if name not in SMALL_OF}
         rows = await in_turns(players, plan)
-        bursts = await burst_in_turns(place, session, (first, second), plan)
+        bursts = []
+        if place.cores_text != ONE:
+            bursts = await burst_in_turns(place, session, (first, second), plan)
     return {
-        "round_trips": [{"loop": place.loop, **one} for one in rows + one_way(rows)],
+        "round_trips": [
+            {"loop": place.loop, "cores": place.cores_text, **one} for one in rows + one_way(rows)
+        ],
         "bursts": [{"loop": place.loop, **one} for one in bursts],
-        "duties": await duties(place, plan),
+        "duties": [] if place.cores_text == ONE else await duties(place, plan),
     }
 
 
@@ -876,9 +900,11 @@ async def burst_in_turns(
 
 def targets(loop: str, tables: dict[str, list[dict[str, Any]]]) -> list[tuple[str, ...]]:
     """Return a line for each target of one loop: what, figure, target, met or missed, the floor."""
-    found = {(o["what"], o["speed"]): o for o in tables["round_trips"] if o["loop"] == loop}
+    trips = [one for one in tables["round_trips"] if one["loop"] == loop]
+    found = {(one["cores"], one["what"], one["speed"]): one for one in trips}
     bursts = {o["what"]: o for o in tables["bursts"] if o["loop"] == loop}
     duty = {o["what"]: o for o in tables["duties"] if o["loop"] == loop}
+    placed = list(dict.fromkeys(one["cores"] for one in trips))
     table: list[tuple[str, ...]] = []
 
     def add(what: str, figure: float, bound: float, unit: str, floor: float) -> None:
@@ -889,18 +915,23 @@ def targets(loop: str, tables: dict[str, list[dict[str, Any]]]) -> list[tuple[st
         verdict = "met" if met else "MISSED"
         table.append((loop, what, found_here, f"{sign} {bound:{form}}", verdict, f"{floor:{form}}"))
 
-    for name in (OVER_LINK, CALL_LINK):
-        for speed, bound in ((FULL, 1.6), (PACED, 1.4)):
-            one, floor = found[name, speed], found[SOCKET, speed]
-            add(f"{name}, {speed}: p50", one["p50_us"] / floor["p50_us"], bound, "x floor", 1)
-            tail = floor["p99_us"] / floor["p50_us"]
-            add(f"{name}, {speed}: p99", one["p99_us"] / one["p50_us"], 2, "x its p50", tail)
+    for cores in placed:
+        for name in (OVER_LINK, CALL_LINK):
+            for speed, bound in ((FULL, 1.6), (PACED, 1.4)):
+                one, floor = found[cores, name, speed], found[cores, SOCKET, speed]
+                what = f"{name}, {speed}, {CORES[cores]}"
+                add(f"{what}: p50", one["p50_us"] / floor["p50_us"], bound, "x floor", 1)
+                tail = floor["p99_us"] / floor["p50_us"]
+                add(f"{what}: p99", one["p99_us"] / one["p50_us"], 2, "x its p50", tail)
     add(
         "burst into a callback", bursts[OVER_LINK]["messages_per_s"], 200_000, "msg/s",
         bursts[SOCKET]["messages_per_s"],
     )  # fmt: skip
     for speed in (FULL, PACED):
-        one, floor = (found[f"{n}, one way", speed]["p50_us"] for n in (IMAGE_LINK, IMAGE_FLOOR))
+        one, floor = (
+            found[placed[0], f"{name}, one way", speed]["p50_us"]
+            for name in (IMAGE_LINK, IMAGE_FLOOR)
+        )
         add(f"{IMAGE_LINK}, one way, {speed}", one / 1e3, 1, "ms", floor / 1e3)
     for side in ("publisher", "reader"):
         one, floor = (duty[name][f"{side}_percent"] for name in (OVER_LINK, SOCKET))
@@ -910,18 +941,21 @@ def targets(loop: str, tables: dict[str, list[dict[str, Any]]]) -> list[tuple[st
 
 def print_tables(tables: dict[str, list[dict[str, Any]]]) -> list[tuple[str, ...]]:
     """Print everything, and return the lines of the last table."""
-    floors = {(o["loop"], o["what"], o["speed"]): o["p50_us"] for o in tables["round_trips"]}
+    floors = {
+        (o["loop"], o["cores"], o["what"], o["speed"]): o["p50_us"] for o in tables["round_trips"]
+    }
     print(
-        f"{'loop':8} {'to another process and back, in us':38} {'speed':10} {'p50':>8} {'p99':>8} "
-        f"{'p99/p50':>8} {'x floor':>8} {'count':>6}"
+        f"{'loop':8} {'cores':5} {'to another process and back, in us':38} {'speed':10} "
+        f"{'p50':>8} {'p99':>8} {'p99/p50':>8} {'x floor':>8} {'count':>6}"
     )
     for one in tables["round_trips"]:
         name, _, way = one["what"].partition(", one way")
         floor = FLOOR_OF.get(name, SOCKET) + (", one way" if way or one["what"] != name else "")
+        times_floor = one["p50_us"] / floors[one["loop"], one["cores"], floor, one["speed"]]
         print(
-            f"{one['loop']:8} {one['what']:38} {one['speed']:10} {one['p50_us']:8.1f} "
-            f"{one['p99_us']:8.1f} {one['p99_us'] / one['p50_us']:8.2f} "
-            f"{one['p50_us'] / floors[one['loop'], floor, one['speed']]:8.2f} {one['count']:6}"
+            f"{one['loop']:8} {one['cores']:5} {one['what']:38} {one['speed']:10} "
+            f"{one['p50_us']:8.1f} {one['p99_us']:8.1f} {one['p99_us'] / one['p50_us']:8.2f} "
+            f"{times_floor:8.2f} {one['count']:6}"
         )
     print(
         f"\n{'loop':8} {f'bursts of {BURST:,} into a callback':38} {'msg/s':>10} {'best':>10} "
@@ -938,14 +972,14 @@ def print_tables(tables: dict[str, list[dict[str, Any]]]) -> list[tuple[str, ...
             f"{one['loop']:8} {one['what']:38} {one['publisher_percent']:10.2f} "
             f"{one['reader_percent']:10.2f}  {one['received']} of {one['sent']}"
         )
-    print(f"\n{'loop':8} {'target':40} {'figure':>18} {'bound':>11} {'':7} {'the floor has':>14}")
+    print(f"\n{'loop':8} {'target':50} {'figure':>18} {'bound':>11} {'':7} {'the floor has':>14}")
     checked = [
         line
         for loop in dict.fromkeys(one["loop"] for one in tables["duties"])
         for line in targets(loop, tables)
     ]
     for loop, what, figure, bound, met, floor in checked:
-        print(f"{loop:8} {what:40} {figure:>18} {bound:>11} {met:7} {floor:>14}")
+        print(f"{loop:8} {what:50} {figure:>18} {bound:>11} {met:7} {floor:>14}")
     return checked
 
 
@@ -970,13 +1004,42 @@ def run(loop: str, work: Awaitable[Any], limit_s: float | None = None) -> Any:
         return runner.run(main())
 
 
+def placements() -> list[tuple[int, ...]]:
+    """Return where the two processes run: on a core each, on one core, or anywhere if need be."""
+    if not hasattr(os, "sched_setaffinity"):
+        return [()]
+    cores = sorted(os.sched_getaffinity(0))
+    return [(cores[0], cores[1]), (cores[0], cores[0])] if len(cores) > 1 else [()]
+
+
 def part_of(args: argparse.Namespace) -> None:
     """Do what another process of this program is for."""
-    place = Place(args.folder, args.loop, args.port)
+    cores = tuple(int(core) for core in args.cores.split(",") if core)
+    if cores:  # before there are threads, which do the same
+        os.sched_setaffinity(0, {cores[args.part in OTHERS]})
+    place = Place(args.folder, args.loop, args.port, cores)
     if args.part.startswith("rclpy"):
         rclpy_process(args.part)
+    elif args.part == "measure":
+        plan = QUICK if args.quick else Plan()
+        print(json.dumps(run(args.loop, measure(place, plan), limit_s=300)))
     else:
         run(args.loop, echo(place) if args.part == "echo" else duty(args.part, args.kind, place))
+
+
+def tables_of(args: argparse.Namespace, loop: str, cores: tuple[int, ...]) -> dict[str, list[Any]]:
+    """Measure in a process of its own, and return its tables."""
+    memory = "/dev/shm" if Path("/dev/shm").is_dir() else None  # noqa: S108  # memory, not a file
+    with tempfile.TemporaryDirectory(dir=memory) as folder:
+        command = [
+            sys.executable, __file__, "--part", "measure", "--folder", folder, "--loop", loop,
+            "--port", str(args.port), "--cores", ",".join(map(str, cores)),
+        ]  # fmt: skip
+        if args.quick:
+            command.append("--quick")
+        output = subprocess.check_output(command)  # noqa: S603  # of this file
+        tables: dict[str, list[Any]] = json.loads(output)
+    return tables
 
 
 def main() -> None:
@@ -985,10 +1048,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--quick", action="store_true", help="a first look within 40 seconds")
+    parser.add_argument("--quick", action="store_true", help="a first look within a minute")
     parser.add_argument("--loop", choices=["asyncio", "uvloop"], help="only this event loop")
-    for hidden in ("--part", "--folder", "--kind"):
-        parser.add_argument(hidden, help=argparse.SUPPRESS)
+    for hidden in ("--part", "--folder", "--kind", "--cores"):
+        parser.add_argument(hidden, default="", help=argparse.SUPPRESS)
     # Below the ports that the system gives away, and seldom those of another run beside this one.
     port = 18_600 + os.getpid() % 600 * 20
     parser.add_argument("--port", type=int, default=port, help=argparse.SUPPRESS)
@@ -998,11 +1061,9 @@ def main() -> None:
             part_of(args)
         return
     tables: dict[str, list[dict[str, Any]]] = {}
-    memory = "/dev/shm" if Path("/dev/shm").is_dir() else None  # noqa: S108  # memory, not a file
     for loop in [args.loop] if args.loop else ["asyncio", "uvloop"]:
-        with tempfile.TemporaryDirectory(dir=memory) as folder:
-            work = measure(Place(folder, loop, args.port), QUICK if args.quick else Plan())
-            for name, rows in run(loop, work, limit_s=300).items():
+        for cores in placements():
+            for name, rows in tables_of(args, loop, cores).items():
                 tables.setdefault(name, []).extend(rows)
     checked = print_tables(tables)
     if not has_rclpy():
