@@ -11,6 +11,7 @@ import pytest
 import zenoh  # noqa: TID251  # plays the other participants, without aionode
 
 from aionode.graph import Graph
+from aionode.settle import one_turn
 from aionode.transport.zenoh.routers import listeners_in, seen_in
 from aionode.transport.zenoh.session import close_session, open_router
 from aionode.transport.zenoh.transport import ZenohTransport
@@ -151,16 +152,21 @@ async def test_a_plain_session_is_a_stranger_while_it_is_connected(heard: Heard)
     assert heard.told == [True, False]
 
 
-async def test_strangers_are_told_with_the_connection(heard: Heard) -> None:
+async def test_strangers_are_told_with_the_connection(
+    heard: Heard, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Not in a later turn of the loop, in which something may be published."""
     seen: list[bool] = []
     there = asyncio.Event()
 
-    def on_sessions(connected: object) -> None:
-        asyncio.get_running_loop().call_soon(lambda: seen.append(heard.neighbours.strangers))
-        asyncio.get_running_loop().call_soon(there.set)
+    note = heard.neighbours._on_connected
 
-    heard.neighbours.on_sessions = on_sessions
+    def on_connected() -> None:
+        note()
+        seen.append(heard.neighbours.strangers)
+        there.set()
+
+    monkeypatch.setattr(heard.neighbours, "_on_connected", on_connected)
     with raw_session():
         await there.wait()
 
@@ -195,13 +201,10 @@ async def test_a_ros_context_stays_known_after_its_last_node(heard: Heard) -> No
 @pytest.mark.parametrize("domain_id", [DOMAIN_ID, DOMAIN_ID + 1])
 async def test_a_context_is_no_stranger(heard: Heard, domain_id: int) -> None:
     """Of any domain, and before it has a node."""
-    found = Collector()
-    heard.neighbours.on_sessions = lambda connected: found(set(connected))
     async with context("b2", domain_id=domain_id):
-        await found.have(1)
+        while "b2" not in heard.neighbours._connected:
+            await one_turn()
         await heard.until(False)
-
-        assert {"b2"} in found.items
 
 
 async def test_a_router_that_nobody_strange_listens_behind_is_no_stranger(heard: Heard) -> None:

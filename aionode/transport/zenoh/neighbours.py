@@ -14,7 +14,7 @@ from aionode.transport.zenoh.routers import Routers
 from aionode.wire.liveliness import PREFIX as ROS_PREFIX
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable
 
     from aionode.transport.zenoh.link import Link
 
@@ -41,7 +41,6 @@ class Neighbours:
         beacon: What to announce, as chunks of a key that begin with the participant; None for
             nothing, and then nothing is looked for either.
         on_beacon: Called with what another context announces, and whether it is there.
-        on_sessions: Called with the ids of the sessions that are connected, when that has changed.
         strangers: Whether somebody can be reached whose subscriptions nobody announces.
         on_strangers: Called with `strangers` when that has changed.
         on_post: Called with what others have sent to this context; in order for each of them.
@@ -50,7 +49,6 @@ class Neighbours:
     def __init__(self, link: Link) -> None:
         self.beacon: str | None = None
         self.on_beacon: Callable[[str, bool], None] = ignore
-        self.on_sessions: Callable[[Iterable[str]], None] = ignore
         self.strangers = False
         self.on_strangers: Callable[[bool], None] = ignore
         self.on_post: Callable[[bytes], None] = ignore
@@ -228,7 +226,6 @@ class Neighbours:
 
     def _on_connected(self) -> None:
         self._routers.connect(self._of_kind(zenoh.WhatAmI.ROUTER))
-        self.on_sessions(set(self._connected))
         self._update()
 
     def _of_kind(self, kind: zenoh.WhatAmI) -> set[str]:
