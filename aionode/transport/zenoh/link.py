@@ -6,11 +6,11 @@ import logging
 from abc import abstractmethod
 from collections import Counter
 from collections.abc import Callable
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Final, TypeVar
 
 import zenoh
 
-from aionode.clock import MachineTime
+from aionode.clock import MachineTime, perf_ns
 from aionode.transport.base import Announcement
 from aionode.transport.sender import Sender
 from aionode.transport.wakeup import Lane, Wakeup
@@ -26,6 +26,9 @@ __all__ = ["Entity", "Link"]
 T = TypeVar("T")
 
 logger = logging.getLogger("aionode.transport.zenoh")
+
+SHARING_NS: Final = 500_000_000
+"""How long Zenoh may take to have its shared memory ready."""
 
 
 class Link:
@@ -59,6 +62,7 @@ class Link:
         self.cancellations = Cancellations(participant, domain_id, self.wakeup, self.note_garbage)
         self.now_ns = MachineTime().system_ns
         self.on_reader: dict[str, list[Callable[[], None]]] = {}
+        self._shares_from_ns = 0  # when the first large message of this session was sent
         self._entities: dict[Entity, None] = {}
 
     def lane(self, handle: Callable[[T], None], limit: int | None = None) -> Lane[T]:
@@ -79,9 +83,21 @@ class Link:
         """Declare everything in `session`."""
         self.session = session
         self.graph = graph
+        self._shares_from_ns = 0
         self.cancellations.start(session)
         for entity in list(self._entities):
             entity.declare(session)
+
+    def begins_to_share(self) -> bool:
+        """Whether Zenoh may be busy making its shared memory. For the thread that sends bulk.
+
+        It does so with the first large message, which takes some 20 ms, and this message still goes
+        through the network: fragment by fragment, of which each is dropped after a millisecond or
+        two of waiting, with the whole message (zenoh 1.10).
+        """
+        now_ns = perf_ns()
+        self._shares_from_ns = self._shares_from_ns or now_ns
+        return now_ns - self._shares_from_ns < SHARING_NS
 
     async def flush(self) -> None:
         """Wait until everything that was handed to the threads was sent, and let them end."""

@@ -101,6 +101,8 @@ class ZenohWriter(Entity, Writer):
         self._early: deque[tuple[bytes, bytes]] = deque(maxlen=depth)
         self.active = self._transient
         self.bounded = qos.history is HistoryPolicy.KEEP_ALL and is_reliable(qos)
+        # One that `_send` may make wait; the others wait anyway, or may lose what they send.
+        self._patient = is_reliable(qos) and not self.bounded and not self._transient
         # One that waits for slow readers holds up nobody else.
         self._sender = Sender("aionode-keep-all", link.wakeup) if self.bounded else link.bulk
         link.senders.add(self._sender)
@@ -190,12 +192,31 @@ class ZenohWriter(Entity, Writer):
                 self._early.append((payload, extra))
         elif self.bounded or len(payload) >= BULK_BYTES or len(self._outlet):
             # Small ones wait behind a large one, so that the order stays.
-            self._outlet.put(lambda: send(publisher, payload, extra))
+            self._outlet.put(lambda: self._send(publisher, payload, extra))
         else:
             try:
                 publisher.put(payload, attachment=extra)
             except zenoh.ZError as error:
                 raise TransportError(f"{self._key}: {reason(error)}") from error
+
+    def _send(
+        self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
+    ) -> None:
+        """Send from a thread, where nobody can be told that the session was closed meanwhile."""
+        session = self.link.session
+        try:
+            if session is not None and self._patient and self.link.begins_to_share():
+                session.put(
+                    self._key,
+                    payload,
+                    attachment=extra,
+                    congestion_control=zenoh.CongestionControl.BLOCK,
+                    allowed_destination=zenoh.Locality.REMOTE,
+                )
+            else:
+                publisher.put(payload, attachment=extra)
+        except zenoh.ZError as error:
+            logger.debug("%s: not sent: %s", self._key, reason(error))
 
     def has_room(self) -> bool:
         """Whether one more message can wait to be sent."""
@@ -236,14 +257,6 @@ def withdraw(publisher: zenoh.Publisher | ext.AdvancedPublisher) -> None:
         publisher.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
     except zenoh.ZError as error:
         logger.debug("%s: not undeclared: %s", publisher.key_expr, error)
-
-
-def send(publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes) -> None:
-    """Send from a thread, where nobody can be told that the session was closed meanwhile."""
-    try:
-        publisher.put(payload, attachment=extra)
-    except zenoh.ZError as error:
-        logger.debug("%s: not sent: %s", publisher.key_expr, error)
 
 
 # Receiving
