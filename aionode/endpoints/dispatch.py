@@ -233,9 +233,7 @@ class Dispatch:
             self._on_error(error, self._context)
 
     def _record_sync(self, took_ns: int) -> None:
-        stats = self.stats
-        stats.run_time.record(took_ns)
-        stats.blocking.record(took_ns)
+        self.stats.record_took(took_ns)
         if took_ns > self.budget_ns:
             self.report_blocking(took_ns)
 

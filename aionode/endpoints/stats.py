@@ -166,6 +166,10 @@ class CallbackStats:
     def record_call(self, waited_ns: int, took_ns: int) -> None:
         """Add a callback without an await: what it waited, and how long it ran and blocked."""
         self._waited_ns.append(waited_ns)
+        self.record_took(took_ns)
+
+    def record_took(self, took_ns: int) -> None:
+        """Add a callback without an await, which waited for nothing: how long it ran."""
         took = self._took_ns
         took.append(took_ns)
         if len(took) >= NOTED_CALLS:

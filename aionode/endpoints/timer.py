@@ -162,7 +162,10 @@ class Timer(Entity):
         while True:
             now_ns = ticker.clock.now_ns()
             if not schedule.is_ready(now_ns):
-                await self._at_once.after(ticker.wait(self._call_at_once))
+                if ticker.clock.follows_machine:
+                    await self._at_once.after(ticker.wait(self._call_at_once))
+                else:
+                    await ticker.wait()
                 continue
             expected_ns = schedule.call(now_ns)
             rest = self._call(expected_ns, now_ns)
