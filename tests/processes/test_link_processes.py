@@ -21,6 +21,7 @@ import pytest
 
 from aionode.context import Context
 from aionode.interfaces.std_msgs.msg import Int32, UInt8MultiArray
+from aionode.node import Node
 from aionode.settle import one_turn
 from aionode.transport.link.connection import Connection
 from aionode.transport.link.handover import Way
@@ -96,19 +97,16 @@ class Pings:
 
 
 @asynccontextmanager
-async def pings() -> AsyncIterator[Pings]:
+async def linked_node() -> AsyncIterator[Node]:
     """A node that may be linked."""
-    async with (
-        asyncio.timeout(40),
-        Context(link=True) as context,
-        quiet_node("ping", context) as node,
-    ):
-        yield Pings(node)
+    async with asyncio.timeout(40), Context(link=True) as context, quiet_node("n", context) as node:
+        yield node
 
 
 async def test_a_killed_process_ends_its_link_and_the_next_gets_one() -> None:
     """In the middle of a stream, with what was on its way."""
-    async with pings() as ping:
+    async with linked_node() as node:
+        ping = Pings(node)
         for _ in range(2):
             with other_process() as process:
                 await ping.until_linked()
@@ -128,7 +126,8 @@ async def test_a_killed_process_ends_its_link_and_the_next_gets_one() -> None:
 
 async def test_a_frozen_process_costs_nothing_but_its_messages() -> None:
     """The publisher drops the oldest, never waits, and goes on when it goes on."""
-    async with pings() as ping:
+    async with linked_node() as node:
+        ping = Pings(node)
         with other_process() as process:
             await ping.until_linked()
             process.send_signal(signal.SIGSTOP)
@@ -206,20 +205,10 @@ def in_mid_frame(link: Connection) -> bool:
     return bool(parser._pieces)
 
 
-@asynccontextmanager
-async def streams() -> AsyncIterator[Stream]:
-    """A node that hears a stream."""
-    async with (
-        asyncio.timeout(40),
-        Context(link=True) as context,
-        quiet_node("hear", context) as node,
-    ):
-        yield Stream(node)
-
-
 async def test_a_sender_that_is_killed_in_mid_frame_ends_its_stream_and_the_next_is_heard() -> None:
     """What it has not sent to the end is nothing; what it has is whole."""
-    async with streams() as stream:
+    async with linked_node() as node:
+        stream = Stream(node)
         for _ in range(2):
             with other_process("stream") as process:
                 await stream.until_linked()
@@ -238,7 +227,8 @@ async def test_a_sender_that_is_killed_in_mid_frame_ends_its_stream_and_the_next
 
 async def test_a_sender_that_is_frozen_in_mid_frame_goes_on_where_it_was() -> None:
     """Its link stays, and the rest of the frame comes with the next."""
-    async with streams() as stream:
+    async with linked_node() as node:
+        stream = Stream(node)
         with other_process("stream") as process:
             await stream.until_linked()
             await stream.freeze_in_mid_frame(process)

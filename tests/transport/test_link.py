@@ -84,12 +84,12 @@ def writer_of(publisher: Any) -> LinkWriter:
 
 
 @asynccontextmanager
-async def two_nodes() -> AsyncIterator[Two]:
-    """Two nodes that may be linked."""
+async def two_nodes(*, links: tuple[bool, bool] = (True, True)) -> AsyncIterator[Two]:
+    """Two nodes that may be linked, or not."""
     async with (
         asyncio.timeout(30),
-        Context(link=True) as first,
-        Context(link=True) as second,
+        Context(link=links[0]) as first,
+        Context(link=links[1]) as second,
         quiet_node("a", first) as a,
         quiet_node("b", second) as b,
     ):
@@ -613,17 +613,11 @@ def test_a_link_is_used_unless_it_was_switched_off(monkeypatch: pytest.MonkeyPat
 
 async def test_contexts_with_and_without_links_hear_each_other() -> None:
     """An older release, or one that was told not to."""
-    async with (
-        asyncio.timeout(30),
-        Context(link=True) as first,
-        Context(link=False) as second,
-        quiet_node("a", first) as a,
-        quiet_node("b", second) as b,
-    ):
-        numbers = Counting(Two(a, b))
+    async with two_nodes(links=(True, False)) as nodes:
+        numbers = Counting(nodes)
         await numbers.publisher.wait_for_subscribers()
         await numbers.go(50)
-        assert hub_of(a).links == []
+        assert hub_of(nodes.a).links == []
 
 
 def test_a_beacon_says_who_can_be_linked() -> None:

@@ -11,7 +11,7 @@ from aionode.testing import FaultyTransport
 from aionode.transport.base import Linkage
 from aionode.transport.local import LocalTransport
 from aionode.transport.zenoh.transport import ZenohTransport
-from tests.peers import DOMAIN_ID, kept, known, quiet_node, raw_session
+from tests.peers import DOMAIN_ID, kept, known, raw_session
 from tests.transport.test_link import (
     Counting,
     folder,
@@ -27,15 +27,9 @@ __all__ = ["folder"]  # a fixture
 
 async def test_a_subscription_of_another_context_is_reached_by_zenoh() -> None:
     """Beside one of this context, which is reached without."""
-    async with (
-        asyncio.timeout(30),
-        Context(link=False) as first,
-        Context(link=False) as second,
-        quiet_node("a", first) as a,
-        quiet_node("b", second) as b,
-    ):
-        readers = [node.create_subscription(Int32, "n") for node in (a, b)]
-        publisher = a.create_publisher(Int32, "n", 10)
+    async with two_nodes(links=(False, False)) as nodes:
+        readers = [node.create_subscription(Int32, "n") for node in nodes]
+        publisher = nodes.a.create_publisher(Int32, "n", 10)
         await publisher.wait_for_subscribers(2)
         assert publisher.stats.ways == {
             f"/a {readers[0].endpoint.gid.hex()[:8]}": "local",
