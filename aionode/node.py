@@ -58,9 +58,10 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
     callbacks are called while it runs: inside ``async with node:``, or during ``await node.run()``.
     It runs once; a destroyed node refuses everything with EntityDestroyedError.
 
-    An exception of a callback ends the node, unless the entity's `on_error` says otherwise: all its
-    callbacks are cancelled, and the exception comes out of ``async with`` or `run` in an
-    ExceptionGroup, as from an `asyncio.TaskGroup`.
+    An exception in the callback of a subscription or timer ends the node, unless the entity's
+    `on_error` says otherwise: all its callbacks are cancelled, and the exception comes out of
+    ``async with`` or `run` in an ExceptionGroup, as from an `asyncio.TaskGroup`. Services and
+    action servers tell the caller, log the exception, and go on.
 
     Args:
         node_name: Letters, digits and underscores, not beginning with a digit.
@@ -467,7 +468,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         *,
         qos_profile: QoSProfile | int = qos.qos_profile_services_default,
         concurrent: bool | int = False,
-        on_error: OnError = "raise",
+        on_error: OnError = "log",
         offload: bool = False,
     ) -> Service[RequestT, ResponseT]:
         """Return a server of `srv_name`.
@@ -480,8 +481,9 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             qos_profile: A profile, or a depth.
             concurrent: False answers one request after the other, True all at once, a number at
                 most so many at once.
-            on_error: What becomes of an exception in the callback: ``"raise"`` ends the node,
-                ``"log"`` logs and counts it, a function gets (exception, CallbackContext).
+            on_error: What becomes of an exception in the callback, once the client was told:
+                ``"log"`` logs it with its traceback, counts it and goes on, ``"raise"`` ends the
+                node, a function gets (exception, CallbackContext).
             offload: Whether to run a sync callback in a thread.
 
         Raises:
