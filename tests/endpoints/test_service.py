@@ -268,9 +268,7 @@ async def test_a_failing_handler_ends_its_node_after_the_client_was_told(
         raise ValueError("boom")
 
     server = Node("server", context=context)
-    server.create_service(
-        AddTwoInts, "/add", handler, concurrent=concurrent, on_error="raise"
-    )
+    server.create_service(AddTwoInts, "/add", handler, concurrent=concurrent, on_error="raise")
     client = node.create_client(AddTwoInts, "/add")
 
     async def call() -> None:
