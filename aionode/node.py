@@ -23,6 +23,7 @@ from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.logging import get_logger
 from aionode.message import Message, ServiceType, holds_arrays
 from aionode.node_actions import NodeActionMethods
+from aionode.node_end import Ending, NodeEnd
 from aionode.node_graph import NodeGraphMethods
 from aionode.node_parameters import NodeParameterMethods
 from aionode.parameter import Parameter, ParameterStore, declare_qos_overrides
@@ -118,6 +119,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         self._tasks: asyncio.TaskGroup | None = None
         self._running = False
         self._destroyed = asyncio.Event()
+        self._ending = Ending(f"node {names.fully_qualified_name(namespace, node_name)}")
         self._clock = ROSClock(time_base=self.context.time_base)
         self._logger = get_logger(
             names.logger_name(namespace, node_name), now_ns=self.context.time_base.system_ns
@@ -183,6 +185,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             self._running = False
             raise
         self._home.move_in()
+        self._ending.begin()
         self._tasks = await asyncio.TaskGroup().__aenter__()
         for entity in list(self._entities):
             entity.start(self._tasks)
@@ -201,13 +204,14 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         """
         tasks = self._tasks
         assert tasks is not None  # noqa: S101  # set by __aenter__
-        self.destroy_node()
-        try:
-            await tasks.__aexit__(exc_type, exc, traceback)
-        finally:
-            self._running = False
-            self._home.move_out()
-            await self.context.release()
+        with self._ending.recorded():
+            self.destroy_node()
+            try:
+                await tasks.__aexit__(exc_type, exc, traceback)
+            finally:
+                self._running = False
+                self._home.move_out()
+                await self.context.release()
 
     async def run(self) -> None:
         """Run until `destroy_node`, which any callback may call.
@@ -220,7 +224,27 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             TransportError: the context cannot connect.
         """
         async with self:
-            await self._destroyed.wait()
+            await self.until_destroyed()
+
+    async def until_destroyed(self) -> None:
+        """Wait until `destroy_node` is called, as `run` does inside its ``async with``.
+
+        Cancelling has no effect on the node.
+        """
+        await self._destroyed.wait()
+
+    async def ended(self) -> NodeEnd:
+        """Wait until the node has ended, and return how and why.
+
+        It has when its callbacks have ended and its context was given back: after ``async with`` or
+        `run`, or at once if it was destroyed without ever running. Any number of tasks may wait,
+        and later calls return the same at once. Never raises what the node failed with.
+        Cancelling has no effect on the node.
+
+        Raises:
+            RuntimeError: it is awaited by the task that runs the node, which would wait for itself.
+        """
+        return await self._ending.wait()
 
     @property
     def destroyed(self) -> bool:
@@ -253,6 +277,8 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             announcement.close()
         self.context.graph.remove_node(self._info)
         self.context.remove_node(self)
+        if not self._running:
+            self._ending.note(NodeEnd("destroyed"))
 
     def call_in_loop(self, action: Callable[[], None]) -> None:
         """Do `action` in the thread of the node's loop: at once if this is it, or none runs."""

@@ -223,7 +223,7 @@ WAITS: dict[str, Callable[[Node], Any]] = {
 
 @pytest.mark.parametrize("name", list(WAITS))
 async def test_a_wait_that_is_not_awaited_has_no_truth_value(node: Node, name: str) -> None:
-    """In rclpy's programs `while not client.wait_for_service():` would take any service for available."""
+    """As a coroutine is true, `while not client.wait_for_service():` would go on at once."""
     with pytest.raises(TypeError, match=rf"{name}\(\) was not awaited.*while not await"):
         bool(WAITS[name](node))
 
