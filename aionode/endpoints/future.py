@@ -29,6 +29,7 @@ class Futures:
     def __init__(self, subject: str) -> None:
         self._subject = subject
         self._tasks: asyncio.TaskGroup | None = None
+        self._closed = False
         self._open: dict[asyncio.Future[Any], Coroutine[Any, Any, Any] | None] = {}
 
     def begin(self, work: Coroutine[Any, Any, T]) -> asyncio.Future[T]:
@@ -48,7 +49,9 @@ class Futures:
             ) from error
         self._open[future] = work
         future.add_done_callback(self._forget)
-        if self._tasks is not None:
+        if self._closed:
+            future.cancel(f"{self._subject}: destroyed")
+        elif self._tasks is not None:
             self._start(future)
         return future
 
@@ -59,7 +62,8 @@ class Futures:
             self._start(future)
 
     def close(self) -> None:
-        """Cancel what is under way."""
+        """Cancel what is under way, and from now on all else at once."""
+        self._closed = True
         for future in list(self._open):
             future.cancel(f"{self._subject}: destroyed")
 
