@@ -7,12 +7,13 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar, overload
 
 from aionode import names, node_services, qos
-from aionode.arguments import Arguments, parse_arguments
+from aionode.arguments import Arguments, Usage, parse_arguments
 from aionode.clock import ROSClock
 from aionode.context import Context
 from aionode.endpoints.channel import Channel
 from aionode.endpoints.dispatch import Callbacks
 from aionode.endpoints.home import Home
+from aionode.endpoints.no_effect import policies_without_effect
 from aionode.endpoints.rate import Rate
 from aionode.endpoints.service import Client, Service
 from aionode.endpoints.timer import Timer, to_period_ns
@@ -112,9 +113,13 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         own.refuse_unknown()
         shared = self.context.arguments if use_global_arguments else Arguments()
         self._rules = own.remap_rules + shared.remap_rules
+        self._usages = [Usage(own), self.context.usage if use_global_arguments else Usage(shared)]
+        for usage in self._usages:
+            usage.note_node(node_name)
         node_name = names.remap_node_name(self._rules, node_name)
         namespace = names.remap_namespace(self._rules, node_name, namespace)
         self._made = False
+        self._warned_of: set[str] = set()
         self._entities: dict[Entity, None] = {}
         self._tasks: asyncio.TaskGroup | None = None
         self._running = False
@@ -150,6 +155,9 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             allow_undeclared=allow_undeclared_parameters,
             publish=node_services.publish_parameter_events(self),
         )
+        for usage in self._usages:
+            if not usage.is_over:
+                usage.note_parameters(self._parameters)
         if automatically_declare_parameters_from_overrides:
             for name in self._parameters.overrides:
                 self.declare_parameter(name, descriptor=ParameterDescriptor(dynamic_typing=True))
@@ -189,6 +197,8 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         self._tasks = await asyncio.TaskGroup().__aenter__()
         for entity in list(self._entities):
             entity.start(self._tasks)
+        for usage in self._usages:
+            usage.begin(self.context.time_base, lambda: not self.destroyed, self._logger.warning)
         return self
 
     async def __aexit__(
@@ -358,10 +368,16 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         return self._resolve(service, only_expand=only_expand, is_service=True)
 
     def _resolve(self, name: str, *, only_expand: bool = False, is_service: bool = False) -> str:
-        rules = () if only_expand else self._rules
-        return names.resolve(
-            name, self.get_name(), self.get_namespace(), rules, is_service=is_service
-        )
+        resolve = partial(names.resolve, is_service=is_service)
+        if only_expand:
+            return resolve(name, self.get_name(), self.get_namespace())
+        for usage in self._usages:
+            if not usage.is_over:
+                expanded = resolve(name, self.get_name(), self.get_namespace())
+                usage.note_name(
+                    expanded, self.get_name(), self.get_namespace(), is_service=is_service
+                )
+        return resolve(name, self.get_name(), self.get_namespace(), self._rules)
 
     # Entities
 
@@ -669,6 +685,8 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
                 "publisher" if kind is EndpointKind.PUBLISHER else "subscription"
             )
             profile = declare_qos_overrides(self, full_name, entity, profile, overriding)
+        if self._made:
+            self._warn_of_no_effect(kind, full_name, profile)
         others = [e.qos for e in self.graph.endpoints(kind.opposite, name=full_name)]
         if kind is EndpointKind.PUBLISHER:
             profile = qos.best_available_for_publisher(profile, others)
@@ -678,6 +696,18 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             kind, self._info, full_name, ros_type, profile.resolved()
         )
         return Channel(endpoint, self.graph, self._callbacks, self._home)
+
+    def _warn_of_no_effect(self, kind: EndpointKind, name: str, profile: QoSProfile) -> None:
+        """Say once of each endpoint which of its policies do nothing."""
+        policies = policies_without_effect(profile, sends=kind is EndpointKind.PUBLISHER)
+        subject = f"{kind.value} of {name}"
+        if policies and subject not in self._warned_of:
+            self._warned_of.add(subject)
+            self._logger.warning(
+                f"{subject}: {', '.join(policies)}: announced to others and compared with theirs, "
+                "but without effect here: no event comes, and no message is dropped for it; to "
+                "notice silence, let a timer look at the time of the last message"
+            )
 
     def _add(self, entity: EntityT, channel: Channel | None = None) -> EntityT:
         """Take `entity` in: announce it, and start it if the node runs."""
