@@ -2,18 +2,18 @@
 
 Run it with ``python examples/web_control.py``, the robot with ``python examples/web_robot.py``, and
 open http://127.0.0.1:8001. The robot stops when the page is closed. It needs
-``pip install fastapi uvicorn``.
+``pip install fastapi uvicorn websockets``.
 """
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator
+from collections.abc import AsyncGenerator, AsyncIterator
 from typing import Annotated
 
 import uvicorn
-from fastapi import Body, FastAPI, Request, Response
+from fastapi import Body, FastAPI, Request, Response, WebSocket, WebSocketDisconnect
 from fastapi.responses import HTMLResponse, JSONResponse, StreamingResponse
 
 import aionode
@@ -91,7 +91,18 @@ def make_app(context: Context | None = None) -> FastAPI:
     @app.get("/drive")
     async def drive(distance: float) -> StreamingResponse:
         operator: Operator = app.state.supervisor.node
-        return StreamingResponse(progress(operator, distance), media_type="text/event-stream")
+        return StreamingResponse(server_sent(operator, distance), media_type="text/event-stream")
+
+    @app.websocket("/ws/drive")
+    async def drive_socket(websocket: WebSocket, distance: float) -> None:
+        operator: Operator = app.state.supervisor.node
+        await websocket.accept()
+        async with asyncio.TaskGroup() as tasks:
+            browser = tasks.create_task(until_left(websocket))
+            robot = tasks.create_task(send_progress(websocket, operator, distance))
+            await asyncio.wait([browser, robot], return_when=asyncio.FIRST_COMPLETED)
+            browser.cancel()
+            robot.cancel()
 
     return app
 
@@ -108,21 +119,43 @@ def answer_error(_request: Request, error: Exception) -> JSONResponse:
     return JSONResponse({"detail": str(error)}, status)
 
 
-async def progress(operator: Operator, distance: float) -> AsyncIterator[str]:
-    """Drive, and yield how far the robot is; who leaves the stream stops the robot."""
+async def server_sent(operator: Operator, distance: float) -> AsyncIterator[str]:
+    """Yield the progress as server-sent events."""
+    async with contextlib.aclosing(progress(operator, distance)) as events:
+        async for name, text in events:
+            yield f"event: {name}\ndata: {text}\n\n"
+
+
+async def send_progress(websocket: WebSocket, operator: Operator, distance: float) -> None:
+    """Send the progress, each step as JSON, and close."""
+    async with contextlib.aclosing(progress(operator, distance)) as events:
+        async for name, text in events:
+            await websocket.send_json({"event": name, "data": text})
+    await websocket.close()
+
+
+async def until_left(websocket: WebSocket) -> None:
+    """Return when the browser has left; what it says meanwhile makes no difference."""
+    with contextlib.suppress(WebSocketDisconnect):
+        while True:
+            await websocket.receive_text()
+
+
+async def progress(operator: Operator, distance: float) -> AsyncGenerator[tuple[str, str], None]:
+    """Drive, and yield how far the robot is; whoever closes this, or is cancelled, stops it."""
     try:
         async with asyncio.timeout(ANSWER_SEC):
             goal = await operator.drive.send_goal(Drive.Goal(distance=distance))
     except (AionodeError, TimeoutError) as error:
-        yield f"event: failure\ndata: {error}\n\n"
+        yield "failure", str(error)
         return
     try:
         async for feedback in goal:
-            yield f"event: feedback\ndata: {to_json(feedback)}\n\n"
+            yield "feedback", to_json(feedback)
         outcome = await goal.result()
-        yield f"event: result\ndata: {outcome.status.name}\n\n"
+        yield "result", outcome.status.name
     except AionodeError as error:  # the robot has gone
-        yield f"event: failure\ndata: {error}\n\n"
+        yield "failure", str(error)
     finally:
         if not goal.done:  # the stream was dropped between two events, while nobody awaited
             with contextlib.suppress(AionodeError):

@@ -315,6 +315,37 @@ def test_the_word_counter_counts_what_the_publisher_says(domain: int) -> None:
     assert [line.rpartition(" ")[2] for line in lines] == ["7", "14"]
 
 
+def test_the_parameters_of_another_node_are_read_and_set(domain: int) -> None:
+    """Twice what it was, until the limit refuses it with its reason."""
+    program = "examples/parameter_client.py"
+    with running("examples/driver.py", domain=domain) as driver:
+        driver.wait_until_running()
+        texts = []
+        for _ in range(3):
+            with running(program, domain=domain) as client:
+                texts.append(client.rest())
+
+    assert "speed: 0.5 -> 1.0" in texts[0]
+    assert "speed: 1.0 -> 2.0" in texts[1]
+    assert "speed stays 2.0" in texts[2]
+
+
+def test_the_last_message_of_a_program_is_that_the_wheels_stop(domain: int) -> None:
+    """Ctrl-C cancels the callback, whose `finally` may still publish."""
+    with (
+        running(
+            "-m", "aionode", "topic", "echo", "/cmd_vel", "--field", "linear.x", domain=domain
+        ) as echo,
+        running("examples/last_message.py", domain=domain) as robot,
+    ):
+        echo.line_with(r"^0\.2")
+        status, text = robot.end_with(signal.SIGINT)
+        echo.line_with(r"^0\.0")
+
+    assert status == 0, text
+    assert "Error" not in text
+
+
 def test_the_robot_drives_where_a_client_in_another_process_tells_it(domain: int) -> None:
     """Feedback comes on the way, the result at the end."""
     program = "examples/navigate.py"

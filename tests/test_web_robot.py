@@ -7,7 +7,7 @@ import os
 import re
 import signal
 import socket
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator, MutableMapping
 from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING
 
@@ -22,7 +22,7 @@ from aionode.interfaces.std_msgs.msg import Float32
 from aionode.message import to_json
 from aionode.node import Node
 from examples.web_control import Operator, make_app
-from examples.web_robot import Drive
+from examples.web_robot import Drive, Robot
 from tests.test_examples import Program
 
 if TYPE_CHECKING:
@@ -194,6 +194,38 @@ async def test_the_robot_stops_when_the_browser_leaves(
 
     await wheels.until(turning=False)
     await drives_again(web, app)
+
+
+async def test_the_robot_stops_when_a_websocket_is_closed(
+    aionode_context: Context, node_factory: Callable[..., Node]
+) -> None:
+    """In one process here: what comes from the socket is played by the test."""
+    app = make_app(aionode_context)
+    wheels = Wheels(node_factory("wheels"))
+    incoming: asyncio.Queue[dict[str, object]] = asyncio.Queue()
+    sent: list[object] = []
+
+    async def send(message: MutableMapping[str, object]) -> None:
+        sent.append(message["type"])
+
+    scope = {
+        "type": "websocket",
+        "path": "/ws/drive",
+        "raw_path": b"/ws/drive",
+        "query_string": f"distance={FAR}".encode(),
+        "headers": [],
+        "subprotocols": [],
+    }
+    async with Robot(aionode_context), app.router.lifespan_context(app):
+        await app.state.supervisor.node.drive.wait_for_server()
+        incoming.put_nowait({"type": "websocket.connect"})
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(app(scope, incoming.get, send))
+            await wheels.until(turning=True)
+            incoming.put_nowait({"type": "websocket.disconnect", "code": 1001})
+            await wheels.until(turning=False)
+
+    assert sent[:2] == ["websocket.accept", "websocket.send"]
 
 
 async def test_a_killed_robot_ends_the_stream_and_one_that_is_back_drives(
