@@ -462,3 +462,17 @@ def test_a_cancellation_at_any_await_leaves_a_primary_state(
                 assert node._transitions._idle.is_set()
 
     asyncio.run(run())
+
+
+async def test_two_hundred_transitions_while_topics_flow(node: Node, managed: Managed) -> None:
+    """No state is lost, and none is stuck."""
+    flowing = node.create_publisher(String, "/chatter", 10)
+    managed.create_lifecycle_subscription(String, "/chatter", lambda msg: None)
+    states = []
+    for _ in range(50):
+        for label in ("configure", "activate", "deactivate", "cleanup"):
+            flowing.publish(String(data=label))
+            assert await change(node, label)
+            states.append(managed.lifecycle_state.label)
+
+    assert states == ["inactive", "active", "inactive", "unconfigured"] * 50
