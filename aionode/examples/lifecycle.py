@@ -32,7 +32,7 @@ class Talker(LifecycleNode):
             raise OSError("no device at /dev/voice")
         for done in (0.5, 1.0):
             await self.get_clock().sleep(0.05)
-            self.report_progress("opening the device", done)
+            self.report_progress(f"opening the device, {state.label} so far", done)
         return TransitionCallbackReturn.SUCCESS
 
     def on_error(self, state: State, error: Exception | None = None) -> TransitionCallbackReturn:
