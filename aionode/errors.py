@@ -13,6 +13,7 @@ name; new ones end in `Error`. They carry plain values, never live objects.
     ├── ConfigurationError (ValueError)
     ├── DecodeError (ValueError)
     ├── EntityDestroyedError (RuntimeError)
+    ├── EntityInactiveError (RuntimeError)
     ├── GoalError (RuntimeError)
     │   ├── GoalAbortedError
     │   ├── GoalCanceledError
@@ -48,6 +49,7 @@ name; new ones end in `Error`. They carry plain values, never live objects.
     │   └── ServiceUnavailableError (TimeoutError)
     ├── RequestTimeoutError (TimeoutError)
     ├── TimeSourceChangedError (RuntimeError)
+    ├── TransitionError (RuntimeError)
     └── TransportError (ConnectionError)
         └── FrameError
 """
@@ -62,6 +64,7 @@ __all__ = [
     "ConfigurationError",
     "DecodeError",
     "EntityDestroyedError",
+    "EntityInactiveError",
     "FrameError",
     "GoalAbortedError",
     "GoalCanceledError",
@@ -97,6 +100,7 @@ __all__ = [
     "ServiceError",
     "ServiceUnavailableError",
     "TimeSourceChangedError",
+    "TransitionError",
     "TransportError",
     "UnknownROSArgsError",
 ]
@@ -139,6 +143,33 @@ class EntityDestroyedError(AionodeError, RuntimeError):
     def __init__(self, subject: str, action: str = "used") -> None:
         self.subject = subject
         super().__init__(f"{subject}: destroyed, and cannot be {action} any more; make a new one")
+
+
+class EntityInactiveError(AionodeError, RuntimeError):
+    """Something of a managed node was used that works only while the node is active.
+
+    Attributes:
+        subject: What was used.
+    """
+
+    def __init__(self, subject: str) -> None:
+        self.subject = subject
+        super().__init__(f"{subject}: the node is not active; activate it first")
+
+
+class TransitionError(AionodeError, RuntimeError):
+    """A managed node could not make a transition.
+
+    Attributes:
+        node: Full name of the node.
+        transition: Label of the transition.
+        state: Label of the state in which the node is now.
+        reason: What went wrong.
+    """
+
+    def __init__(self, node: str, transition: str, state: str, reason: str) -> None:
+        self.node, self.transition, self.state, self.reason = node, transition, state, reason
+        super().__init__(f"{node}: cannot {transition}: {reason}; the node is {state}")
 
 
 class MessageError(AionodeError, ValueError):
