@@ -11,6 +11,7 @@ name; new ones end in `Error`. They carry plain values, never live objects.
     ├── CallbackSignatureError (TypeError, RuntimeError)
     ├── CommandError (RuntimeError)
     ├── ConfigurationError (ValueError)
+    ├── ContentFilterError (ValueError)
     ├── DecodeError (ValueError)
     ├── EntityDestroyedError (RuntimeError)
     ├── EntityInactiveError (RuntimeError)
@@ -62,6 +63,7 @@ __all__ = [
     "CallbackSignatureError",
     "CommandError",
     "ConfigurationError",
+    "ContentFilterError",
     "DecodeError",
     "EntityDestroyedError",
     "EntityInactiveError",
@@ -396,6 +398,20 @@ class ConfigurationError(AionodeError, ValueError):
         self.given = given
         self.fits = fits
         super().__init__(f"{source}: {given!r} given; {fits}")
+
+
+class ContentFilterError(AionodeError, ValueError):
+    """A content filter cannot be used.
+
+    Attributes:
+        expression: The filter.
+        position: Where in it the problem is, counted in characters from 0.
+        problem: What is wrong.
+    """
+
+    def __init__(self, expression: str, position: int, problem: str) -> None:
+        self.expression, self.position, self.problem = expression, position, problem
+        super().__init__(f"content filter {expression!r}: {problem} (at character {position + 1})")
 
 
 class NodeNameNonExistentError(AionodeError, LookupError, RuntimeError):
