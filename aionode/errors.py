@@ -11,8 +11,10 @@ name; new ones end in `Error`. They carry plain values, never live objects.
     ├── CallbackSignatureError (TypeError, RuntimeError)
     ├── CommandError (RuntimeError)
     ├── ConfigurationError (ValueError)
+    ├── ContentFilterError (ValueError)
     ├── DecodeError (ValueError)
     ├── EntityDestroyedError (RuntimeError)
+    ├── EntityInactiveError (RuntimeError)
     ├── GoalError (RuntimeError)
     │   ├── GoalAbortedError
     │   ├── GoalCanceledError
@@ -49,6 +51,7 @@ name; new ones end in `Error`. They carry plain values, never live objects.
     │   └── ServiceUnavailableError (TimeoutError)
     ├── RequestTimeoutError (TimeoutError)
     ├── TimeSourceChangedError (RuntimeError)
+    ├── TransitionError (RuntimeError)
     └── TransportError (ConnectionError)
         └── FrameError
 """
@@ -61,8 +64,10 @@ __all__ = [
     "CallbackSignatureError",
     "CommandError",
     "ConfigurationError",
+    "ContentFilterError",
     "DecodeError",
     "EntityDestroyedError",
+    "EntityInactiveError",
     "FrameError",
     "GoalAbortedError",
     "GoalCanceledError",
@@ -99,6 +104,7 @@ __all__ = [
     "ServiceError",
     "ServiceUnavailableError",
     "TimeSourceChangedError",
+    "TransitionError",
     "TransportError",
     "UnknownROSArgsError",
 ]
@@ -141,6 +147,33 @@ class EntityDestroyedError(AionodeError, RuntimeError):
     def __init__(self, subject: str, action: str = "used") -> None:
         self.subject = subject
         super().__init__(f"{subject}: destroyed, and cannot be {action} any more; make a new one")
+
+
+class EntityInactiveError(AionodeError, RuntimeError):
+    """Something of a managed node was used that works only while the node is active.
+
+    Attributes:
+        subject: What was used.
+    """
+
+    def __init__(self, subject: str) -> None:
+        self.subject = subject
+        super().__init__(f"{subject}: the node is not active; activate it first")
+
+
+class TransitionError(AionodeError, RuntimeError):
+    """A managed node could not make a transition.
+
+    Attributes:
+        node: Full name of the node.
+        transition: Label of the transition.
+        state: Label of the state in which the node is now.
+        reason: What went wrong.
+    """
+
+    def __init__(self, node: str, transition: str, state: str, reason: str) -> None:
+        self.node, self.transition, self.state, self.reason = node, transition, state, reason
+        super().__init__(f"{node}: cannot {transition}: {reason}; the node is {state}")
 
 
 class MessageError(AionodeError, ValueError):
@@ -367,6 +400,20 @@ class ConfigurationError(AionodeError, ValueError):
         self.given = given
         self.fits = fits
         super().__init__(f"{source}: {given!r} given; {fits}")
+
+
+class ContentFilterError(AionodeError, ValueError):
+    """A content filter cannot be used.
+
+    Attributes:
+        expression: The filter.
+        position: Where in it the problem is, counted in characters from 0.
+        problem: What is wrong.
+    """
+
+    def __init__(self, expression: str, position: int, problem: str) -> None:
+        self.expression, self.position, self.problem = expression, position, problem
+        super().__init__(f"content filter {expression!r}: {problem} (at character {position + 1})")
 
 
 class NodeNameNonExistentError(AionodeError, LookupError, RuntimeError):

@@ -143,6 +143,19 @@ def test_a_goal_is_awaited_watched_and_cancelled() -> None:
     assert program.process.returncode == 0
 
 
+def test_a_managed_node_fails_is_canceled_and_goes_up_and_down() -> None:
+    """Each ending of a transition leaves a state from which the next one begins."""
+    with running("-m", "aionode.examples.lifecycle") as program:
+        text = program.rest()
+
+    assert "on_error:   after unconfigured: no device at /dev/voice" in text
+    assert "canceled:   the talker is unconfigured [1]" in text
+    assert "up:         the talker is active [3]" in text
+    assert text.count("heard:") == 3
+    assert "down:       the talker is unconfigured [1]" in text
+    assert program.process.returncode == 0
+
+
 def test_timers_keep_their_grid() -> None:
     """Every fast tick comes while the slow timer works."""
     with running("-m", "aionode.examples.timers") as program:

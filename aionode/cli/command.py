@@ -25,6 +25,7 @@ NOUNS = {
     "completion": ("aionode.cli.completing:completion", "Print the completion of a shell."),
     "doctor": ("aionode.cli.doctor:doctor_command", "Say why two endpoints do not talk."),
     "interface": ("aionode.cli.interface:interface", "Show message, service and action types."),
+    "lifecycle": ("aionode.cli.lifecycle:lifecycle", "See and change states of managed nodes."),
     "node": ("aionode.cli.node:node", "List nodes, and what they offer and use."),
     "param": ("aionode.cli.param:param", "Read and set parameters of nodes."),
     "router": ("aionode.cli.router:router_command", "Connect machines, as rmw_zenohd does."),

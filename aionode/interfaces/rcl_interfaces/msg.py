@@ -127,6 +127,13 @@ class Log(Message, typename="rcl_interfaces/msg/Log"):
 class LoggerLevel(Message, typename="rcl_interfaces/msg/LoggerLevel"):
     """A logger and the severity from which it writes; levels as in Log."""
 
+    LOG_LEVEL_UNKNOWN: ClassVar[uint8] = 0
+    LOG_LEVEL_DEBUG: ClassVar[uint8] = 10
+    LOG_LEVEL_INFO: ClassVar[uint8] = 20
+    LOG_LEVEL_WARN: ClassVar[uint8] = 30
+    LOG_LEVEL_ERROR: ClassVar[uint8] = 40
+    LOG_LEVEL_FATAL: ClassVar[uint8] = 50
+
     name: str = ""
     level: uint32 = 0
 

@@ -1,0 +1,416 @@
+"""Filters over the fields of messages, in the language of DDS: ``temperature > %0 AND NOT stale``.
+
+The grammar is that of the DDS specification (OMG DDS 1.4, Annex B.2, "FilterExpression"), which
+ROS 2 hands to its middleware::
+
+    condition   predicate | condition AND condition | condition OR condition
+                | NOT condition | ( condition )
+    predicate   term (= | <> | != | > | >= | < | <=) term
+                | field LIKE text | field [NOT] BETWEEN literal AND literal
+    term        field | literal
+    field       name { . name } [ "[" index "]" ]
+    literal     5 | 0x1F | -2.5e3 | 'text' | TRUE | FALSE | %0 … %99
+
+NOT binds more tightly than AND, and AND more tightly than OR. Words in capitals may be written in
+small letters. LIKE knows ``%`` for any text and ``_`` for one character. A parameter, such as
+``%0``, stands for a literal that is given apart, as text.
+"""
+
+from __future__ import annotations
+
+import operator
+import re
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from aionode.errors import ContentFilterError
+from aionode.message import fields, type_name
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from aionode.message import FieldType, Message
+
+__all__ = ["ContentFilterOptions", "compile_filter"]
+
+MAX_PARAMETERS: Final = 100
+"""As many as the grammar can name."""
+
+MAX_DEPTH: Final = 50
+"""How deep parentheses and NOT may be nested."""
+
+
+@dataclass
+class ContentFilterOptions:
+    """Which messages a subscription wants, with rclpy's names.
+
+    Attributes:
+        filter_expression: A condition over the fields of the message; empty for all messages.
+        expression_parameters: Literals for ``%0`` and the following, as text: ``"5"``, ``"'on'"``.
+    """
+
+    filter_expression: str = ""
+    expression_parameters: list[str] = field(default_factory=list)
+
+
+OPERATORS: Final[dict[str, Callable[[Any, Any], bool]]] = {
+    "=": operator.eq,
+    "<>": operator.ne,
+    "!=": operator.ne,
+    ">": operator.gt,
+    ">=": operator.ge,
+    "<": operator.lt,
+    "<=": operator.le,
+}
+
+TOKEN: Final = re.compile(
+    r"""\s*(?:
+        (?P<number>[+-]?(?:0[xX][0-9a-fA-F]+|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?))
+      | (?P<string>'(?:[^'\\]|\\.)*')
+      | (?P<parameter>%\d{1,2})
+      | (?P<name>[A-Za-z_]\w*(?:\[\d+\])?(?:\.[A-Za-z_]\w*(?:\[\d+\])?)*)
+      | (?P<operator><>|!=|>=|<=|=|>|<|\(|\))
+    )""",
+    re.VERBOSE,
+)
+
+WORDS: Final = frozenset({"and", "or", "not", "like", "between", "true", "false"})
+
+
+class Token(NamedTuple):
+    """One word of an expression; `kind` is a group of `TOKEN`, ``word``, or ``end``."""
+
+    kind: str
+    text: str
+    position: int
+
+
+class Operand(NamedTuple):
+    """One side of a comparison.
+
+    Attributes:
+        kind: ``number``, ``text`` or ``truth``: only the same can be compared.
+        get: Returns its value for a message.
+        text: How it was written.
+        is_field: Whether its value depends on the message.
+    """
+
+    kind: str
+    get: Callable[[Any], Any]
+    text: str
+    is_field: bool
+
+
+def compile_filter(
+    msg_type: type[Message], filter_expression: str, expression_parameters: Sequence[str] = ()
+) -> Callable[[Any], bool]:
+    """Return a function that says whether a message passes.
+
+    Args:
+        msg_type: The class of the messages.
+        filter_expression: The condition.
+        expression_parameters: The literals that ``%0`` and the following stand for.
+
+    Raises:
+        ContentFilterError: the expression cannot be read, names a field that the message does not
+            have, or compares what cannot be compared; the text says what and where.
+        TypeError: a parameter is no text.
+    """
+    return Parser(msg_type, filter_expression, expression_parameters).parse()
+
+
+def tokens_of(expression: str) -> list[Token]:
+    """Return the words of an expression, and the end.
+
+    Raises:
+        ContentFilterError: there is something that is no word of the language.
+    """
+    found = []
+    position = 0
+    end = len(expression.rstrip())
+    while position < end:
+        match = TOKEN.match(expression, position)
+        if match is None:
+            rest = expression[position:].lstrip()
+            raise ContentFilterError(
+                expression, len(expression) - len(rest), f"{rest[:10]!r} is not understood"
+            )
+        kind = str(match.lastgroup)
+        text = match.group(kind)
+        if kind == "name" and text.lower() in WORDS:
+            kind, text = "word", text.lower()
+        found.append(Token(kind, text, match.start(str(match.lastgroup))))
+        position = match.end()
+    return [*found, Token("end", "the end", end)]
+
+
+class Parser:
+    """Reads one expression, from left to right, one method for each rule of the grammar."""
+
+    def __init__(self, msg_type: type[Message], expression: str, parameters: Sequence[str]) -> None:
+        if len(parameters) > MAX_PARAMETERS:
+            raise ContentFilterError(
+                expression, 0, f"{len(parameters)} parameters given; at most {MAX_PARAMETERS} fit"
+            )
+        for index, parameter in enumerate(parameters):
+            if not isinstance(parameter, str):
+                raise TypeError(f"filter parameter %{index}: {parameter!r} is no text; write '5'")
+        self._msg_type = msg_type
+        self._expression = expression
+        self._parameters = parameters
+        self._tokens = tokens_of(expression)
+        self._next = 0
+        self._depth = 0
+
+    # Words
+
+    @property
+    def _token(self) -> Token:
+        return self._tokens[self._next]
+
+    def _take(self) -> Token:
+        token = self._token
+        self._next += token.kind != "end"
+        return token
+
+    def _took(self, kind: str, text: str) -> bool:
+        """Take the next word if it is this one."""
+        if (self._token.kind, self._token.text) != (kind, text):
+            return False
+        self._next += 1
+        return True
+
+    def _expect(self, kind: str, text: str) -> None:
+        if not self._took(kind, text):
+            self._fail(f"expected {text.upper()}, got {self._token.text}")
+
+    def _fail(self, problem: str, token: Token | None = None) -> Any:
+        position = (self._token if token is None else token).position
+        raise ContentFilterError(self._expression, position, problem)
+
+    # Rules
+
+    def parse(self) -> Callable[[Any], bool]:
+        """Return the whole condition."""
+        condition = self._or()
+        if self._token.kind != "end":
+            self._fail(f"expected AND, OR or the end, got {self._token.text}")
+        return condition
+
+    def _or(self) -> Callable[[Any], bool]:
+        conditions = [self._and()]
+        while self._took("word", "or"):
+            conditions.append(self._and())
+        if len(conditions) == 1:
+            return conditions[0]
+        return lambda msg: any(condition(msg) for condition in conditions)
+
+    def _and(self) -> Callable[[Any], bool]:
+        conditions = [self._not()]
+        while self._took("word", "and"):
+            conditions.append(self._not())
+        if len(conditions) == 1:
+            return conditions[0]
+        return lambda msg: all(condition(msg) for condition in conditions)
+
+    def _not(self) -> Callable[[Any], bool]:
+        self._depth += 1
+        if self._depth > MAX_DEPTH:
+            self._fail(f"nested more than {MAX_DEPTH} deep")
+        try:
+            if self._took("word", "not"):
+                condition = self._not()
+                return lambda msg: not condition(msg)
+            if self._took("operator", "("):
+                condition = self._or()
+                self._expect("operator", ")")
+                return condition
+            return self._predicate()
+        finally:
+            self._depth -= 1
+
+    def _predicate(self) -> Callable[[Any], bool]:
+        first = self._next
+        condition = self._comparing()
+        if any("[" in token.text for token in self._tokens[first : self._next]):
+            return false_without_elements(condition)
+        return condition
+
+    def _comparing(self) -> Callable[[Any], bool]:
+        start = self._token
+        left = self._operand()
+        if self._took("word", "not"):
+            between = self._between(left, start)
+            return lambda msg: not between(msg)
+        if self._token == Token("word", "between", self._token.position):
+            return self._between(left, start)
+        if self._took("word", "like"):
+            return self._like(left, start)
+        symbol = self._take()
+        if symbol.text not in OPERATORS:
+            self._fail(f"expected a comparison such as = or <, got {symbol.text}", symbol)
+        right = self._operand()
+        if not (left.is_field or right.is_field):
+            self._fail(f"{left.text} {symbol.text} {right.text} compares no field", start)
+        return self._comparison(left, symbol, right)
+
+    def _comparison(self, left: Operand, symbol: Token, right: Operand) -> Callable[[Any], bool]:
+        self._check_kinds(left, right, symbol)
+        if left.kind == "truth" and symbol.text not in {"=", "<>", "!="}:
+            self._fail(f"{left.text} {symbol.text}: true and false have no order", symbol)
+        compare, get_left, get_right = OPERATORS[symbol.text], left.get, right.get
+        if right.is_field:
+            return lambda msg: compare(get_left(msg), get_right(msg))
+        constant = get_right(None)
+        return lambda msg: compare(get_left(msg), constant)
+
+    def _between(self, value: Operand, start: Token) -> Callable[[Any], bool]:
+        self._expect("word", "between")
+        low = self._operand()
+        self._expect("word", "and")
+        high = self._operand()
+        if not value.is_field or low.is_field or high.is_field:
+            self._fail("BETWEEN takes a field, and two literals", start)
+        for bound in (low, high):
+            self._check_kinds(value, bound, start)
+        get, least, most = value.get, low.get(None), high.get(None)
+        return lambda msg: bool(least <= get(msg) <= most)
+
+    def _like(self, value: Operand, start: Token) -> Callable[[Any], bool]:
+        pattern = self._operand()
+        if not value.is_field or pattern.is_field or {value.kind, pattern.kind} != {"text"}:
+            self._fail("LIKE takes a field that is a string, and a text such as 'a%'", start)
+        matches = like_pattern(pattern.get(None)).fullmatch
+        get = value.get
+        return lambda msg: matches(get(msg)) is not None
+
+    def _check_kinds(self, left: Operand, right: Operand, where: Token) -> None:
+        if left.kind != right.kind:
+            self._fail(
+                f"{left.text} is a {left.kind}, {right.text} a {right.kind}; only values of one "
+                "kind can be compared",
+                where,
+            )
+
+    # Operands
+
+    def _operand(self) -> Operand:
+        token = self._take()
+        if token.kind == "name":
+            return self._field(token)
+        if token.kind == "parameter":
+            return self._parameter(token)
+        found = literal(token)
+        if found is None:
+            self._fail(f"expected a field or a literal, got {token.text}", token)
+        return found  # type: ignore[return-value]  # _fail raises
+
+    def _parameter(self, token: Token) -> Operand:
+        index = int(token.text[1:])
+        if index >= len(self._parameters):
+            self._fail(
+                f"{token.text} has no value: {len(self._parameters)} parameters given", token
+            )
+        text = self._parameters[index]
+        try:
+            first, *rest = tokens_of(text)
+        except ContentFilterError:
+            first, rest = Token("end", "", 0), []
+        found = literal(first) if len(rest) == 1 else None
+        if found is None:
+            self._fail(
+                f"{token.text} is {text!r}, no literal; write a number, TRUE, FALSE or \"'text'\"",
+                token,
+            )
+        return found  # type: ignore[return-value]  # _fail raises
+
+    def _field(self, token: Token) -> Operand:
+        cls: type[Message] | None = self._msg_type
+        names: list[str | int] = []
+        found: FieldType | None = None
+        for part in re.findall(r"\w+|\[\d+\]", token.text):
+            if part.startswith("["):
+                found = self._element(token, found, part)
+                names.append(int(part[1:-1]))
+                continue
+            if cls is None or (found is not None and found.container != "single"):
+                self._fail(f"{token.text}: {names[-1]} has no fields", token)
+                break
+            found = next((one.type for one in fields(cls) if one.name == part), None)
+            if found is None:
+                known = ", ".join(one.name for one in fields(cls))
+                self._fail(f"{type_name(cls)} has no field {part!r}; it has: {known}", token)
+                break
+            names.append(part)
+            cls = found.nested
+        assert found is not None  # noqa: S101  # a name has at least one part
+        if found.container != "single" or found.nested is not None:
+            self._fail(f"{token.text} is {found}; name a number, a string or a bool in it", token)
+        return Operand(kind_of(found), getter(names), token.text, is_field=True)
+
+    def _element(self, token: Token, found: FieldType | None, part: str) -> FieldType:
+        if found is None or found.container == "single":
+            self._fail(f"{token.text}: only arrays and sequences have {part}", token)
+        assert found is not None  # noqa: S101  # _fail raises
+        if found.container == "array" and int(part[1:-1]) >= found.size:
+            self._fail(f"{token.text}: the array has {found.size} elements", token)
+        return found.element
+
+
+def kind_of(found: FieldType) -> str:
+    """Return with what a field can be compared."""
+    if found.kind in {"string", "wstring"}:
+        return "text"
+    return "truth" if found.kind == "bool" else "number"
+
+
+def literal(token: Token) -> Operand | None:
+    """Return what a literal stands for; None if the token is no literal."""
+    value: object
+    if token.kind == "number":
+        text = token.text.lower()
+        is_int = "x" in text or not set(text) & set(".e")
+        value = int(text, 0 if "x" in text else 10) if is_int else float(text)
+        kind = "number"
+    elif token.kind == "string":
+        kind, value = "text", re.sub(r"\\(.)", r"\1", token.text[1:-1])
+    elif token.kind == "word" and token.text in {"true", "false"}:
+        kind, value = "truth", token.text == "true"
+    else:
+        return None
+    return Operand(kind, lambda _: value, token.text, is_field=False)
+
+
+def getter(names: list[str | int]) -> Callable[[Any], Any]:
+    """Return what reads a field of a message, through nested messages and elements.
+
+    It raises IndexError for an element that the message does not have.
+    """
+    if all(isinstance(name, str) for name in names):
+        return operator.attrgetter(".".join(map(str, names)))
+
+    def get(msg: Any) -> Any:
+        value = msg
+        for name in names:
+            value = getattr(value, name) if isinstance(name, str) else value[name]
+        return value.item() if hasattr(value, "item") else value
+
+    return get
+
+
+def false_without_elements(condition: Callable[[Any], bool]) -> Callable[[Any], bool]:
+    """Return a predicate that is false for messages that lack the elements it names."""
+
+    def holds(msg: Any) -> bool:
+        try:
+            return condition(msg)
+        except IndexError:
+            return False
+
+    return holds
+
+
+def like_pattern(text: str) -> re.Pattern[str]:
+    """Return a pattern of LIKE as a regular expression."""
+    parts = {"%": ".*", "_": "."}
+    return re.compile("".join(parts.get(char) or re.escape(char) for char in text), re.DOTALL)

@@ -1,0 +1,53 @@
+"""Managed nodes: their states, the transitions between them, and who brings them up and down.
+
+::
+
+    class Camera(LifecycleNode):
+        def __init__(self) -> None:
+            super().__init__("camera")
+            self.images = self.create_lifecycle_publisher(Image, "image", 10)
+
+        async def on_configure(self, state: State) -> TransitionCallbackReturn:
+            self.device = await open_camera()
+            return TransitionCallbackReturn.SUCCESS
+
+`LifecycleNode` has rclpy's names and behaviour, with callbacks that may be coroutines and that can
+be canceled. ``aionode lifecycle`` and ``ros2 lifecycle`` manage it from a terminal, and
+`LifecycleManager` from a program.
+"""
+
+from __future__ import annotations
+
+from aionode.errors import EntityInactiveError, TransitionError
+from aionode.lifecycle.managed import (
+    LifecyclePublisher,
+    LifecycleTimer,
+    ManagedEntity,
+    SimpleManagedEntity,
+)
+from aionode.lifecycle.manager import LifecycleManager
+from aionode.lifecycle.node import LifecycleNode
+from aionode.lifecycle.runner import LifecycleEvent
+from aionode.lifecycle.states import State, TransitionCallbackReturn
+
+__all__ = [
+    "EntityInactiveError",
+    "LifecycleEvent",
+    "LifecycleManager",
+    "LifecycleNode",
+    "LifecyclePublisher",
+    "LifecycleTimer",
+    "ManagedEntity",
+    "Node",
+    "Publisher",
+    "SimpleManagedEntity",
+    "State",
+    "TransitionCallbackReturn",
+    "TransitionError",
+]
+
+Node = LifecycleNode
+"""rclpy's other name for `LifecycleNode`."""
+
+Publisher = LifecyclePublisher
+"""rclpy's other name for `LifecyclePublisher`."""

@@ -1,0 +1,443 @@
+"""Messages that belong together: those of several topics with the same, or nearly the same, stamp.
+
+The names and rules are those of ROS 2's Python package `message_filters`: a `Subscriber` begins a
+chain, a `Cache` remembers, and a synchronizer calls back with one message of each input. ::
+
+    left = Subscriber(node, Image, "/left/image")
+    right = Subscriber(node, Image, "/right/image")
+    pairs = ApproximateTimeSynchronizer([left, right], queue_size=10, slop=0.05)
+    pairs.registerCallback(on_pair)
+
+`synchronize` is the same for ``async for``, over subscriptions without callbacks::
+
+    async for left, right in synchronize(left_subscription, right_subscription, slop=0.05):
+        ...
+
+Nothing here grows without bound: each input keeps `queue_size` messages, and what is pushed out
+unmatched is counted as dropped.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from typing import TYPE_CHECKING, Any, TypeVar, overload
+
+from aionode.clock import ClockType, MachineTime, Time
+from aionode.errors import EntityDestroyedError
+from aionode.logging import get_logger
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator, Callable, Iterator, Sequence
+
+    from aionode.endpoints.topic import Subscription
+    from aionode.message import Message
+    from aionode.node import Node
+
+__all__ = [
+    "ApproximateTimeSynchronizer",
+    "Cache",
+    "SimpleFilter",
+    "Subscriber",
+    "Synchronized",
+    "TimeSynchronizer",
+    "synchronize",
+]
+
+A = TypeVar("A")
+B = TypeVar("B")
+C = TypeVar("C")
+
+logger = get_logger("message_filters")
+
+
+# The rules
+
+
+class Matcher:
+    """Finds messages of several inputs with the same stamp.
+
+    Args:
+        inputs: How many there are.
+        queue_size: How many messages of each wait for the others; one more pushes out that with
+            the lowest stamp.
+
+    Attributes:
+        dropped: How many messages were pushed out.
+    """
+
+    def __init__(self, inputs: int, queue_size: int) -> None:
+        if queue_size < 1:
+            raise ValueError(f"queue_size={queue_size}; at least 1 message of each input must wait")
+        self.dropped = 0
+        self._queue_size = queue_size
+        # For each input the messages by stamp, in nanoseconds.
+        self._queues: list[dict[int, Any]] = [{} for _ in range(inputs)]
+
+    def add(self, index: int, stamp_ns: int, msg: Any) -> list[tuple[Any, ...]]:
+        """Take a message of an input; return what is complete now, the oldest first."""
+        queue = self._queues[index]
+        queue[stamp_ns] = msg
+        while len(queue) > self._queue_size:
+            del queue[min(queue)]
+            self.dropped += 1
+        return [self._take(stamps) for stamps in self._matches(index, stamp_ns)]
+
+    def _matches(self, index: int, stamp_ns: int) -> list[list[int]]:  # noqa: ARG002  # for subclasses
+        """Return the stamps, one of each input, of what is complete."""
+        common = set(self._queues[0]).intersection(*self._queues[1:])
+        return [[stamp] * len(self._queues) for stamp in sorted(common)]
+
+    def _take(self, stamps: list[int]) -> tuple[Any, ...]:
+        return tuple(queue.pop(stamp) for queue, stamp in zip(self._queues, stamps, strict=True))
+
+
+class ApproximateMatcher(Matcher):
+    """Finds messages whose stamps are less than `slop_ns` apart, around the newest arrival."""
+
+    def __init__(self, inputs: int, queue_size: int, slop_ns: int) -> None:
+        super().__init__(inputs, queue_size)
+        self._slop_ns = slop_ns
+
+    def _matches(self, index: int, stamp_ns: int) -> list[list[int]]:
+        if stamp_ns not in self._queues[index]:
+            return []  # it was pushed out itself
+        candidates = []
+        for other, queue in enumerate(self._queues):
+            near = [stamp for stamp in queue if abs(stamp - stamp_ns) <= self._slop_ns]
+            candidates.append(
+                [stamp_ns] if other == index else sorted(near, key=lambda s: abs(s - stamp_ns))
+            )
+        found = next(self._combinations(candidates, []), None)
+        return [] if found is None else [found]
+
+    def _combinations(self, candidates: list[list[int]], chosen: list[int]) -> Iterator[list[int]]:
+        """Yield one stamp of each input, closest to the arrival first, where all are near enough.
+
+        A start that is too far apart is given up at once, so that many inputs stay affordable.
+        """
+        if len(chosen) == len(candidates):
+            yield chosen
+            return
+        for stamp in candidates[len(chosen)]:
+            longer = [*chosen, stamp]
+            if max(longer) - min(longer) < self._slop_ns:
+                yield from self._combinations(candidates, longer)
+
+
+def stamp_of(msg: Any) -> Time | None:
+    """Return the stamp in a message's header, or None if it has none."""
+    stamp = getattr(getattr(msg, "header", None), "stamp", None)
+    if stamp is None or isinstance(stamp, Time):
+        return stamp
+    return Time.from_msg(stamp)
+
+
+class Stamps:
+    """Finds the stamp of each message, or the reason why it has none, said once.
+
+    Args:
+        allow_headerless: Whether a message without a header is stamped with the present time.
+    """
+
+    def __init__(self, *, allow_headerless: bool) -> None:
+        self._allow_headerless = allow_headerless
+        self._time = MachineTime()
+
+    def of(self, msg: Any) -> Time | None:
+        """Return the stamp of a message; None if the message cannot be used."""
+        stamp = stamp_of(msg)
+        if stamp is None and self._allow_headerless:
+            return Time(nanoseconds=self._time.system_ns(), clock_type=ClockType.ROS_TIME)
+        if stamp is None:
+            logger.warning(
+                f"{type(msg).__name__} has no header with a stamp, and is left out; "
+                "allow_headerless=True takes the time of arrival in its place",
+                once=True,
+            )
+        return stamp
+
+
+# With callbacks, as in ROS 2
+
+
+class SimpleFilter:
+    """A filter that calls back with its output. Its subclasses say what that is."""
+
+    def __init__(self) -> None:
+        self.callbacks: dict[int, tuple[Callable[..., object], tuple[Any, ...]]] = {}
+
+    def registerCallback(self, cb: Callable[..., object], *args: Any) -> int:  # noqa: N802  # ROS 2's name
+        """Call `cb` with each output, followed by `args`; return the number of the connection."""
+        number = len(self.callbacks)
+        self.callbacks[number] = (cb, args)
+        return number
+
+    def signalMessage(self, *msg: Any) -> None:  # noqa: N802  # ROS 2's name
+        """Call everything that was registered."""
+        for callback, args in list(self.callbacks.values()):
+            callback(*msg, *args)
+
+
+class Subscriber(SimpleFilter):
+    """Begins a chain: a subscription whose messages go to the filters that are connected to it.
+
+    Args:
+        node: The node that subscribes.
+        msg_type: A message class.
+        topic: Name of the topic.
+        options: What `Node.create_subscription` takes besides.
+
+    Attributes:
+        sub: The subscription.
+    """
+
+    def __init__(self, node: Node, msg_type: type[Message], topic: str, **options: Any) -> None:
+        super().__init__()
+        self.topic = topic
+        self.sub: Subscription[Any] = node.create_subscription(
+            msg_type, topic, self.signalMessage, **options
+        )
+
+    def getTopic(self) -> str:  # noqa: N802  # ROS 2's name
+        """Return the name of the topic, as it was given."""
+        return self.topic
+
+
+class Cache(SimpleFilter):
+    """Remembers the newest messages of another filter, and passes them on.
+
+    Args:
+        f: The filter to remember.
+        cache_size: How many messages are kept.
+        allow_headerless: Whether a message without a header is kept with its time of arrival.
+    """
+
+    def __init__(
+        self, f: SimpleFilter, cache_size: int = 1, allow_headerless: bool = False
+    ) -> None:
+        super().__init__()
+        self.cache_size = cache_size
+        self._stamps = Stamps(allow_headerless=allow_headerless)
+        self._entries: deque[tuple[Time, Any]] = deque(maxlen=cache_size)
+        self.connectInput(f)
+
+    def connectInput(self, f: SimpleFilter) -> None:  # noqa: N802  # ROS 2's name
+        """Remember another filter's messages as well."""
+        self.incoming_connection = f.registerCallback(self.add)
+
+    def add(self, msg: Any) -> None:
+        """Remember a message, and pass it on."""
+        stamp = self._stamps.of(msg)
+        if stamp is not None:
+            self._entries.append((stamp, msg))
+            self.signalMessage(msg)
+
+    def getInterval(self, from_stamp: Time, to_stamp: Time) -> list[Any]:  # noqa: N802  # ROS 2's name
+        """Return the messages between two stamps, both included, in the order of their arrival.
+
+        Raises:
+            ValueError: `from_stamp` is later than `to_stamp`.
+        """
+        first, last = from_stamp.nanoseconds, to_stamp.nanoseconds
+        if first > last:
+            raise ValueError(f"from_stamp {from_stamp} is later than to_stamp {to_stamp}")
+        return [msg for stamp, msg in self._entries if first <= stamp.nanoseconds <= last]
+
+    def getElemAfterTime(self, stamp: Time) -> Any:  # noqa: N802  # ROS 2's name
+        """Return the first message at or after a stamp, or None."""
+        found = (msg for at, msg in self._entries if at.nanoseconds >= stamp.nanoseconds)
+        return next(found, None)
+
+    def getElemBeforeTime(self, stamp: Time) -> Any:  # noqa: N802  # ROS 2's name
+        """Return the last message at or before a stamp, or None."""
+        found = (msg for at, msg in reversed(self._entries) if at.nanoseconds <= stamp.nanoseconds)
+        return next(found, None)
+
+    def getLastestTime(self) -> Time | None:  # noqa: N802  # ROS 2's name, and its spelling
+        """Return the stamp of the last message, or None."""
+        return self._entries[-1][0] if self._entries else None
+
+    def getLatestTime(self) -> Time | None:  # noqa: N802  # ROS 2's name, spelled right
+        """Return the stamp of the last message, or None."""
+        return self.getLastestTime()
+
+    def getOldestTime(self) -> Time | None:  # noqa: N802  # ROS 2's name
+        """Return the stamp of the first message, or None."""
+        return self._entries[0][0] if self._entries else None
+
+    def getLast(self) -> Any:  # noqa: N802  # ROS 2's name
+        """Return the last message, or None."""
+        return self._entries[-1][1] if self._entries else None
+
+
+class TimeSynchronizer(SimpleFilter):
+    """Calls back with one message of each input, all with the same stamp.
+
+    Args:
+        fs: The inputs.
+        queue_size: How many messages of each wait for the others.
+    """
+
+    def __init__(self, fs: Sequence[SimpleFilter], queue_size: int) -> None:
+        super().__init__()
+        self._matcher = Matcher(len(fs), queue_size)
+        self._stamps = Stamps(allow_headerless=False)
+        self._connect(fs)
+
+    def _connect(self, fs: Sequence[SimpleFilter]) -> None:
+        self.input_connections = [f.registerCallback(self.add, index) for index, f in enumerate(fs)]
+
+    @property
+    def dropped(self) -> int:
+        """How many messages were pushed out before the others came."""
+        return self._matcher.dropped
+
+    def add(self, msg: Any, index: int) -> None:
+        """Take a message of an input."""
+        stamp = self._stamps.of(msg)
+        if stamp is not None:
+            for messages in self._matcher.add(index, stamp.nanoseconds, msg):
+                self.signalMessage(*messages)
+
+
+class ApproximateTimeSynchronizer(TimeSynchronizer):
+    """Calls back with one message of each input, whose stamps are nearly the same.
+
+    When a message arrives, it is matched with those of the other inputs that are closest to it.
+
+    Args:
+        fs: The inputs.
+        queue_size: How many messages of each wait for the others.
+        slop: By how much the stamps may differ, in seconds.
+        allow_headerless: Whether a message without a header counts with its time of arrival.
+    """
+
+    def __init__(
+        self,
+        fs: Sequence[SimpleFilter],
+        queue_size: int,
+        slop: float,
+        allow_headerless: bool = False,
+    ) -> None:
+        SimpleFilter.__init__(self)
+        self._matcher = ApproximateMatcher(len(fs), queue_size, round(slop * 1e9))
+        self._stamps = Stamps(allow_headerless=allow_headerless)
+        self._connect(fs)
+
+
+# Awaited
+
+
+class Synchronized:
+    """Iterates over messages of several subscriptions that belong together; see `synchronize`."""
+
+    def __init__(
+        self, subscriptions: Sequence[Subscription[Any]], matcher: Matcher, stamps: Stamps
+    ) -> None:
+        self._subscriptions = subscriptions
+        self._matcher = matcher
+        self._stamps = stamps
+        self._complete: deque[tuple[Any, ...]] = deque()
+        self._ended = False
+
+    @property
+    def dropped(self) -> int:
+        """How many messages were pushed out before the others came."""
+        return self._matcher.dropped
+
+    def __aiter__(self) -> AsyncIterator[tuple[Any, ...]]:
+        """Iterate until one of the subscriptions is destroyed."""
+        return self
+
+    async def __anext__(self) -> tuple[Any, ...]:
+        """Return the next messages that belong together. Cancelling loses nothing."""
+        while not self._complete:
+            if self._ended:
+                raise StopAsyncIteration
+            await self._receive()
+        return self._complete.popleft()
+
+    async def _receive(self) -> None:
+        """Wait for the next messages, of whichever subscriptions."""
+        try:
+            async with asyncio.TaskGroup() as group:
+                receiving = [group.create_task(one.receive()) for one in self._subscriptions]
+                try:
+                    await asyncio.wait(receiving, return_when=asyncio.FIRST_COMPLETED)
+                finally:
+                    for index, task in enumerate(receiving):
+                        if not task.done():
+                            task.cancel()  # a message that comes now stays in the queue
+                        elif not task.cancelled() and task.exception() is None:
+                            self._take(index, task.result())
+        except* EntityDestroyedError:
+            self._ended = True
+
+    def _take(self, index: int, msg: Any) -> None:
+        stamp = self._stamps.of(msg)
+        if stamp is not None:
+            self._complete.extend(self._matcher.add(index, stamp.nanoseconds, msg))
+
+
+@overload
+def synchronize(
+    first: Subscription[A],
+    second: Subscription[B],
+    /,
+    *,
+    slop: float | None = None,
+    queue_size: int = 10,
+    allow_headerless: bool = False,
+) -> AsyncIterator[tuple[A, B]]: ...
+
+
+@overload
+def synchronize(
+    first: Subscription[A],
+    second: Subscription[B],
+    third: Subscription[C],
+    /,
+    *,
+    slop: float | None = None,
+    queue_size: int = 10,
+    allow_headerless: bool = False,
+) -> AsyncIterator[tuple[A, B, C]]: ...
+
+
+@overload
+def synchronize(
+    *subscriptions: Subscription[Any],
+    slop: float | None = None,
+    queue_size: int = 10,
+    allow_headerless: bool = False,
+) -> AsyncIterator[tuple[Any, ...]]: ...
+
+
+def synchronize(
+    *subscriptions: Subscription[Any],
+    slop: float | None = None,
+    queue_size: int = 10,
+    allow_headerless: bool = False,
+) -> AsyncIterator[tuple[Any, ...]]:
+    """Return an iterator over messages, one of each subscription, that belong together.
+
+    Args:
+        subscriptions: Subscriptions without callbacks; the iterator reads them.
+        slop: By how much the stamps may differ, in seconds; without it they have to be equal.
+        queue_size: How many messages of each wait for the others; `dropped` of the iterator counts
+            those that were pushed out.
+        allow_headerless: Whether a message without a header counts with its time of arrival.
+
+    Raises:
+        ValueError: there are fewer than two subscriptions, or `queue_size` is below 1.
+    """
+    count = len(subscriptions)
+    if count < 2:
+        raise ValueError(f"{count} subscription(s) given; at least two can belong together")
+    matcher = (
+        Matcher(count, queue_size)
+        if slop is None
+        else ApproximateMatcher(count, queue_size, round(slop * 1e9))
+    )
+    return Synchronized(subscriptions, matcher, Stamps(allow_headerless=allow_headerless))

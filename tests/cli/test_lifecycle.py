@@ -1,0 +1,100 @@
+"""``aionode lifecycle``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from aionode import Node
+from aionode.cli.lifecycle import get_state, list_nodes, list_transitions, set_state
+from aionode.errors import CommandError
+from aionode.lifecycle import LifecycleNode, State, TransitionCallbackReturn
+from aionode.testing import settle
+
+
+class Camera(LifecycleNode):
+    """Cannot be activated."""
+
+    def on_activate(self, state: State) -> TransitionCallbackReturn:
+        """Fail."""
+        return TransitionCallbackReturn.FAILURE
+
+
+@pytest.fixture
+async def camera(node_factory: Callable[..., Any]) -> Camera:
+    """A managed node that runs, beside one that is not managed."""
+    node_factory("talker")
+    made: Camera = node_factory(Camera, "camera")
+    await settle()
+    return made
+
+
+async def test_nodes_lists_managed_nodes_only(tool: Node, camera: Camera, screen: Any) -> None:
+    """Names, or how many there are."""
+    await list_nodes(tool, output=screen.output)
+    await list_nodes(tool, count=True, output=screen.output)
+
+    assert screen.text == "/camera\n1\n"
+
+
+async def test_get_prints_label_and_number(tool: Node, camera: Camera, screen: Any) -> None:
+    """With the name of the node where all are asked."""
+    await get_state(tool, "/camera", output=screen.output)
+    await get_state(tool, None, output=screen.output)
+
+    assert screen.text == "unconfigured [1]\n/camera: unconfigured [1]\n"
+
+
+async def test_list_prints_what_is_available(tool: Node, camera: Camera, screen: Any) -> None:
+    """With the state in which each starts, and the one to which it leads."""
+    await list_transitions(tool, "camera", output=screen.output)
+
+    assert screen.text == (
+        "- configure [1]\n\tStart: unconfigured\n\tGoal: configuring\n"
+        "- shutdown [5]\n\tStart: unconfigured\n\tGoal: shuttingdown\n"
+    )
+
+
+async def test_list_all_prints_the_whole_graph(tool: Node, camera: Camera, screen: Any) -> None:
+    """All twenty-five."""
+    await list_transitions(tool, "/camera", every=True, output=screen.json_output)
+
+    assert len(screen.records) == 25
+
+
+@pytest.mark.parametrize("transition", ["configure", "1"])
+async def test_set_takes_a_label_or_a_number(
+    tool: Node, camera: Camera, screen: Any, transition: str
+) -> None:
+    """As ros2's command does."""
+    await set_state(tool, "/camera", transition, output=screen.output)
+
+    assert screen.text == "Transitioning successful\n"
+    assert camera.lifecycle_state.label == "inactive"
+
+
+async def test_a_failed_transition_is_an_error(tool: Node, camera: Camera, screen: Any) -> None:
+    """On stderr, with a status."""
+    await set_state(tool, "/camera", "configure", output=screen.output)
+
+    with pytest.raises(CommandError, match="Transitioning failed"):
+        await set_state(tool, "/camera", "activate", output=screen.output)
+
+
+async def test_an_unknown_transition_lists_those_there_are(
+    tool: Node, camera: Camera, screen: Any
+) -> None:
+    """In ros2's words."""
+    with pytest.raises(
+        CommandError,
+        match=r"Unknown transition requested, available ones are:\n- configure \[1\]\n- shutdown",
+    ):
+        await set_state(tool, "/camera", "activate", output=screen.output)
+
+
+async def test_an_unknown_node_is_an_error(tool: Node, camera: Camera, screen: Any) -> None:
+    """A node that is not managed is none either."""
+    with pytest.raises(CommandError, match="Node not found"):
+        await get_state(tool, "/talker", output=screen.output)

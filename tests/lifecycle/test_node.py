@@ -1,0 +1,478 @@
+"""Managed nodes within one process."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from aionode import Node
+from aionode.errors import CallbackSignatureError, ServiceError, TransitionError
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.lifecycle_msgs.msg import Transition, TransitionEvent
+from aionode.interfaces.lifecycle_msgs.srv import ChangeState, GetAvailableTransitions, GetState
+from aionode.interfaces.std_msgs.msg import String
+from aionode.lifecycle import LifecycleEvent, LifecycleNode, State, TransitionCallbackReturn
+from aionode.testing import ManualClock, local_context, settle
+
+SUCCESS = TransitionCallbackReturn.SUCCESS
+FAILURE = TransitionCallbackReturn.FAILURE
+ERROR = TransitionCallbackReturn.ERROR
+
+
+class Managed(LifecycleNode):
+    """Returns, raises or awaits what a test wants, in any of its callbacks."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__("managed", **options)
+        self.outcomes: dict[str, Any] = {}
+        self.calls: list[tuple[str, str]] = []
+        self.error: Exception | None = None
+
+    async def do(self, name: str, state: State, otherwise: Any) -> TransitionCallbackReturn:
+        """Note the call, and do what the test wants."""
+        self.calls.append((name, state.label))
+        outcome = self.outcomes.get(name, otherwise)
+        if isinstance(outcome, Exception):
+            raise outcome
+        if isinstance(outcome, asyncio.Event):
+            await outcome.wait()
+            return SUCCESS
+        result: TransitionCallbackReturn = outcome() if callable(outcome) else outcome
+        return result
+
+    async def on_configure(self, state: State) -> TransitionCallbackReturn:
+        """Do what the test wants."""
+        return await self.do("configure", state, super().on_configure(state))
+
+    async def on_activate(self, state: State) -> TransitionCallbackReturn:
+        """Do what the test wants."""
+        return await self.do("activate", state, super().on_activate(state))
+
+    async def on_deactivate(self, state: State) -> TransitionCallbackReturn:
+        """Do what the test wants."""
+        return await self.do("deactivate", state, super().on_deactivate(state))
+
+    async def on_cleanup(self, state: State) -> TransitionCallbackReturn:
+        """Do what the test wants."""
+        return await self.do("cleanup", state, super().on_cleanup(state))
+
+    async def on_shutdown(self, state: State) -> TransitionCallbackReturn:
+        """Do what the test wants."""
+        return await self.do("shutdown", state, super().on_shutdown(state))
+
+    async def on_error(
+        self, state: State, error: Exception | None = None
+    ) -> TransitionCallbackReturn:
+        """Keep the error."""
+        self.error = error
+        return await self.do("error", state, FAILURE)
+
+
+@pytest.fixture
+async def managed(node_factory: Callable[..., Any]) -> Managed:
+    """A managed node that runs."""
+    node: Managed = node_factory(Managed)
+    await settle()
+    return node
+
+
+async def test_a_node_goes_through_its_life(managed: Managed) -> None:
+    """Each callback gets the state in which its transition started."""
+    await managed.trigger_configure()
+    await managed.trigger_activate()
+    await managed.trigger_deactivate()
+    await managed.trigger_cleanup()
+    await managed.trigger_shutdown()
+
+    assert managed.calls == [
+        ("configure", "unconfigured"),
+        ("activate", "inactive"),
+        ("deactivate", "active"),
+        ("cleanup", "inactive"),
+        ("shutdown", "unconfigured"),
+    ]
+    assert managed.lifecycle_state == State("finalized", 4)
+
+
+async def test_a_failure_returns_to_the_start(managed: Managed) -> None:
+    """FAILURE is no error: the node may be asked again."""
+    managed.outcomes["configure"] = FAILURE
+
+    assert await managed.trigger_configure() is FAILURE
+    assert managed.lifecycle_state.label == "unconfigured"
+
+
+async def test_an_exception_reaches_on_error_and_the_caller(managed: Managed) -> None:
+    """With rclpy it is swallowed."""
+    broken = OSError("no such camera")
+    managed.outcomes["configure"] = broken
+    managed.outcomes["error"] = SUCCESS
+
+    with pytest.raises(TransitionError, match="cannot configure: OSError: no such camera") as info:
+        await managed.trigger_configure()
+
+    assert info.value.__cause__ is broken
+    assert managed.error is broken
+    assert managed.calls[-1] == ("error", "unconfigured")
+    assert managed.lifecycle_state.label == "unconfigured"
+
+
+async def test_an_error_that_is_not_put_right_finalizes(managed: Managed) -> None:
+    """As the table says for a failed `on_error`."""
+    managed.outcomes["configure"] = ERROR
+
+    assert await managed.trigger_configure() is ERROR
+    assert managed.lifecycle_state.label == "finalized"
+
+
+async def test_a_result_of_another_kind_is_an_error(managed: Managed) -> None:
+    """With rclpy the node stays in `configuring` for ever."""
+    managed.outcomes["configure"] = lambda: None
+
+    with pytest.raises(TransitionError, match="on_configure returned None; return Transition"):
+        await managed.trigger_configure()
+
+    assert managed.lifecycle_state.label == "finalized"
+
+
+async def test_a_transition_from_another_state_names_those_there_are(managed: Managed) -> None:
+    """The error says what fits."""
+    with pytest.raises(
+        TransitionError, match="available are: configure, shutdown; the node is unc"
+    ):
+        await managed.trigger_activate()
+
+
+def test_a_callback_with_wrong_arguments_is_refused_when_the_node_is_made() -> None:
+    """With rclpy the TypeError is swallowed when it is called."""
+
+    class Wrong(LifecycleNode):
+        def on_configure(self) -> TransitionCallbackReturn:  # type: ignore[override]
+            return SUCCESS
+
+    with pytest.raises(CallbackSignatureError, match=r"on_configure"):
+        Wrong("wrong")
+
+
+async def test_a_callback_may_call_services_of_its_own_node(
+    node_factory: Callable[..., Any],
+) -> None:
+    """In rclpy that deadlocks."""
+
+    class Asking(LifecycleNode):
+        async def on_configure(self, state: State) -> TransitionCallbackReturn:
+            client = self.create_client(AddTwoInts, "/add")
+            response = await client.call(AddTwoInts.Request(a=1, b=2))
+            return SUCCESS if response.sum == 3 else FAILURE
+
+    asking = node_factory(Asking, "asking")
+    asking.create_service(AddTwoInts, "/add", lambda request: AddTwoInts.Response(sum=3))
+    await settle()
+
+    assert await asking.trigger_configure() is SUCCESS
+
+
+async def change(node: Node, label: str = "", transition_id: int = 0) -> bool:
+    """Ask a managed node over its service."""
+    client = node.create_client(ChangeState, "/managed/change_state")
+    request = ChangeState.Request(transition=Transition(label=label, id=transition_id))
+    return (await client.call(request)).success
+
+
+async def state_of(node: Node) -> str:
+    """Ask a managed node for its state."""
+    client = node.create_client(GetState, "/managed/get_state")
+    return (await client.call(GetState.Request())).current_state.label
+
+
+async def test_get_state_answers_during_a_transition(node: Node, managed: Managed) -> None:
+    """With rclpy it waits until the transition has ended."""
+    managed.outcomes["configure"] = asyncio.Event()
+    async with asyncio.TaskGroup() as tasks:
+        changing = tasks.create_task(change(node, "configure"))
+        await settle()
+        assert await state_of(node) == "configuring"
+        managed.outcomes["configure"].set()
+
+    assert changing.result()
+    assert await state_of(node) == "inactive"
+
+
+async def test_an_unknown_request_is_refused_without_an_event(node: Node, managed: Managed) -> None:
+    """Activating is not available yet, and 99 is no number of a transition."""
+    events = node.create_subscription(TransitionEvent, "/managed/transition_event")
+
+    assert not await change(node, "activate")
+    assert not await change(node, transition_id=99)
+    await settle()
+    assert events.stats.received == 0
+    assert managed.calls == []
+
+
+async def test_each_transition_publishes_two_events(node: Node, managed: Managed) -> None:
+    """Into the transition state and out of it, with labels and numbers."""
+    events: list[tuple[str, str]] = []
+    node.create_subscription(
+        TransitionEvent,
+        "/managed/transition_event",
+        lambda msg: events.append((msg.start_state.label, msg.goal_state.label)),
+    )
+    await settle()
+
+    await change(node, "configure")
+    await settle()
+
+    assert events == [("unconfigured", "configuring"), ("configuring", "inactive")]
+
+
+async def test_another_request_cancels_a_transition(node: Node, managed: Managed) -> None:
+    """`transition_failure` is what the table offers in `configuring`."""
+    managed.outcomes["configure"] = asyncio.Event()
+    async with asyncio.TaskGroup() as tasks:
+        changing = tasks.create_task(change(node, "configure"))
+        await settle()
+        canceled = await change(node, "transition_failure")
+
+    assert canceled
+    assert not changing.result()
+    assert managed.lifecycle_state.label == "unconfigured"
+
+
+async def test_success_cannot_be_requested(node: Node, managed: Managed) -> None:
+    """A node is configured when its callback says so."""
+    managed.outcomes["configure"] = asyncio.Event()
+    async with asyncio.TaskGroup() as tasks:
+        tasks.create_task(change(node, "configure"))
+        await settle()
+        assert not await change(node, "transition_success")
+        assert managed.lifecycle_state.label == "configuring"
+        managed.outcomes["configure"].set()
+
+
+async def test_shutdown_cancels_what_is_under_way(node: Node, managed: Managed) -> None:
+    """Who wants a node to end need not wait for its camera."""
+    managed.outcomes["configure"] = asyncio.Event()
+    async with asyncio.TaskGroup() as tasks:
+        tasks.create_task(change(node, "configure"))
+        await settle()
+        assert await change(node, transition_id=Transition.TRANSITION_UNCONFIGURED_SHUTDOWN)
+
+    assert managed.lifecycle_state.label == "finalized"
+
+
+async def test_a_timeout_cancels_a_transition(managed: Managed) -> None:
+    """`asyncio.timeout` around `trigger_configure` leaves the node unconfigured."""
+    managed.outcomes["configure"] = asyncio.Event()
+
+    with pytest.raises(TimeoutError):
+        async with asyncio.timeout(0.001):
+            await managed.trigger_configure()
+
+    assert managed.lifecycle_state.label == "unconfigured"
+
+
+async def test_the_available_transitions_are_those_of_the_state(
+    node: Node, managed: Managed
+) -> None:
+    """And the graph has all of them."""
+    available = node.create_client(GetAvailableTransitions, "/managed/get_available_transitions")
+    graph = node.create_client(GetAvailableTransitions, "/managed/get_transition_graph")
+
+    now = await available.call(GetAvailableTransitions.Request())
+    every = await graph.call(GetAvailableTransitions.Request())
+
+    assert [one.transition.label for one in now.available_transitions] == ["configure", "shutdown"]
+    assert len(every.available_transitions) == 25
+
+
+async def test_progress_is_told_while_a_transition_runs(managed: Managed) -> None:
+    """A program can show how far a node is."""
+    seen: list[LifecycleEvent] = []
+
+    async def watch() -> None:
+        async for event in managed.lifecycle_events():
+            seen.append(event)  # noqa: PERF401  # it is looked at meanwhile
+
+    def configure() -> TransitionCallbackReturn:
+        managed.report_progress("loading the map", 0.5)
+        return SUCCESS
+
+    managed.outcomes["configure"] = configure
+    watcher = asyncio.get_running_loop().create_task(watch())
+    await settle()
+    await managed.trigger_configure()
+    await settle()
+    watcher.cancel()
+
+    assert [(event.state.label, event.progress, event.fraction) for event in seen] == [
+        ("configuring", "", None),
+        ("configuring", "loading the map", 0.5),
+        ("inactive", "", None),
+    ]
+
+
+# Entities
+
+
+async def test_a_publisher_sends_only_while_active(node: Node, managed: Managed) -> None:
+    """What is published before goes nowhere, and is counted."""
+    publisher = managed.create_lifecycle_publisher(String, "/chatter", 10)
+    heard: list[str] = []
+    node.create_subscription(String, "/chatter", lambda msg: heard.append(msg.data))
+    await managed.trigger_configure()
+    publisher.publish(String(data="before"))
+    await managed.trigger_activate()
+    publisher.publish(String(data="while"))
+    await managed.trigger_deactivate()
+    publisher.publish(String(data="after"))
+    await settle()
+
+    assert heard == ["while"]
+    assert publisher.discarded == 2
+
+
+async def test_a_subscription_is_heard_only_while_active(node: Node, managed: Managed) -> None:
+    """Its callback may be a coroutine."""
+    heard: list[str] = []
+
+    async def hear(msg: String) -> None:
+        heard.append(msg.data)
+
+    managed.create_lifecycle_subscription(String, "/chatter", hear)
+    publisher = node.create_publisher(String, "/chatter", 10)
+    publisher.publish(String(data="before"))
+    await settle()
+    await managed.trigger_configure()
+    await managed.trigger_activate()
+    publisher.publish(String(data="while"))
+    await settle()
+
+    assert heard == ["while"]
+
+
+async def test_a_service_refuses_with_a_reason_while_inactive(node: Node, managed: Managed) -> None:
+    """The client is told, and the node lives on."""
+    managed.create_lifecycle_service(
+        AddTwoInts, "/add", lambda request: AddTwoInts.Response(sum=request.a + request.b)
+    )
+    client = node.create_client(AddTwoInts, "/add")
+
+    with pytest.raises(ServiceError, match="the node is not active; activate it first"):
+        await client.call(AddTwoInts.Request(a=1, b=2))
+    await managed.trigger_configure()
+    await managed.trigger_activate()
+
+    assert (await client.call(AddTwoInts.Request(a=1, b=2))).sum == 3
+
+
+async def test_a_timer_runs_only_while_active(
+    manual_clock: ManualClock, node_factory: Callable[..., Any]
+) -> None:
+    """An activation begins a new period."""
+    managed: Managed = node_factory(Managed)
+    ticks: list[int] = []
+    managed.create_lifecycle_timer(1.0, lambda: ticks.append(1))
+    await manual_clock.advance(2.0)
+    await managed.trigger_configure()
+    await managed.trigger_activate()
+    await manual_clock.advance(2.5)
+    await managed.trigger_deactivate()
+    await manual_clock.advance(2.0)
+
+    assert len(ticks) == 2
+
+
+async def test_no_entity_stays_enabled_when_activation_fails(managed: Managed) -> None:
+    """Although `super().on_activate` has enabled it before."""
+    publisher = managed.create_lifecycle_publisher(String, "/chatter", 10)
+    managed.outcomes["activate"] = FAILURE
+    await managed.trigger_configure()
+    await managed.trigger_activate()
+
+    assert managed.lifecycle_state.label == "inactive"
+    assert not publisher.is_activated
+
+
+async def test_entities_are_enabled_again_when_deactivation_fails(managed: Managed) -> None:
+    """The node is active still, so it works."""
+    publisher = managed.create_lifecycle_publisher(String, "/chatter", 10)
+    await managed.trigger_configure()
+    await managed.trigger_activate()
+    managed.outcomes["deactivate"] = FAILURE
+    await managed.trigger_deactivate()
+
+    assert managed.lifecycle_state.label == "active"
+    assert publisher.is_activated
+
+
+class Slow(LifecycleNode):
+    """Awaits several times in each callback, and once more when something went wrong."""
+
+    failing = False
+
+    async def work(self, state: State) -> TransitionCallbackReturn:
+        """Await three times."""
+        for _ in range(3):
+            await asyncio.get_running_loop().run_in_executor(None, int)
+        if self.failing:
+            raise OSError("broken")
+        return SUCCESS
+
+    on_configure = on_activate = on_deactivate = on_cleanup = on_shutdown = work
+
+    async def on_error(
+        self, state: State, error: Exception | None = None
+    ) -> TransitionCallbackReturn:
+        """Await three times more."""
+        self.failing = False
+        return await self.work(state)
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(
+    st.lists(
+        st.tuples(
+            st.sampled_from(["configure", "activate", "deactivate", "cleanup", "shutdown"]),
+            st.integers(0, 12),
+            st.booleans(),
+        ),
+        max_size=8,
+    )
+)
+def test_a_cancellation_at_any_await_leaves_a_primary_state(
+    steps: list[tuple[str, int, bool]],
+) -> None:
+    """Wherever a transition is cut, the node is in a state from which it can go on."""
+
+    async def run() -> None:
+        async with local_context() as context, Slow("slow", context=context) as node:
+            for label, turns, failing in steps:
+                node.failing = failing
+                task = asyncio.get_running_loop().create_task(getattr(node, f"trigger_{label}")())
+                for _ in range(turns):
+                    await asyncio.sleep(0)  # noqa: TID251  # counts turns of the loop
+                task.cancel()
+                await asyncio.gather(task, return_exceptions=True)
+                assert not node._transitions.machine.in_transition
+                assert node._transitions._idle.is_set()
+
+    asyncio.run(run())
+
+
+async def test_two_hundred_transitions_while_topics_flow(node: Node, managed: Managed) -> None:
+    """No state is lost, and none is stuck."""
+    flowing = node.create_publisher(String, "/chatter", 10)
+    managed.create_lifecycle_subscription(String, "/chatter", lambda msg: None)
+    states = []
+    for _ in range(50):
+        for label in ("configure", "activate", "deactivate", "cleanup"):
+            flowing.publish(String(data=label))
+            assert await change(node, label)
+            states.append(managed.lifecycle_state.label)
+
+    assert states == ["inactive", "active", "inactive", "unconfigured"] * 50
