@@ -24,7 +24,7 @@ from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.logging import get_logger
 from aionode.message import Message, ServiceType, holds_arrays
 from aionode.node_actions import NodeActionMethods
-from aionode.node_end import Ending, NodeEnd
+from aionode.node_end import EndRecord, NodeEnd
 from aionode.node_graph import NodeGraphMethods
 from aionode.node_parameters import NodeParameterMethods
 from aionode.parameter import Parameter, ParameterStore, declare_qos_overrides
@@ -124,7 +124,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         self._tasks: asyncio.TaskGroup | None = None
         self._running = False
         self._destroyed = asyncio.Event()
-        self._ending = Ending(f"node {names.fully_qualified_name(namespace, node_name)}")
+        self._end_record = EndRecord(f"node {names.fully_qualified_name(namespace, node_name)}")
         self._clock = ROSClock(time_base=self.context.time_base)
         self._logger = get_logger(
             names.logger_name(namespace, node_name), now_ns=self.context.time_base.system_ns
@@ -193,7 +193,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             self._running = False
             raise
         self._home.move_in()
-        self._ending.begin()
+        self._end_record.begin()
         self._tasks = await asyncio.TaskGroup().__aenter__()
         for entity in list(self._entities):
             entity.start(self._tasks)
@@ -214,7 +214,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         """
         tasks = self._tasks
         assert tasks is not None  # noqa: S101  # set by __aenter__
-        with self._ending.recorded():
+        with self._end_record.recorded():
             self.destroy_node()
             try:
                 await tasks.__aexit__(exc_type, exc, traceback)
@@ -254,7 +254,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         Raises:
             RuntimeError: it is awaited by the task that runs the node, which would wait for itself.
         """
-        return await self._ending.wait()
+        return await self._end_record.wait()
 
     @property
     def destroyed(self) -> bool:
@@ -288,7 +288,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         self.context.graph.remove_node(self._info)
         self.context.remove_node(self)
         if not self._running:
-            self._ending.note(NodeEnd("destroyed"))
+            self._end_record.note(NodeEnd("destroyed"))
 
     def call_in_loop(self, action: Callable[[], None]) -> None:
         """Do `action` in the thread of the node's loop: at once if this is it, or none runs."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["Ending", "NodeEnd", "short_text"]
+__all__ = ["EndRecord", "NodeEnd", "short_text"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ def short_text(error: BaseException) -> str:
     return f"{type(error).__name__}: {text}" if text else type(error).__name__
 
 
-class Ending:
+class EndRecord:
     """Records the end of one node, for those who wait for it."""
 
     def __init__(self, subject: str) -> None:
