@@ -17,7 +17,7 @@ async def main() -> None:
         while not await driver.wait_for_services(timeout_sec=1.0):
             node.get_logger().info("Waiting for the node /driver...")
 
-        async with asyncio.timeout(2):
+        async with asyncio.timeout(5):
             (speed,) = await driver.get_parameters(["speed"])
             (result,) = await driver.set_parameters([Parameter("speed", value=speed.value * 2)])
         if result.successful:

@@ -23,7 +23,7 @@ from aionode.interfaces.std_msgs.msg import Float32
 from aionode.message import to_json
 from examples.web_robot import Drive, SetSpeed
 
-ANSWER_SEC = 2.0
+ANSWER_SEC = 5.0
 
 PAGE = """<!doctype html>
 <title>Robot</title>
