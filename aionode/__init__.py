@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from aionode.endpoints.timer import Timer, TimerInfo
     from aionode.endpoints.topic import MessageInfo, Publisher, Subscription
     from aionode.node import Node
+    from aionode.node_end import NodeEnd
     from aionode.parameter import Parameter
     from aionode.qos import (
         DurabilityPolicy,
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
         ReliabilityPolicy,
     )
     from aionode.runner import run
+    from aionode.supervisor import Health, Supervisor
 
 __all__ = [
     "ActionClient",
@@ -66,10 +68,12 @@ __all__ = [
     "Duration",
     "GoalResponse",
     "GoalStatus",
+    "Health",
     "HistoryPolicy",
     "LivelinessPolicy",
     "MessageInfo",
     "Node",
+    "NodeEnd",
     "Parameter",
     "Publisher",
     "QoSProfile",
@@ -78,6 +82,7 @@ __all__ = [
     "ServerGoalHandle",
     "Service",
     "Subscription",
+    "Supervisor",
     "Time",
     "Timer",
     "TimerInfo",
@@ -99,10 +104,12 @@ HOMES = {
     "Duration": "aionode.clock",
     "GoalResponse": "aionode.action",
     "GoalStatus": "aionode.action",
+    "Health": "aionode.supervisor",
     "HistoryPolicy": "aionode.qos",
     "LivelinessPolicy": "aionode.qos",
     "MessageInfo": "aionode.endpoints.topic",
     "Node": "aionode.node",
+    "NodeEnd": "aionode.node_end",
     "Parameter": "aionode.parameter",
     "Publisher": "aionode.endpoints.topic",
     "QoSProfile": "aionode.qos",
@@ -111,6 +118,7 @@ HOMES = {
     "ServerGoalHandle": "aionode.action",
     "Service": "aionode.endpoints.service",
     "Subscription": "aionode.endpoints.topic",
+    "Supervisor": "aionode.supervisor",
     "Time": "aionode.clock",
     "Timer": "aionode.endpoints.timer",
     "TimerInfo": "aionode.endpoints.timer",

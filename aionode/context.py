@@ -9,7 +9,7 @@ import os
 import secrets
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from aionode.arguments import Arguments
+from aionode.arguments import Arguments, Usage
 from aionode.clock import MachineTime
 from aionode.endpoints.mismatch import MismatchReport
 from aionode.errors import ConfigurationError, EntityDestroyedError
@@ -115,6 +115,7 @@ class Context:
         )
         self._transports = self._make_transports(transport, link)
         self.arguments = Arguments()
+        self._usage = Usage(self.arguments)
         self._nodes: dict[Node, None] = {}
         self._ids = 0
         self._users = 0
@@ -283,6 +284,13 @@ class Context:
     def remove_node(self, node: Node) -> None:
         """Forget `node`."""
         self._nodes.pop(node, None)
+
+    @property
+    def usage(self) -> Usage:
+        """What the nodes have made of the arguments that hold now."""
+        if self._usage.arguments is not self.arguments:
+            self._usage = Usage(self.arguments)
+        return self._usage
 
     @property
     def transports(self) -> tuple[Transport, ...]:

@@ -45,6 +45,7 @@ name; new ones end in `Error`. They carry plain values, never live objects.
     │   └── ParameterUninitializedException (RuntimeError)
     ├── ParameterFileError (ValueError, RuntimeError)
     ├── NodeNameNonExistentError (LookupError, RuntimeError)
+    ├── NodeNotRunningError (RuntimeError)
     ├── QueueFullError (RuntimeError)
     ├── ServiceError (RuntimeError)
     │   └── ServiceUnavailableError (TimeoutError)
@@ -91,6 +92,7 @@ __all__ = [
     "MessageError",
     "NameValidationException",
     "NodeNameNonExistentError",
+    "NodeNotRunningError",
     "ParameterAlreadyDeclaredException",
     "ParameterException",
     "ParameterFileError",
@@ -424,6 +426,20 @@ class NodeNameNonExistentError(AionodeError, LookupError, RuntimeError):
     def __init__(self, node: str) -> None:
         self.node = node
         super().__init__(f"{node}: no such node; `await node.wait_for_node(name)` waits for one")
+
+
+class NodeNotRunningError(AionodeError, RuntimeError):
+    """A supervised node was asked for while none runs.
+
+    Attributes:
+        node: Its full name.
+        problem: Why it does not run, and what becomes of it.
+    """
+
+    def __init__(self, node: str, problem: str) -> None:
+        self.node = node
+        self.problem = problem
+        super().__init__(f"node {node}: not running: {problem}")
 
 
 class TransportError(AionodeError, ConnectionError):

@@ -7,12 +7,13 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar, overload
 
 from aionode import names, node_services, qos
-from aionode.arguments import Arguments, parse_arguments
+from aionode.arguments import Arguments, Usage, parse_arguments
 from aionode.clock import ROSClock
 from aionode.context import Context
 from aionode.endpoints.channel import Channel
 from aionode.endpoints.dispatch import Callbacks
 from aionode.endpoints.home import Home
+from aionode.endpoints.no_effect import policies_without_effect
 from aionode.endpoints.rate import Rate
 from aionode.endpoints.service import Client, Service
 from aionode.endpoints.timer import Timer, to_period_ns
@@ -23,6 +24,7 @@ from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.logging import get_logger
 from aionode.message import Message, ServiceType, holds_arrays
 from aionode.node_actions import NodeActionMethods
+from aionode.node_end import EndRecord, NodeEnd
 from aionode.node_graph import NodeGraphMethods
 from aionode.node_parameters import NodeParameterMethods
 from aionode.parameter import Parameter, ParameterStore, declare_qos_overrides
@@ -58,9 +60,10 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
     callbacks are called while it runs: inside ``async with node:``, or during ``await node.run()``.
     It runs once; a destroyed node refuses everything with EntityDestroyedError.
 
-    An exception of a callback ends the node, unless the entity's `on_error` says otherwise: all its
-    callbacks are cancelled, and the exception comes out of ``async with`` or `run` in an
-    ExceptionGroup, as from an `asyncio.TaskGroup`.
+    An exception in the callback of a subscription or timer ends the node, unless the entity's
+    `on_error` says otherwise: all its callbacks are cancelled, and the exception comes out of
+    ``async with`` or `run` in an ExceptionGroup, as from an `asyncio.TaskGroup`. Services and
+    action servers tell the caller, log the exception, and go on.
 
     Args:
         node_name: Letters, digits and underscores, not beginning with a digit.
@@ -110,13 +113,18 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         own.refuse_unknown()
         shared = self.context.arguments if use_global_arguments else Arguments()
         self._rules = own.remap_rules + shared.remap_rules
+        self._usages = [Usage(own), self.context.usage if use_global_arguments else Usage(shared)]
+        for usage in self._usages:
+            usage.note_node(node_name)
         node_name = names.remap_node_name(self._rules, node_name)
         namespace = names.remap_namespace(self._rules, node_name, namespace)
         self._made = False
+        self._warned_of: set[str] = set()
         self._entities: dict[Entity, None] = {}
         self._tasks: asyncio.TaskGroup | None = None
         self._running = False
         self._destroyed = asyncio.Event()
+        self._end_record = EndRecord(f"node {names.fully_qualified_name(namespace, node_name)}")
         self._clock = ROSClock(time_base=self.context.time_base)
         self._logger = get_logger(
             names.logger_name(namespace, node_name), now_ns=self.context.time_base.system_ns
@@ -147,6 +155,9 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             allow_undeclared=allow_undeclared_parameters,
             publish=node_services.publish_parameter_events(self),
         )
+        for usage in self._usages:
+            if not usage.is_over:
+                usage.note_parameters(self._parameters)
         if automatically_declare_parameters_from_overrides:
             for name in self._parameters.overrides:
                 self.declare_parameter(name, descriptor=ParameterDescriptor(dynamic_typing=True))
@@ -182,9 +193,12 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             self._running = False
             raise
         self._home.move_in()
+        self._end_record.begin()
         self._tasks = await asyncio.TaskGroup().__aenter__()
         for entity in list(self._entities):
             entity.start(self._tasks)
+        for usage in self._usages:
+            usage.begin(self.context.time_base, lambda: not self.destroyed, self._logger.warning)
         return self
 
     async def __aexit__(
@@ -200,13 +214,14 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         """
         tasks = self._tasks
         assert tasks is not None  # noqa: S101  # set by __aenter__
-        self.destroy_node()
-        try:
-            await tasks.__aexit__(exc_type, exc, traceback)
-        finally:
-            self._running = False
-            self._home.move_out()
-            await self.context.release()
+        with self._end_record.recorded():
+            self.destroy_node()
+            try:
+                await tasks.__aexit__(exc_type, exc, traceback)
+            finally:
+                self._running = False
+                self._home.move_out()
+                await self.context.release()
 
     async def run(self) -> None:
         """Run until `destroy_node`, which any callback may call.
@@ -219,7 +234,27 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             TransportError: the context cannot connect.
         """
         async with self:
-            await self._destroyed.wait()
+            await self.until_destroyed()
+
+    async def until_destroyed(self) -> None:
+        """Wait until `destroy_node` is called, as `run` does inside its ``async with``.
+
+        Cancelling has no effect on the node.
+        """
+        await self._destroyed.wait()
+
+    async def ended(self) -> NodeEnd:
+        """Wait until the node has ended, and return how and why.
+
+        It has when its callbacks have ended and its context was given back: after ``async with`` or
+        `run`, or at once if it was destroyed without ever running. Any number of tasks may wait,
+        and later calls return the same at once. Never raises what the node failed with.
+        Cancelling has no effect on the node.
+
+        Raises:
+            RuntimeError: it is awaited by the task that runs the node, which would wait for itself.
+        """
+        return await self._end_record.wait()
 
     @property
     def destroyed(self) -> bool:
@@ -252,6 +287,8 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             announcement.close()
         self.context.graph.remove_node(self._info)
         self.context.remove_node(self)
+        if not self._running:
+            self._end_record.note(NodeEnd("destroyed"))
 
     def call_in_loop(self, action: Callable[[], None]) -> None:
         """Do `action` in the thread of the node's loop: at once if this is it, or none runs."""
@@ -331,10 +368,16 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         return self._resolve(service, only_expand=only_expand, is_service=True)
 
     def _resolve(self, name: str, *, only_expand: bool = False, is_service: bool = False) -> str:
-        rules = () if only_expand else self._rules
-        return names.resolve(
-            name, self.get_name(), self.get_namespace(), rules, is_service=is_service
-        )
+        resolve = partial(names.resolve, is_service=is_service)
+        if only_expand:
+            return resolve(name, self.get_name(), self.get_namespace())
+        for usage in self._usages:
+            if not usage.is_over:
+                expanded = resolve(name, self.get_name(), self.get_namespace())
+                usage.note_name(
+                    expanded, self.get_name(), self.get_namespace(), is_service=is_service
+                )
+        return resolve(name, self.get_name(), self.get_namespace(), self._rules)
 
     # Entities
 
@@ -467,7 +510,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         *,
         qos_profile: QoSProfile | int = qos.qos_profile_services_default,
         concurrent: bool | int = False,
-        on_error: OnError = "raise",
+        on_error: OnError = "log",
         offload: bool = False,
     ) -> Service[RequestT, ResponseT]:
         """Return a server of `srv_name`.
@@ -480,8 +523,9 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             qos_profile: A profile, or a depth.
             concurrent: False answers one request after the other, True all at once, a number at
                 most so many at once.
-            on_error: What becomes of an exception in the callback: ``"raise"`` ends the node,
-                ``"log"`` logs and counts it, a function gets (exception, CallbackContext).
+            on_error: What becomes of an exception in the callback, once the client was told:
+                ``"log"`` logs it with its traceback, counts it and goes on, ``"raise"`` ends the
+                node, a function gets (exception, CallbackContext).
             offload: Whether to run a sync callback in a thread.
 
         Raises:
@@ -641,6 +685,8 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
                 "publisher" if kind is EndpointKind.PUBLISHER else "subscription"
             )
             profile = declare_qos_overrides(self, full_name, entity, profile, overriding)
+        if self._made:
+            self._warn_of_no_effect(kind, full_name, profile)
         others = [e.qos for e in self.graph.endpoints(kind.opposite, name=full_name)]
         if kind is EndpointKind.PUBLISHER:
             profile = qos.best_available_for_publisher(profile, others)
@@ -650,6 +696,18 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             kind, self._info, full_name, ros_type, profile.resolved()
         )
         return Channel(endpoint, self.graph, self._callbacks, self._home)
+
+    def _warn_of_no_effect(self, kind: EndpointKind, name: str, profile: QoSProfile) -> None:
+        """Say once of each endpoint which of its policies do nothing."""
+        policies = policies_without_effect(profile, sends=kind is EndpointKind.PUBLISHER)
+        subject = f"{kind.value} of {name}"
+        if policies and subject not in self._warned_of:
+            self._warned_of.add(subject)
+            self._logger.warning(
+                f"{subject}: {', '.join(policies)}: announced to others and compared with theirs, "
+                "but without effect here: no event comes, and no message is dropped for it; to "
+                "notice silence, let a timer look at the time of the last message"
+            )
 
     def _add(self, entity: EntityT, channel: Channel | None = None) -> EntityT:
         """Take `entity` in: announce it, and start it if the node runs."""

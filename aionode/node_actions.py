@@ -42,7 +42,7 @@ class NodeActionMethods:
         ) = None,
         result_timeout: float = 10.0,
         concurrent: bool | int = True,
-        on_error: OnError = "raise",
+        on_error: OnError = "log",
         offload: bool = False,
     ) -> ActionServer[GoalT, ResultT, FeedbackT]:
         """Return a server that executes goals; see `aionode.ActionServer` for all arguments."""

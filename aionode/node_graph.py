@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING
 
 from aionode import names
+from aionode.endpoints.future import asks
 from aionode.errors import NodeNameNonExistentError
 from aionode.graph import EndpointKind
 
@@ -94,20 +96,35 @@ class NodeGraphMethods:
         """Return name, namespace and security enclave of all nodes."""
         return [(node.name, node.namespace, node.enclave) for node in self.graph.nodes()]
 
+    @asks
     async def wait_for_node(
         self,
         fully_qualified_node_name: str,
+        timeout: float | None = None,
         *,
         check_interval: float = 0.1,  # noqa: ARG002  # rclpy's signature
-    ) -> None:
-        """Wait until a node of this name is there; `asyncio.timeout` limits it.
+    ) -> bool:
+        """Wait until a node of this name is there.
 
         Args:
             fully_qualified_node_name: Namespace and name; a leading slash may be left out.
+            timeout: How long at most, in seconds; None waits for ever.
             check_interval: Makes no difference: the wait ends when the graph changes.
+
+        Returns:
+            True when the node is there, False when `timeout` has passed.
         """
         wanted = "/" + fully_qualified_node_name.removeprefix("/")
-        await self.graph.until(lambda: any(self.graph.find_nodes(wanted)))
+
+        def is_there() -> bool:
+            return any(self.graph.find_nodes(wanted))
+
+        try:
+            async with asyncio.timeout(timeout):
+                await self.graph.until(is_there)
+        except TimeoutError:
+            return is_there()
+        return True
 
     # Topics and services by name
 

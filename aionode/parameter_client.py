@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING, Any
 
+from aionode.endpoints.future import asks
 from aionode.interfaces.rcl_interfaces.srv import (
     DescribeParameters,
     GetParameters,
@@ -79,6 +80,7 @@ class AsyncParameterClient:
         """Whether the node offers all six services now."""
         return all(client.service_is_ready() for client in self._clients)
 
+    @asks
     async def wait_for_services(self, timeout_sec: float | None = None) -> bool:
         """Wait until the node offers all six services; False when `timeout_sec` has passed."""
         try:

@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """Exercise of the tutorial: a service of a type of its own, which reverses a string.
 
 Run the server with ``python examples/reverse_string_service.py``, and in a second terminal a client

@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """Add two integers: one program that is the server or the client, as its parameter says.
 
 Run the server with ``python examples/service_client_server.py --ros-args -p mode:=server``, and in
@@ -13,24 +14,13 @@ from aionode import Node
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 
 
-class ServiceClientServer(Node):
-    """A server of /add_two_ints, or a client that asks it once."""
+class AddTwoIntsServer(Node):
+    """Serves /add_two_ints."""
 
     def __init__(self) -> None:
-        super().__init__("service_client_server")
-        mode = self.declare_parameter("mode", "server").value
-        if mode == "server":
-            self.service = self.create_service(
-                AddTwoInts, "/add_two_ints", self.add_two_ints_callback
-            )
-            self.get_logger().info("Service server ready: /add_two_ints")
-        elif mode == "client":
-            self.a = self.declare_parameter("a", 0).value
-            self.b = self.declare_parameter("b", 0).value
-            self.client = self.create_client(AddTwoInts, "/add_two_ints")
-            self.timer = self.create_timer(0.0, self.call_service)
-        else:
-            sys.exit(f"mode: {mode!r}; it is 'server' or 'client'")
+        super().__init__("add_two_ints_server")
+        self.service = self.create_service(AddTwoInts, "/add_two_ints", self.add_two_ints_callback)
+        self.get_logger().info("AddTwoInts service server started at /add_two_ints")
 
     def add_two_ints_callback(
         self, request: AddTwoInts.Request, response: AddTwoInts.Response
@@ -40,15 +30,42 @@ class ServiceClientServer(Node):
         self.get_logger().info(f"Request: a={request.a}, b={request.b} -> sum={response.sum}")
         return response
 
-    async def call_service(self) -> None:
-        """Ask once, print the answer, and end."""
-        self.timer.cancel()
+
+class AddTwoIntsClient(Node):
+    """Asks /add_two_ints once."""
+
+    def __init__(self, a: int, b: int) -> None:
+        super().__init__("add_two_ints_client")
+        self.client = self.create_client(AddTwoInts, "/add_two_ints")
+        self.request = AddTwoInts.Request(a=a, b=b)
+
+    async def ask(self) -> None:
+        """Wait for the service, ask it, and log the answer."""
+        logger, a, b = self.get_logger(), self.request.a, self.request.b
         while not await self.client.wait_for_service(timeout_sec=1.0):
-            self.get_logger().info("Waiting for the service /add_two_ints ...")
-        response = await self.client.call(AddTwoInts.Request(a=self.a, b=self.b))
-        self.get_logger().info(f"Response: {self.a} + {self.b} = {response.sum}")
-        self.destroy_node()
+            logger.info("Waiting for service /add_two_ints...")
+        logger.info(f"Service client ready. Request: a={a}, b={b}")
+        logger.info(f"Calling service with a={a}, b={b}")
+        response = await self.client.call(self.request)
+        logger.info(f"Response: {a} + {b} = {response.sum}")
+
+
+async def main() -> None:
+    """Be the server or a client, as the parameter `mode` says."""
+    reader = Node("param_reader")
+    mode = reader.declare_parameter("mode", "server").value
+    a = reader.declare_parameter("a", 0).value
+    b = reader.declare_parameter("b", 0).value
+    reader.destroy_node()
+
+    if mode == "server":
+        await AddTwoIntsServer().run()
+    elif mode == "client":
+        async with AddTwoIntsClient(a, b) as client:
+            await client.ask()
+    else:
+        sys.exit(f"mode: {mode!r}; it is 'server' or 'client'")
 
 
 if __name__ == "__main__":
-    aionode.run(ServiceClientServer)
+    aionode.run(main)

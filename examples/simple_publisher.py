@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """Publish a counted greeting on /robot/message, once a second.
 
 Run it with ``python examples/simple_publisher.py``, and end it with Ctrl-C.
@@ -18,6 +19,7 @@ class SimplePublisher(Node):
         self.publisher = self.create_publisher(String, "/robot/message", 10)
         self.timer = self.create_timer(1.0, self.timer_callback)
         self.count = 0
+        self.get_logger().info("Simple Publisher started. Publishing to /robot/message")
 
     def timer_callback(self) -> None:
         """Publish the next greeting."""

@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """Print every message of /robot/message.
 
 Run it with ``python examples/simple_subscriber.py``, and end it with Ctrl-C.
@@ -11,17 +12,20 @@ from aionode.interfaces.std_msgs.msg import String
 
 
 class SimpleSubscriber(Node):
-    """Logs what it hears."""
+    """Logs and counts what it hears."""
 
     def __init__(self) -> None:
         super().__init__("simple_subscriber")
         self.subscription = self.create_subscription(
             String, "/robot/message", self.listener_callback, 10
         )
+        self.count = 0
+        self.get_logger().info("Simple Subscriber started. Listening to /robot/message")
 
     def listener_callback(self, msg: String) -> None:
         """Log one message."""
-        self.get_logger().info(f'I heard: "{msg.data}"')
+        self.count += 1
+        self.get_logger().info(f'Received message #{self.count}: "{msg.data}"')
 
 
 if __name__ == "__main__":

@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """Exercise of the tutorial: publish the time on /robot/timestamp, ten times a second.
 
 Run it with ``python examples/timestamp_publisher.py``, and end it with Ctrl-C.

@@ -1,7 +1,8 @@
-"""Exercise of the tutorial: count the words of each message of /robot/message.
+#!/usr/bin/env python3
+"""Exercise of the tutorial: count the words of all messages of /robot/message.
 
 Run it with ``python examples/word_counter.py`` beside ``python examples/simple_publisher.py``; the
-counts are on /robot/word_count.
+total is on /robot/word_count.
 """
 
 from __future__ import annotations
@@ -20,12 +21,14 @@ class WordCounter(Node):
         self.subscription = self.create_subscription(
             String, "/robot/message", self.listener_callback, 10
         )
+        self.total = 0
+        self.get_logger().info("Word Counter started. Counting the words of /robot/message")
 
     def listener_callback(self, msg: String) -> None:
-        """Publish how many words `msg` has."""
-        count = Int32(data=len(msg.data.split()))
-        self.publisher.publish(count)
-        self.get_logger().info(f'"{msg.data}" has {count.data} words')
+        """Publish how many words there were so far."""
+        self.total += len(msg.data.split())
+        self.publisher.publish(Int32(data=self.total))
+        self.get_logger().info(f"Words so far: {self.total}")
 
 
 if __name__ == "__main__":

@@ -204,10 +204,14 @@ def test_a_signal_ends_an_example_cleanly(
 def test_the_publisher_prints_what_the_tutorial_prints() -> None:
     """Line for line: severity, time, name, text."""
     with running("examples/simple_publisher.py") as program:
-        line = program.line_with("Publishing")
+        lines = [program.line_with("Publishing") for _ in range(2)]
 
-    text = 'Publishing: "Hello from ROS 2! Message count: 0"'
-    assert re.fullmatch(rf"{STAMP} \[simple_publisher\]: {re.escape(text)}", line)
+    texts = [
+        "Simple Publisher started. Publishing to /robot/message",
+        'Publishing: "Hello from ROS 2! Message count: 0"',
+    ]
+    for line, text in zip(lines, texts, strict=True):
+        assert re.fullmatch(rf"{STAMP} \[simple_publisher\]: {re.escape(text)}", line)
 
 
 def test_the_subscriber_hears_the_publisher_in_another_process(domain: int) -> None:
@@ -216,10 +220,15 @@ def test_the_subscriber_hears_the_publisher_in_another_process(domain: int) -> N
         running("examples/simple_subscriber.py", domain=domain) as subscriber,
         running("examples/simple_publisher.py", domain=domain),
     ):
-        line = subscriber.line_with("I heard")
+        lines = [subscriber.line_with("simple_subscriber") for _ in range(3)]
 
-    text = r'I heard: "Hello from ROS 2! Message count: \d+"'
-    assert re.fullmatch(rf"{STAMP} \[simple_subscriber\]: {text}", line)
+    texts = [
+        "Simple Subscriber started. Listening to /robot/message",
+        r'Received message #1: "Hello from ROS 2! Message count: \d+"',
+        r'Received message #2: "Hello from ROS 2! Message count: \d+"',
+    ]
+    for line, text in zip(lines, texts, strict=True):
+        assert re.fullmatch(rf"{STAMP} \[simple_subscriber\]: {text}", line)
 
 
 def test_the_service_answers_a_client_in_another_process(domain: int) -> None:
@@ -229,13 +238,61 @@ def test_the_service_answers_a_client_in_another_process(domain: int) -> None:
         server.wait_until_running()
         asking = ["-p", "mode:=client", "-p", "a:=10", "-p", "b:=25"]
         with running(program, "--ros-args", *asking, domain=domain) as client:
-            response = client.line_with("Response")
-            client.rest()
-        request = server.line_with("Request")
+            told = client.rest().splitlines()
+        served = [server.line_with("add_two_ints_server") for _ in range(2)]
 
-    assert response.endswith(": Response: 10 + 25 = 35")
+    assert [line.partition("] [add_two_ints_client]: ")[2] for line in told][-3:] == [
+        "Service client ready. Request: a=10, b=25",
+        "Calling service with a=10, b=25",
+        "Response: 10 + 25 = 35",
+    ]
     assert client.process.returncode == 0
-    assert request.endswith(": Request: a=10, b=25 -> sum=35")
+    assert [line.partition("] [add_two_ints_server]: ")[2] for line in served] == [
+        "AddTwoInts service server started at /add_two_ints",
+        "Request: a=10, b=25 -> sum=35",
+    ]
+
+
+def test_a_client_without_a_server_says_that_it_waits() -> None:
+    """Once a second, in the tutorial's words."""
+    asking = ["--ros-args", "-p", "mode:=client"]
+    with running("examples/service_client_server.py", *asking) as client:
+        line = client.line_with("Waiting")
+
+    text = "Waiting for service /add_two_ints..."
+    assert re.fullmatch(rf"{STAMP} \[add_two_ints_client\]: {re.escape(text)}", line)
+
+
+def test_the_example_of_services_uses_no_server_of_others(domain: int) -> None:
+    """Beside the tutorial's server its answers would come from either of the two."""
+    with running("examples/service_client_server.py", domain=domain) as server:
+        server.wait_until_running()
+        with running("-m", "aionode.examples.service", domain=domain) as example:
+            text = example.rest()
+        status, told = server.end_with(signal.SIGINT)
+
+    assert "ValueError: only counts, please" in text
+    assert "Request:" not in told
+    assert status == 0
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "simple_publisher",
+        "simple_subscriber",
+        "service_client_server",
+        "timestamp_publisher",
+        "word_counter",
+        "reverse_string_service",
+    ],
+)
+def test_a_program_of_the_tutorial_can_be_executed(name: str) -> None:
+    """As ``./simple_publisher.py``, which the tutorial's readers try."""
+    path = ROOT / "examples" / f"{name}.py"
+
+    assert path.read_text(encoding="utf-8").startswith("#!/usr/bin/env python3\n")
+    assert os.access(path, os.X_OK)
 
 
 def test_any_async_program_can_ask_the_service(domain: int) -> None:
@@ -266,9 +323,40 @@ def test_the_word_counter_counts_what_the_publisher_says(domain: int) -> None:
         running("examples/word_counter.py", domain=domain) as counter,
         running("examples/simple_publisher.py", domain=domain),
     ):
-        line = counter.line_with("has")
+        lines = [counter.line_with("Words so far") for _ in range(2)]
 
-    assert line.endswith(" has 7 words")
+    assert [line.rpartition(" ")[2] for line in lines] == ["7", "14"]
+
+
+def test_the_parameters_of_another_node_are_read_and_set(domain: int) -> None:
+    """Twice what it was, until the limit refuses it with its reason."""
+    program = "examples/parameter_client.py"
+    with running("examples/driver.py", domain=domain) as driver:
+        driver.wait_until_running()
+        texts = []
+        for _ in range(3):
+            with running(program, domain=domain) as client:
+                texts.append(client.rest())
+
+    assert "speed: 0.5 -> 1.0" in texts[0]
+    assert "speed: 1.0 -> 2.0" in texts[1]
+    assert "speed stays 2.0" in texts[2]
+
+
+def test_the_last_message_of_a_program_is_that_the_wheels_stop(domain: int) -> None:
+    """Ctrl-C cancels the callback, whose `finally` may still publish."""
+    with (
+        running(
+            "-m", "aionode", "topic", "echo", "/cmd_vel", "--field", "linear.x", domain=domain
+        ) as echo,
+        running("examples/last_message.py", domain=domain) as robot,
+    ):
+        echo.line_with(r"^0\.2")
+        status, text = robot.end_with(signal.SIGINT)
+        echo.line_with(r"^0\.0")
+
+    assert status == 0, text
+    assert "Error" not in text
 
 
 def test_the_robot_drives_where_a_client_in_another_process_tells_it(domain: int) -> None:

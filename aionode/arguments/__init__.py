@@ -10,11 +10,13 @@ from aionode.arguments.parameter_yaml import (
     read_parameter_file,
 )
 from aionode.arguments.parse import Arguments, parse_arguments, remove_ros_args
+from aionode.arguments.usage import Usage
 
 __all__ = [
     "Arguments",
     "ParameterRule",
     "ParameterValueType",
+    "Usage",
     "matching_parameters",
     "parse_arguments",
     "parse_parameter_yaml",

@@ -16,7 +16,7 @@ not its values.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -67,11 +67,13 @@ class ParameterRule:
         node: Full name of a node, in which ``*`` stands for one token and ``**`` for any number.
         name: Name of the parameter.
         value: Its value.
+        typed: What was typed after ``-p``; empty for one of a file.
     """
 
     node: str
     name: str
     value: ParameterValueType
+    typed: str = field(default="", compare=False)
 
     def matches(self, node_name: str) -> bool:
         """Return whether the rule is for the node with this full name."""

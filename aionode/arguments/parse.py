@@ -255,7 +255,7 @@ def add_parameter(parser: Parser, text: str) -> None:
         node = f"/**/{node}"  # the node of this name, in whatever namespace
     elif not node.startswith("/"):
         node = f"/{node}"
-    parser.parameter_rules.append(ParameterRule(node, name, parse_value(value, VALUE)))
+    parser.parameter_rules.append(ParameterRule(node, name, parse_value(value, VALUE), text))
 
 
 def add_file(parser: Parser, path: str) -> None:

@@ -12,6 +12,7 @@ from aionode.endpoints.action_words import expect_action_type, reason_id
 from aionode.endpoints.client_goal import ActionResult, ClientGoalHandle
 from aionode.endpoints.dispatch import accepts, give_way, pump
 from aionode.endpoints.entity import Entity
+from aionode.endpoints.future import Futures, asks
 from aionode.endpoints.inbox import Inbox
 from aionode.endpoints.stats import CallbackStats
 from aionode.errors import (
@@ -118,6 +119,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         self._goals: dict[bytes, ClientGoalHandle[ResultT, FeedbackT]] = {}
         self._accepted: Inbox[Any] = Inbox(UNLIMITED, CallbackStats(), keep_all=True)
         self._waits: set[asyncio.Future[None]] = set()
+        self._futures = Futures(self.subject)
 
         impl = self.action_type.Impl
         hidden = f"{self.action_name}/_action"
@@ -187,6 +189,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
             and self._status.get_publisher_count() > 0
         )
 
+    @asks
     async def wait_for_server(self, timeout_sec: float | None = None) -> bool:
         """Wait until a server is matched.
 
@@ -287,6 +290,41 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
             EntityDestroyedError: the client was destroyed before (a RuntimeError).
             CancelledError: the client was destroyed meanwhile.
         """
+        handle = await self._send(goal, feedback_callback, goal_uuid)
+        if not handle.accepted:
+            raise GoalRejectedError(self.action_name, handle.text)
+        return handle
+
+    def send_goal_async(
+        self,
+        goal: GoalT,
+        feedback_callback: Callable[[Any], Any] | None = None,
+        goal_uuid: Any = None,
+    ) -> asyncio.Future[ClientGoalHandle[ResultT, FeedbackT]]:
+        """Send `goal`, and return a future of its handle, as in rclpy.
+
+        A goal that is refused is a handle whose `accepted` is False, as there. For all else see
+        `send_goal`, and `Client.call_async` for the future.
+
+        Raises:
+            EntityDestroyedError: the client was destroyed (a RuntimeError).
+            RuntimeError: no event loop runs.
+        """
+        self.refuse_if_destroyed("given a goal")
+        return self._futures.begin(self._send(goal, feedback_callback, goal_uuid))
+
+    def in_future(self, work: Coroutine[Any, Any, T]) -> asyncio.Future[T]:
+        """Return the outcome of `work` as a future. For goal handles."""
+        return self._futures.begin(work)
+
+    def start(self, tasks: asyncio.TaskGroup) -> None:
+        """Begin with the goals that were sent before the node ran."""
+        super().start(tasks)
+        self._futures.start(tasks)
+
+    async def _send(
+        self, goal: GoalT, feedback_callback: Callable[[Any], Any] | None, goal_uuid: Any
+    ) -> ClientGoalHandle[ResultT, FeedbackT]:
         self.refuse_if_destroyed("given a goal")
         self._check(goal)
         if feedback_callback is not None:
@@ -308,7 +346,8 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
             raise
         if not response.accepted:
             self._forget(handle)
-            raise GoalRejectedError(self.action_name, handle.text)
+            handle.end(lost=GoalLostError(self.action_name, handle.text, "the server refused it"))
+            return handle
         handle.accepted = True
         handle.stamp = response.stamp
         handle.tell(GoalStatus.ACCEPTED)
@@ -449,6 +488,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
                 self._cancel_goal.send(self._cancel_request(goal))
         for wait in list(self._waits):  # first, as the end of the parts is a change of the graph
             wait.cancel(f"{self.subject}: destroyed")
+        self._futures.close()
         self._close_parts()
         goals, self._goals = self._goals, {}
         for goal in goals.values():

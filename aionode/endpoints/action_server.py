@@ -103,9 +103,11 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             those get it who asked before the end.
         concurrent: True executes all accepted goals at once, False one after the other, a number at
             most so many at once; the others wait as ACCEPTED.
-        on_error: What becomes of an exception in the other callbacks: ``"raise"`` ends the node,
-            ``"log"`` logs and counts it, a function gets (exception, CallbackContext). A failing
-            `goal_callback` or `cancel_callback` is told to the client first, as a `ServiceError`.
+        on_error: What becomes of an exception in the other callbacks, once the client was told (a
+            failing `goal_callback` or `cancel_callback` is a `ServiceError` there, a failing
+            `handle_accepted_callback` aborts the goal): ``"log"`` logs it with its traceback,
+            counts it and goes on, ``"raise"`` ends the node, a function gets (exception,
+            CallbackContext).
         offload: Whether to run a sync `execute_callback` in a thread, where it may use its handle.
         goal_service_qos_profile: Profile of the service that takes goals.
         result_service_qos_profile: Profile of the service that gives results.
@@ -141,7 +143,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         ) = None,
         result_timeout: float = 10.0,
         concurrent: bool | int = True,
-        on_error: OnError = "raise",
+        on_error: OnError = "log",
         offload: bool = False,
         goal_service_qos_profile: QoSProfile | int = qos_profile_services_default,
         result_service_qos_profile: QoSProfile | int = qos_profile_services_default,

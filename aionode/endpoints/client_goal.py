@@ -43,7 +43,7 @@ class ActionResult(Generic[ResultT]):
 
 
 class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
-    """A goal that was accepted. Made by `ActionClient.send_goal`.
+    """A goal that was sent. Made by `ActionClient.send_goal`.
 
     It is an async iterator of feedback: ``async for feedback in goal`` yields what has come since
     the goal was sent (the newest 100 are kept) and what comes, and ends when the goal has.
@@ -58,7 +58,8 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         goal_id: Its id, as unique_identifier_msgs/msg/UUID.
         stamp: When the server accepted it, as builtin_interfaces/msg/Time.
         status: Its state, as far as the server has told.
-        accepted: True, as in rclpy; a goal that is refused raises GoalRejectedError.
+        accepted: Whether the server accepted it; False only from `send_goal_async`, since
+            `send_goal` raises GoalRejectedError.
     """
 
     def __init__(
@@ -167,6 +168,27 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
             EntityDestroyedError: the client was destroyed (a RuntimeError).
         """
         return await self._client.cancel_goal(self)
+
+    # The names of rclpy
+
+    def get_result_async(self) -> asyncio.Future[ActionResult[ResultT]]:
+        """Return how the goal ends as a future, as in rclpy: see `result`.
+
+        Its ``result().status`` and ``result().result`` are those of rclpy's response. Cancelling
+        the future cancels the goal.
+
+        Raises:
+            RuntimeError: no event loop runs.
+        """
+        return self._client.in_future(self.result())
+
+    def cancel_goal_async(self) -> asyncio.Future[Any]:
+        """Ask the server to cancel the goal; return its answer as a future, see `cancel`.
+
+        Raises:
+            RuntimeError: no event loop runs.
+        """
+        return self._client.in_future(self.cancel())
 
     # What the client does
 

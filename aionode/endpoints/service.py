@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from aionode.clock import perf_ns
 from aionode.endpoints.dispatch import accepts, checked_concurrency, is_unfinished, pump
 from aionode.endpoints.entity import Entity
+from aionode.endpoints.future import Futures, asks
 from aionode.endpoints.inbox import Inbox
 from aionode.endpoints.shortcut import Shortcut
 from aionode.endpoints.stats import CallbackStats, ClientStats
@@ -202,6 +203,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         self._check = checker(srv_type.Request)
         self._now_ns = time_base.system_ns
         self._answers: set[asyncio.Future[Any]] = set()
+        self._futures = Futures(self.subject)
         self._warned = False
 
     def __repr__(self) -> str:
@@ -221,6 +223,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         """Whether a server is matched now."""
         return self._channel.count_matched(EndpointKind.SERVER) > 0
 
+    @asks
     async def wait_for_service(self, timeout_sec: float | None = None) -> bool:
         """Wait until a server is matched.
 
@@ -292,6 +295,28 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         self.stats.run_time.record(perf_ns() - began_ns)
         return response
 
+    def call_async(self, request: RequestT) -> asyncio.Future[ResponseT]:
+        """Send `request`, and return a future of the response, as in rclpy.
+
+        The future is asyncio's: it can be awaited, `add_done_callback` tells of its end, `result`
+        gives the response, or raises what `call` raises. Cancelling it forgets the call; so does
+        the end of the client. Before the node runs it waits for that.
+
+        Args:
+            request: An instance of ``srv_type.Request``.
+
+        Raises:
+            EntityDestroyedError: the client was destroyed (a RuntimeError).
+            RuntimeError: no event loop runs.
+        """
+        self.refuse_if_destroyed("called")
+        return self._futures.begin(self.call(request))
+
+    def start(self, tasks: asyncio.TaskGroup) -> None:
+        """Begin the calls that were made before the node ran."""
+        super().start(tasks)
+        self._futures.start(tasks)
+
     def send(self, request: RequestT) -> None:
         """Send `request` to the servers that are there now; the response is dropped.
 
@@ -356,6 +381,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         self._channel.close()
         for answer in list(self._answers):  # first, or it would look as if the servers had gone
             answer.cancel(f"{self.subject}: destroyed")
+        self._futures.close()
         for requester in self._requesters:
             requester.close()
 

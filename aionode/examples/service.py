@@ -18,12 +18,12 @@ Asker = Client[AddTwoInts.Request, AddTwoInts.Response]
 
 
 class Adder(Node):
-    """Serves /add_two_ints, several requests at a time."""
+    """Serves ~/add_two_ints, which is its own, several requests at a time."""
 
     def __init__(self) -> None:
         super().__init__("adder")
         self.service = self.create_service(
-            AddTwoInts, "/add_two_ints", self.add, concurrent=True, on_error=self.report
+            AddTwoInts, "~/add_two_ints", self.add, concurrent=True, on_error=self.report
         )
 
     async def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
@@ -41,12 +41,12 @@ class Adder(Node):
 async def application() -> None:
     """Ask once, ten times at once, wrongly, and where nobody answers; then end."""
     async with Adder(), Node("application") as node:
-        client = node.create_client(AddTwoInts, "/add_two_ints")
+        client = node.create_client(AddTwoInts, "/adder/add_two_ints")
         await client.wait_for_service()
         await ask_once(client)
         await ask_ten_at_once(client)
         await ask_wrongly(client)
-        await ask_nobody(node.create_client(AddTwoInts, "/multiply_two_ints"))
+        await ask_nobody(node.create_client(AddTwoInts, "/adder/multiply_two_ints"))
 
 
 async def ask_once(client: Asker) -> None:

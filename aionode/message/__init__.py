@@ -43,6 +43,7 @@ from aionode.message.plain import (
     to_json,
     to_yaml,
 )
+from aionode.message.schema import json_schema
 from aionode.message.services import (
     ActionClass,
     ActionType,
@@ -89,6 +90,7 @@ __all__ = [
     "int16",
     "int32",
     "int64",
+    "json_schema",
     "snapshot",
     "snapshotter",
     "to_builtins",

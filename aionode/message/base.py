@@ -10,6 +10,7 @@ import copy
 import functools
 import re
 import sys
+from importlib import import_module
 from keyword import iskeyword
 from typing import TYPE_CHECKING, Any, ClassVar, dataclass_transform, get_args, get_origin
 
@@ -144,6 +145,16 @@ class Message(msgspec.Struct, metaclass=MessageMeta):  # noqa: PLW1641 (mutable:
         values = (f"{f.name}={shown(f.type, getattr(self, f.name))}" for f in self.__ros_fields__)
         return f"{name}({', '.join(values)})"
 
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:
+        """Tell Pydantic how to read and write messages, in models and in FastAPI."""
+        return by_name("pydantic_core_schema")(cls)
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core_schema: Any, handler: Any) -> Any:
+        """Tell Pydantic how messages look as JSON, for OpenAPI."""
+        return by_name("pydantic_json_schema")(cls, handler)
+
     def __deepcopy__(self, memo: dict[int, Any]) -> Message:
         """Return a copy that shares nothing that can change."""
         return type(self)(*(copy.deepcopy(owned(self, f), memo) for f in self.__struct_fields__))
@@ -152,6 +163,11 @@ class Message(msgspec.Struct, metaclass=MessageMeta):  # noqa: PLW1641 (mutable:
         """Return how to make it again, for pickle."""
         values = {name: owned(self, name) for name in self.__struct_fields__}
         return functools.partial(type(self), **values), ()
+
+
+def by_name(function: str) -> Any:
+    """Return a function of the module for schemas, which imports this one."""
+    return getattr(import_module("aionode.message.schema"), function)
 
 
 def owned(message: Message, name: str) -> object:

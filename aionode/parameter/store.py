@@ -138,6 +138,7 @@ class ParameterStore(ParameterCallbacks):
 
     Attributes:
         overrides: The overrides, by name.
+        asked: Names of those overrides that were declared at some time.
         publish: As given; may be changed.
     """
 
@@ -152,10 +153,15 @@ class ParameterStore(ParameterCallbacks):
         super().__init__()
         self.node_name = node_name
         self.overrides = as_overrides(overrides)
+        self.asked: set[str] = set()
         self.allow_undeclared = allow_undeclared
         self.publish = publish
         self._parameters: dict[str, Parameter] = {}
         self._descriptors: dict[str, ParameterDescriptor] = {}
+
+    def names(self) -> list[str]:
+        """Return the names of all parameters that are declared."""
+        return list(self._parameters)
 
     # Declaring
 
@@ -235,6 +241,8 @@ class ParameterStore(ParameterCallbacks):
                 stacklevel=4,
             )
             descriptor.dynamic_typing = True
+        if name in self.overrides:
+            self.asked.add(name)
         parameter = first_value(name, value, descriptor)
         if not ignore_override and name in self.overrides:
             parameter = adapted(self.overrides[name], descriptor)

@@ -127,10 +127,29 @@ async def test_a_failing_goal_callback_tells_the_client(serve: Serve, client: Pl
     def fail(_goal: Fibonacci.Goal) -> GoalResponse:
         raise LookupError("no map")
 
-    serve(goal_callback=fail, on_error="log")
+    serve(goal_callback=fail)
 
     with pytest.raises(ServiceError, match="LookupError: no map"):
         await client.send()
+
+
+async def test_an_action_server_survives_a_failing_goal_callback(
+    node: Node, serve: Serve, worker: Worker, client: PlainClient
+) -> None:
+    """One bad goal is its client's trouble: the next one is decided on as ever."""
+
+    def decide(goal: Fibonacci.Goal) -> GoalResponse:
+        if goal.order < 0:
+            raise ValueError("no such order")
+        return GoalResponse.ACCEPT
+
+    serve(goal_callback=decide)
+    with pytest.raises(ServiceError, match="ValueError: no such order"):
+        await client.send(1, order=-1)
+
+    assert (await client.send(2)).accepted
+    assert node.is_running
+    worker.may_end.set()
 
 
 async def test_an_id_that_is_known_already_is_rejected(
@@ -237,7 +256,7 @@ async def test_a_failing_handle_accepted_callback_aborts_the_goal(
     async def fail(_goal: Goal) -> None:
         raise LookupError("no room")
 
-    serve(handle_accepted_callback=fail, on_error="log")
+    serve(handle_accepted_callback=fail)
     await client.send()
 
     assert (await client.result()).status == GoalStatus.ABORTED
@@ -622,7 +641,7 @@ async def test_a_failing_cancel_callback_tells_the_client(
     def fail(_goal: Goal) -> CancelResponse:
         raise LookupError("which one?")
 
-    serve(cancel_callback=fail, on_error="log")
+    serve(cancel_callback=fail)
     await client.send()
 
     with pytest.raises(ServiceError, match="LookupError: which one"):

@@ -262,13 +262,13 @@ async def test_a_failing_handler_answers_with_its_error(node: Node) -> None:
 async def test_a_failing_handler_ends_its_node_after_the_client_was_told(
     context: Context, node: Node, *, concurrent: bool
 ) -> None:
-    """`on_error="raise"` is rclpy's behaviour, and the client still gets its answer."""
+    """`on_error="raise"` is rclpy's behaviour for whoever wants it; the client gets its answer."""
 
     def handler(request: Request) -> Response:
         raise ValueError("boom")
 
     server = Node("server", context=context)
-    server.create_service(AddTwoInts, "/add", handler, concurrent=concurrent)
+    server.create_service(AddTwoInts, "/add", handler, concurrent=concurrent, on_error="raise")
     client = node.create_client(AddTwoInts, "/add")
 
     async def call() -> None:
@@ -280,6 +280,31 @@ async def test_a_failing_handler_ends_its_node_after_the_client_was_told(
         with pytest.raises(ExceptionGroup) as caught:
             await server.run()
     assert caught.group_contains(ValueError, match="boom")
+
+
+@pytest.mark.parametrize("concurrent", [False, True])
+async def test_a_server_survives_a_bad_request(
+    node: Node, capfd: pytest.CaptureFixture[str], *, concurrent: bool
+) -> None:
+    """As a web server does: the caller is told, the log has the traceback, the next is served."""
+
+    async def handler(request: Request) -> Response:
+        if request.a < 0:
+            raise ValueError("only counts")
+        return Response(sum=request.a)
+
+    service = node.create_service(AddTwoInts, "add", handler, concurrent=concurrent)
+    client = node.create_client(AddTwoInts, "add")
+
+    with pytest.raises(ServiceError, match="only counts"):
+        await client.call(Request(a=-1))
+
+    assert (await client.call(Request(a=1))).sum == 1
+    assert node.is_running
+    assert service.stats.errors == 1
+    logged = capfd.readouterr().err
+    assert "service /add (callback" in logged
+    assert "Traceback" in logged
 
 
 @pytest.mark.parametrize("answer", [None, "text", SetBool.Response()])

@@ -546,9 +546,9 @@ async def test_a_failing_handler_tells_the_client_at_once(node: Node) -> None:
 
 
 async def test_a_failing_handler_ends_its_node(context: Context) -> None:
-    """Through the pump, as from the queue."""
+    """Through the pump, as from the queue, where `on_error` asks for it."""
     node = Node("node", context=context)
-    service = node.create_service(AddTwoInts, "sums", fail)
+    service = node.create_service(AddTwoInts, "sums", fail, on_error="raise")
     request = Asked()
 
     async def transport() -> None:

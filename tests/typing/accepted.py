@@ -7,7 +7,7 @@ from typing import Any, ClassVar, TypeVar, assert_type
 import numpy as np
 import numpy.typing as npt
 
-from aionode import GoalResponse, Node, ServerGoalHandle
+from aionode import GoalResponse, Health, Node, NodeEnd, ServerGoalHandle, Supervisor
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.geometry_msgs.msg import Point, PoseStamped, Twist, Vector3
@@ -176,6 +176,10 @@ async def goals(node: Node) -> None:
     assert_type((await goal.result()).result, Fibonacci.Result)
     assert_type(await client.call(Fibonacci.Goal()), Fibonacci.Result)
 
+    sent = client.send_goal_async(Fibonacci.Goal())
+    assert_type((await (await sent).get_result_async()).result, Fibonacci.Result)
+    assert_type(await client.wait_for_server(timeout_sec=1.0), bool)
+
     async def execute(
         handle: ServerGoalHandle[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback],
     ) -> Fibonacci.Result:
@@ -187,6 +191,29 @@ async def goals(node: Node) -> None:
     node.create_action_server(
         Fibonacci, "fibonacci", execute, goal_callback=lambda _goal: GoalResponse.ACCEPT
     )
+
+
+async def calls(node: Node) -> None:
+    """A future knows its response, a wait that it answers yes or no."""
+    client = node.create_client(AddTwoInts, "add")
+    assert_type(await client.call_async(AddTwoInts.Request()), AddTwoInts.Response)
+    assert_type(client.call_async(AddTwoInts.Request()).result(), AddTwoInts.Response)
+    while not await client.wait_for_service(timeout_sec=1.0):
+        pass
+    while not await node.wait_for_node("other", 1.0):
+        pass
+
+
+async def supervised() -> None:
+    """A supervisor knows the class of its node."""
+
+    class Robot(Node):
+        speed = 0.5
+
+    async with Supervisor(lambda: Robot("robot")) as robot:
+        assert_type(robot.node.speed, float)
+        assert_type(robot.health(), Health)
+        assert_type(await robot.node.ended(), NodeEnd)
 
 
 def functions() -> None:

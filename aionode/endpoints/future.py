@@ -1,0 +1,161 @@
+"""What rclpy's ``*_async`` methods return: work of an entity as a future."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Coroutine, Generator
+from functools import wraps
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+__all__ = ["Futures", "Unasked", "asks"]
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+class Futures:
+    """Does work of one entity in tasks of its node, and gives its outcome as futures.
+
+    What is begun before the node runs waits for that. What its owner's end leaves undone is
+    cancelled.
+
+    Args:
+        subject: Whose work it is, for names of tasks and errors.
+    """
+
+    def __init__(self, subject: str) -> None:
+        self._subject = subject
+        self._tasks: asyncio.TaskGroup | None = None
+        self._closed = False
+        self._open: dict[asyncio.Future[Any], Coroutine[Any, Any, Any] | None] = {}
+
+    def begin(self, work: Coroutine[Any, Any, T]) -> asyncio.Future[T]:
+        """Return the outcome of `work` as a future; cancelling the future cancels the work.
+
+        Raises:
+            RuntimeError: no event loop runs, so nothing could complete the future.
+        """
+        try:
+            future: asyncio.Future[T] = asyncio.get_running_loop().create_future()
+        except RuntimeError as error:
+            work.close()
+            raise RuntimeError(
+                f"{self._subject}: a future needs the event loop, and none runs; ask in a callback "
+                "or a coroutine, or give the class of the node to aionode.run, which makes the "
+                "node in the loop"
+            ) from error
+        self._open[future] = work
+        future.add_done_callback(self._forget)
+        if self._closed:
+            future.cancel(f"{self._subject}: destroyed")
+        elif self._tasks is not None:
+            self._start(future)
+        return future
+
+    def start(self, tasks: asyncio.TaskGroup) -> None:
+        """Begin what waits, and from now on all else at once. Called when the node runs."""
+        self._tasks = tasks
+        for future in list(self._open):
+            self._start(future)
+
+    def close(self) -> None:
+        """Cancel what is under way, and from now on all else at once."""
+        self._closed = True
+        for future in list(self._open):
+            future.cancel(f"{self._subject}: destroyed")
+
+    def _start(self, future: asyncio.Future[Any]) -> None:
+        work = self._open[future]
+        assert work is not None  # noqa: S101  # nothing is begun twice
+        assert self._tasks is not None  # noqa: S101  # the node runs
+        self._open[future] = None
+        outcome = complete(future, work)
+        try:
+            task = self._tasks.create_task(outcome, name=f"{self._subject}: future")
+        except RuntimeError:  # the node is failing already
+            outcome.close()
+            work.close()
+            future.cancel(f"{self._subject}: its node has ended")
+            return
+        future.add_done_callback(lambda _: task.cancel())
+
+    def _forget(self, future: asyncio.Future[Any]) -> None:
+        work = self._open.pop(future)
+        if work is not None:
+            work.close()
+
+
+async def complete(future: asyncio.Future[T], work: Coroutine[Any, Any, T]) -> None:
+    """Do `work`, and give its outcome to `future`, errors and all."""
+    try:
+        outcome = await work
+    except asyncio.CancelledError:
+        future.cancel()
+        raise
+    except Exception as error:  # noqa: BLE001  # whoever has the future gets it
+        if not future.done():
+            future.set_exception(error)
+    else:
+        if not future.done():
+            future.set_result(outcome)
+
+
+class Unasked(Coroutine[Any, Any, T]):
+    """A question as a coroutine: it has an answer once it is awaited, and no truth value before.
+
+    rclpy's programs ask ``while not client.wait_for_service(timeout_sec=1.0):``. A plain coroutine
+    is true, so that the loop would end at once and the service be taken for available.
+    """
+
+    __slots__ = ("_name", "_work")
+
+    def __init__(self, work: Coroutine[Any, Any, T], name: str) -> None:
+        self._work = work
+        self._name = name
+
+    def __repr__(self) -> str:
+        return f"<{self._name}(), not awaited>"
+
+    def __bool__(self) -> bool:
+        """Say what is missing.
+
+        Raises:
+            TypeError: always.
+        """
+        self._work.close()
+        raise TypeError(
+            f"{self._name}() was not awaited, so there is no answer yet; write "
+            f"`await ...{self._name}(...)`, as in `while not await "
+            f"...{self._name}(timeout_sec=1.0):`; in a constructor, which cannot await, leave it "
+            "to the coroutine or callback that needs the answer"
+        )
+
+    def __await__(self) -> Generator[Any, Any, T]:
+        return self._work.__await__()
+
+    def send(self, value: Any) -> Any:
+        """Resume the coroutine."""
+        return self._work.send(value)
+
+    def throw(self, typ: Any, val: Any = None, tb: TracebackType | None = None) -> Any:
+        """Raise an error in the coroutine."""
+        return self._work.throw(typ) if val is None else self._work.throw(typ, val, tb)
+
+    def close(self) -> None:
+        """End the coroutine."""
+        self._work.close()
+
+
+def asks(
+    method: Callable[P, Coroutine[Any, Any, T]],
+) -> Callable[P, Coroutine[Any, Any, T]]:
+    """Make a coroutine method whose answer is a truth value say so when it is not awaited."""
+
+    @wraps(method)
+    def asking(*args: P.args, **kwargs: P.kwargs) -> Coroutine[Any, Any, T]:
+        return Unasked(method(*args, **kwargs), method.__name__)
+
+    return asking

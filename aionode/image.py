@@ -1,0 +1,329 @@
+"""Images as numpy arrays and PIL images: Image and CompressedImage messages read and made.
+
+What cv_bridge calls ``imgmsg_to_cv2`` is `to_numpy` here, and ``cv2_to_imgmsg`` is `from_numpy`;
+the arrays are those that OpenCV works with, the encodings those of cv_bridge. What is read looks at
+the message's own bytes wherever it can, so it is read-only if they are, as those of a received
+message are; copy it to change it. `to_pil`, `from_pil`, `compress` and `decompress` need Pillow.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from aionode.errors import MessageError
+from aionode.interfaces.sensor_msgs.msg import CompressedImage, Image
+from aionode.interfaces.std_msgs.msg import Header
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+    import numpy.typing as npt
+    from PIL.Image import Image as PILImage
+
+__all__ = [
+    "compress",
+    "decompress",
+    "encoding_of",
+    "from_numpy",
+    "from_pil",
+    "to_numpy",
+    "to_pil",
+]
+
+COLORS = {"mono": "m", "rgb": "rgb", "bgr": "bgr", "rgba": "rgba", "bgra": "bgra"}
+"""What the channels of an encoding with colours are."""
+
+YUV = {"yuv422", "yuv422_yuy2", "uyvy", "yuyv"}
+"""Encodings of two bytes for each pixel; the colour is shared by two of them."""
+
+OPENCV_TYPES = {
+    "8U": "uint8",
+    "8S": "int8",
+    "16U": "uint16",
+    "16S": "int16",
+    "32S": "int32",
+    "32F": "float32",
+    "64F": "float64",
+}
+
+PIL_ENCODINGS = {"L": "mono8", "RGB": "rgb8", "RGBA": "rgba8", "I;16": "mono16", "F": "32FC1"}
+
+
+def encoding_of(encoding: str) -> tuple[np.dtype[Any], int]:
+    """Return the type of a number and how many a pixel has.
+
+    Known are ``mono``, ``rgb``, ``bgr``, ``rgba`` and ``bgra`` with 8 and 16 bits, OpenCV's types
+    such as ``8UC3`` and ``32FC1``, ``bayer_rggb8`` and its kind, ``yuv422`` and ``yuv422_yuy2``.
+
+    Raises:
+        MessageError: it is unknown (a ValueError).
+    """
+    if found := re.fullmatch(r"(mono|rgba?|bgra?)(8|16)", encoding):
+        return np.dtype(f"uint{found[2]}"), len(COLORS[found[1]])
+    if found := re.fullmatch(r"(8U|8S|16U|16S|32S|32F|64F)(?:C([1-9]\d*))?", encoding):
+        return np.dtype(OPENCV_TYPES[found[1]]), int(found[2] or 1)
+    if found := re.fullmatch(r"bayer_(?:rggb|bggr|gbrg|grbg)(8|16)", encoding):
+        return np.dtype(f"uint{found[1]}"), 1
+    if encoding in YUV:
+        return np.dtype(np.uint8), 2
+    raise MessageError(
+        "sensor_msgs/msg/Image.encoding",
+        f"{encoding!r} is unknown; such as mono8, rgb8, bgr8, rgba8, mono16, 8UC3, 32FC1, "
+        "bayer_rggb8 and yuv422 fit",
+    )
+
+
+def colors_of(encoding: str) -> str:
+    """Return the letters of the channels: ``bgr``; empty where they are no colours."""
+    found = re.fullmatch(r"(mono|rgba?|bgra?)(8|16)", encoding)
+    return COLORS[found[1]] if found else ""
+
+
+# numpy
+
+
+def to_numpy(image: Image, desired_encoding: str = "passthrough") -> npt.NDArray[Any]:
+    """Return the pixels: rows, columns, and a third dimension where a pixel has several channels.
+
+    No copy is made, rows with padding included, unless a grey image becomes a coloured one or the
+    reverse: the order of colours is changed by a view, too.
+
+    Args:
+        image: The message.
+        desired_encoding: Which order of colours is wanted, such as ``bgr8`` for OpenCV or ``rgb8``;
+            ``passthrough`` takes what is there. The number of bits stays.
+
+    Raises:
+        TypeError: `image` is no Image.
+        MessageError: it does not hold what it says, or its encoding is unknown (a ValueError).
+        ValueError: it cannot be converted to `desired_encoding`.
+    """
+    if not isinstance(image, Image):
+        raise TypeError(
+            f"to_numpy: {type(image).__name__} given; a sensor_msgs/msg/Image is needed, and "
+            "`decompress` makes one of a CompressedImage"
+        )
+    pixels = pixels_of(image)
+    if desired_encoding in ("passthrough", image.encoding):
+        return pixels
+    return converted(pixels, image.encoding, desired_encoding)
+
+
+def pixels_of(image: Image) -> npt.NDArray[Any]:
+    """Return the pixels as they are, over the bytes of the message."""
+    dtype, channels = encoding_of(image.encoding)
+    dtype = dtype.newbyteorder(">" if image.is_bigendian else "<")
+    shape = (image.height, image.width, channels)
+    pixel = dtype.itemsize * channels
+    row = image.width * pixel
+    if image.height and image.step < row:
+        raise MessageError(
+            "sensor_msgs/msg/Image.step",
+            f"{image.step}, but {image.width} pixels of {image.encoding} need {row} bytes",
+        )
+    data = memoryview(image.data)
+    needed = image.step * (image.height - 1) + row if image.height else 0
+    if data.nbytes < needed:
+        raise MessageError(
+            "sensor_msgs/msg/Image.data",
+            f"{data.nbytes} bytes, but {image.height} rows of {image.step} need {needed}",
+        )
+    if not (image.height and row):
+        pixels = np.empty(shape, dtype)
+    else:
+        strides = (image.step, pixel, dtype.itemsize)
+        pixels = np.ndarray(shape, dtype, buffer=data, strides=strides)
+    return pixels[:, :, 0] if channels == 1 else pixels
+
+
+def converted(pixels: npt.NDArray[Any], encoding: str, desired: str) -> npt.NDArray[Any]:
+    """Return pixels in another order of colours."""
+    have, want = colors_of(encoding), colors_of(desired)
+    dtype, channels = encoding_of(desired)
+    if encoding_of(encoding) == (dtype, channels) and not (have and want):
+        return pixels  # another name of the same, as 8UC3 of bgr8
+    if not (have and want) or dtype != encoding_of(encoding)[0]:
+        raise ValueError(
+            f"to_numpy: {encoding} cannot become {desired}: only the order of colours is changed "
+            "here, and the number of bits stays; take passthrough and convert with OpenCV or numpy"
+        )
+    if want == "m":
+        red, green, blue = (pixels[..., have.index(each)].astype(np.float32) for each in "rgb")
+        return np.asarray(np.round(0.299 * red + 0.587 * green + 0.114 * blue).astype(dtype))
+    if have == "m":
+        colors = np.repeat(pixels[..., np.newaxis], 3, axis=2)
+        return with_alpha(colors, dtype) if "a" in want else colors
+    colors = pixels[..., :3] if want[:3] == have[:3] else pixels[..., 2::-1]
+    if "a" not in want:
+        return colors
+    if "a" not in have:
+        return with_alpha(colors, dtype)
+    return np.concatenate([colors, pixels[..., 3:]], axis=2)
+
+
+def with_alpha(colors: npt.NDArray[Any], dtype: np.dtype[Any]) -> npt.NDArray[Any]:
+    """Return colours with a fourth channel that is opaque."""
+    opaque = np.full((*colors.shape[:2], 1), np.iinfo(dtype).max, dtype)
+    return np.concatenate([colors, opaque], axis=2)
+
+
+def from_numpy(
+    pixels: npt.NDArray[Any], encoding: str = "passthrough", header: Header | None = None
+) -> Image:
+    """Return an image of `pixels`: rows, columns, and channels where there are several.
+
+    An array that lies in one piece is not copied: the message looks at it, so leave it as it is
+    until the message is published, which takes a snapshot.
+
+    Args:
+        pixels: The array; of bytes or numbers that the encoding has.
+        encoding: What a pixel is: ``bgr8`` for an image of OpenCV, ``rgb8``, ``mono8``, ``32FC1``;
+            ``passthrough`` takes the type of OpenCV, such as ``8UC3``, which says nothing of
+            colours.
+        header: When it was exposed, and the frame of the camera.
+
+    Raises:
+        TypeError: `pixels` is no array.
+        MessageError: `encoding` is unknown (a ValueError).
+        ValueError: the array has another type or shape than `encoding` says.
+    """
+    if not isinstance(pixels, np.ndarray):
+        raise TypeError(f"from_numpy: {type(pixels).__name__} given; a numpy.ndarray is needed")
+    if pixels.ndim not in {2, 3}:
+        raise ValueError(
+            f"from_numpy: an array of shape {pixels.shape}; (rows, columns) or (rows, columns, "
+            "channels) fit"
+        )
+    height, width = pixels.shape[:2]
+    channels = 1 if pixels.ndim == 2 else pixels.shape[2]
+    if encoding == "passthrough":
+        types = {name: short for short, name in OPENCV_TYPES.items()}
+        if pixels.dtype.name not in types:
+            raise ValueError(f"from_numpy: {pixels.dtype.name}; {', '.join(types)} fit")
+        encoding = f"{types[pixels.dtype.name]}C{channels}"
+    dtype, wanted = encoding_of(encoding)
+    if (pixels.dtype.newbyteorder("="), channels) != (dtype, wanted):
+        raise ValueError(
+            f"from_numpy: {channels} channels of {pixels.dtype.name}; {encoding} has {wanted} of "
+            f"{dtype.name}"
+        )
+    pixels = np.ascontiguousarray(pixels)
+    return Image(
+        header=Header() if header is None else header,
+        height=height,
+        width=width,
+        encoding=encoding,
+        is_bigendian=int(pixels.dtype.str[0] == ">"),
+        step=width * channels * dtype.itemsize,
+        data=pixels.reshape(-1).view(np.uint8).data if pixels.size else b"",
+    )
+
+
+# PIL and compressed images
+
+
+def pillow() -> ModuleType:
+    """Return PIL.Image, or say how to get it."""
+    try:
+        import PIL.Image
+    except ModuleNotFoundError as error:
+        raise ModuleNotFoundError(
+            "aionode.image: PIL images and compressed ones need Pillow; pip install pillow",
+            name="PIL",
+        ) from error
+    return PIL.Image
+
+
+def to_pil(image: Image) -> PILImage:
+    """Return an image as PIL has it: ``L``, ``RGB``, ``RGBA``, ``I;16`` or ``F``.
+
+    Raises:
+        TypeError, MessageError: as `to_numpy`.
+        ValueError: PIL has no such images, or it is not known what the channels are (``8UC3``).
+        ModuleNotFoundError: Pillow is not installed.
+    """
+    modes = {encoding: mode for mode, encoding in PIL_ENCODINGS.items()}
+    modes |= {"8UC1": "L", "8U": "L", "16UC1": "I;16", "32F": "F"}
+    wanted = {"bgr8": "rgb8", "bgra8": "rgba8"}.get(image.encoding, "passthrough")
+    pixels = to_numpy(image, wanted)
+    mode = modes.get(image.encoding if wanted == "passthrough" else wanted)
+    if mode is None:
+        raise ValueError(
+            f"to_pil: {image.encoding} is none of PIL's; {', '.join(modes)}, bgr8 and bgra8 fit; "
+            "use to_numpy, which takes all, and PIL.Image.fromarray"
+        )
+    native = np.ascontiguousarray(pixels, pixels.dtype.newbyteorder("="))
+    made: PILImage = pillow().frombuffer(
+        mode, (image.width, image.height), native.tobytes(), "raw", mode, 0, 1
+    )
+    return made
+
+
+def from_pil(picture: PILImage, header: Header | None = None) -> Image:
+    """Return a message of a PIL image; one with a palette or of two colours is converted.
+
+    Raises:
+        ValueError: the image is of another mode than ``L``, ``RGB``, ``RGBA``, ``I;16``, ``F``,
+            ``1`` and ``P``.
+    """
+    converting = {"1": "L", "P": "RGBA" if "transparency" in picture.info else "RGB"}
+    if picture.mode in converting:
+        picture = picture.convert(converting[picture.mode])
+    if picture.mode not in PIL_ENCODINGS:
+        raise ValueError(
+            f"from_pil: mode {picture.mode} has no encoding; convert it to one of "
+            f"{', '.join(PIL_ENCODINGS)}, as with picture.convert('RGB')"
+        )
+    return from_numpy(np.asarray(picture), PIL_ENCODINGS[picture.mode], header)
+
+
+def compress(image: Image, format: str = "jpeg", **options: Any) -> CompressedImage:  # noqa: A002  # the field's name
+    """Return an image in a file format, with its header.
+
+    Args:
+        image: The image.
+        format: ``jpeg``, which loses a little, ``png``, which loses nothing, or another one that
+            Pillow writes.
+        options: What Pillow takes for this format, such as ``quality=90``.
+
+    Raises:
+        TypeError, MessageError, ValueError, ModuleNotFoundError: as `to_pil`.
+        ValueError: the format is unknown, or has no such images, as JPEG has none of 16 bits.
+    """
+    picture = to_pil(image)
+    file = io.BytesIO()
+    try:
+        picture.save(file, format=format, **options)
+    except (KeyError, OSError) as error:
+        raise ValueError(
+            f"compress: {image.encoding} cannot be written as {format!r} ({error}); jpeg holds "
+            "mono8, rgb8 and bgr8, png all but 32FC1"
+        ) from error
+    return CompressedImage(header=image.header, format=format, data=file.getvalue())
+
+
+def decompress(image: CompressedImage) -> Image:
+    """Return a compressed image as pixels, with its header: mono8, rgb8, rgba8 or mono16.
+
+    Raises:
+        TypeError: `image` is no CompressedImage.
+        MessageError: its data is no image that Pillow can read (a ValueError).
+        ModuleNotFoundError: Pillow is not installed.
+    """
+    if not isinstance(image, CompressedImage):
+        raise TypeError(
+            f"decompress: {type(image).__name__} given; a sensor_msgs/msg/CompressedImage is needed"
+        )
+    try:
+        picture = pillow().open(io.BytesIO(image.data))
+        picture.load()
+    except (OSError, SyntaxError) as error:
+        raise MessageError(
+            "sensor_msgs/msg/CompressedImage.data",
+            f"no image that can be read ({error}); its format is given as {image.format!r}",
+        ) from error
+    return from_pil(picture, image.header)

@@ -1,0 +1,356 @@
+"""Point clouds as numpy arrays: PointCloud2 messages read and made, with sensor_msgs_py's names.
+
+What is read looks at the message's own bytes wherever it can, so it is read-only if they are, as
+those of a received message are; copy it to change it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import namedtuple
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.lib.recfunctions import structured_to_unstructured, unstructured_to_structured
+
+from aionode.errors import MessageError
+from aionode.interfaces.sensor_msgs.msg import PointCloud2, PointField
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from aionode.interfaces.std_msgs.msg import Header
+
+__all__ = [
+    "create_cloud",
+    "create_cloud_xyz32",
+    "dtype_from_fields",
+    "fields_from_dtype",
+    "read_points",
+    "read_points_list",
+    "read_points_numpy",
+]
+
+DTYPES: dict[int, str] = {
+    PointField.INT8: "i1",
+    PointField.UINT8: "u1",
+    PointField.INT16: "i2",
+    PointField.UINT16: "u2",
+    PointField.INT32: "i4",
+    PointField.UINT32: "u4",
+    PointField.FLOAT32: "f4",
+    PointField.FLOAT64: "f8",
+}
+DATATYPES = {dtype: datatype for datatype, dtype in DTYPES.items()}
+
+SUBJECT = "sensor_msgs/msg/PointCloud2"
+
+
+# Fields and types
+
+
+def dtype_from_fields(
+    fields: Iterable[PointField], point_step: int | None = None, *, is_bigendian: bool = False
+) -> np.dtype[Any]:
+    """Return the type of one point as numpy has it.
+
+    A field of several numbers is an array in it, and one without a name is ``unnamed_field_0``.
+
+    Args:
+        fields: What a point consists of.
+        point_step: The bytes from one point to the next; without it, up to the end of the last
+            field.
+        is_bigendian: Whether numbers have the highest byte first.
+
+    Raises:
+        MessageError: two fields have one name, one is of an unknown type, or a point is longer than
+            `point_step` (a ValueError).
+    """
+    order = ">" if is_bigendian else "<"
+    names: list[str] = []
+    formats: list[Any] = []
+    offsets: list[int] = []
+    end = 0
+    for number, field in enumerate(fields):
+        path = f"{SUBJECT}.fields[{number}]"
+        name = field.name or f"unnamed_field_{number}"
+        if name in names:
+            raise MessageError(f"{path}.name", f"{name!r} is there twice; each needs its own")
+        if field.datatype not in DTYPES:
+            raise MessageError(
+                f"{path}.datatype", f"{field.datatype} is unknown; a constant of PointField fits"
+            )
+        one = np.dtype(order + DTYPES[field.datatype])
+        formats.append(one if field.count <= 1 else (one, (field.count,)))
+        names.append(name)
+        offsets.append(field.offset)
+        end = max(end, field.offset + one.itemsize * max(1, field.count))
+    if point_step is not None and end > point_step:
+        raise MessageError(
+            f"{SUBJECT}.point_step", f"{point_step}, but its fields need {end} bytes"
+        )
+    size = end if point_step is None else point_step
+    return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": size})
+
+
+def fields_from_dtype(dtype: npt.DTypeLike) -> list[PointField]:
+    """Return the fields of points of a structured type, at its offsets.
+
+    Raises:
+        TypeError: `dtype` is not structured, or holds something else than numbers of 8 to 32 bits
+            and float64.
+    """
+    dtype = np.dtype(dtype)
+    if dtype.names is None:
+        raise TypeError(
+            f"{dtype}: no structured type; give one such as [('x', 'f4'), ('y', 'f4'), ('z', 'f4')]"
+        )
+    made = []
+    for name in dtype.names:
+        part, offset = dtype.fields[name][:2]  # type: ignore[index]  # it has names, so it has these
+        kind = part.base.str[1:]
+        if kind not in DATATYPES:
+            fitting = ", ".join(np.dtype(each).name for each in DATATYPES)
+            raise TypeError(f"{name}: {part.base.name} is no type of a PointField; {fitting} fit")
+        count = int(np.prod(part.shape, dtype=int))
+        made.append(PointField(name=name, offset=offset, datatype=DATATYPES[kind], count=count))
+    return made
+
+
+# Reading
+
+
+def read_points(
+    cloud: PointCloud2,
+    field_names: Sequence[str] | None = None,
+    skip_nans: bool = False,  # the signatures of sensor_msgs_py
+    uvs: Iterable[Any] | None = None,
+    reshape_organized_cloud: bool = False,
+) -> npt.NDArray[Any]:
+    """Return the points as a structured array: ``points["x"]``.
+
+    No copy is made, except for `skip_nans`, for `uvs`, and where rows that are padded become one
+    list; ``reshape_organized_cloud=True`` keeps them as rows.
+
+    Args:
+        cloud: The message.
+        field_names: Which fields, all without it.
+        skip_nans: Whether to leave points out of which a field is NaN; nothing is looked at in a
+            cloud that says of itself that it is dense.
+        uvs: Which points: their numbers, or pairs of column and row.
+        reshape_organized_cloud: Whether a cloud of several rows becomes an array of two dimensions.
+
+    Raises:
+        TypeError: `cloud` is no PointCloud2.
+        MessageError: it does not hold what it says (a ValueError).
+        ValueError: it has no such field, or `skip_nans` would leave gaps in rows.
+    """
+    if not isinstance(cloud, PointCloud2):
+        raise TypeError(f"read_points: {type(cloud).__name__} given; a {SUBJECT} is needed")
+    points = rows_of(cloud)
+    if field_names is not None:
+        names = points.dtype.names or ()
+        unknown = [name for name in field_names if name not in names]
+        if unknown:
+            raise ValueError(f"{SUBJECT}: no field {unknown[0]!r}; it has {', '.join(names)}")
+        points = points[list(field_names)]
+    keep_rows = reshape_organized_cloud and cloud.height > 1
+    if keep_rows and (skip_nans or uvs is not None):
+        raise ValueError(
+            "read_points: reshape_organized_cloud keeps every point, and skip_nans and uvs leave "
+            "some out; use one of them"
+        )
+    if not keep_rows:
+        points = points.reshape(-1)
+    if uvs is not None:
+        points = points[numbers_of(uvs, cloud.width)]
+    if skip_nans and not cloud.is_dense:
+        points = points[~has_nan(points)]
+    return points
+
+
+def rows_of(cloud: PointCloud2) -> npt.NDArray[Any]:
+    """Return all points as an array of rows, over the bytes of the message."""
+    dtype = dtype_from_fields(cloud.fields, cloud.point_step, is_bigendian=cloud.is_bigendian)
+    shape = (cloud.height, cloud.width)
+    if not (cloud.height and cloud.width):
+        return np.empty(shape, dtype)
+    row = cloud.width * cloud.point_step
+    # Of a single row many drivers leave the step out, and nothing depends on it.
+    step = row if cloud.height == 1 else cloud.row_step
+    if step < row:
+        raise MessageError(
+            f"{SUBJECT}.row_step",
+            f"{step}, but {cloud.width} points of {cloud.point_step} bytes need {row}",
+        )
+    data = memoryview(cloud.data)
+    needed = step * (cloud.height - 1) + row
+    if data.nbytes < needed:
+        raise MessageError(
+            f"{SUBJECT}.data",
+            f"{data.nbytes} bytes, but {cloud.height} rows of {cloud.width} points need {needed}",
+        )
+    return np.ndarray(shape, dtype, buffer=data, strides=(step, cloud.point_step))
+
+
+def numbers_of(uvs: Iterable[Any], width: int) -> npt.NDArray[Any]:
+    """Return the numbers of points that are given so, or by column and row."""
+    chosen = np.asarray(uvs if isinstance(uvs, np.ndarray) else list(uvs))
+    if chosen.ndim == 2 and chosen.shape[1] == 2:
+        return np.asarray(chosen[:, 1] * width + chosen[:, 0])
+    return chosen.astype(int) if chosen.size == 0 else chosen
+
+
+def has_nan(points: npt.NDArray[Any]) -> npt.NDArray[np.bool_]:
+    """Return for each point whether a number of it is NaN."""
+    found = np.zeros(points.shape, bool)
+    for name in points.dtype.names or ():
+        values = points[name]
+        if values.dtype.kind == "f":
+            missing = np.isnan(values)
+            found |= (
+                missing if missing.ndim == 1 else missing.any(axis=tuple(range(1, values.ndim)))
+            )
+    return found
+
+
+def read_points_numpy(
+    cloud: PointCloud2,
+    field_names: Sequence[str] | None = None,
+    skip_nans: bool = False,  # the signatures of sensor_msgs_py
+    uvs: Iterable[Any] | None = None,
+    reshape_organized_cloud: bool = False,
+) -> npt.NDArray[Any]:
+    """Return points whose fields are all of one type as a plain array, one column for each field.
+
+    No copy is made where the fields lie side by side. See `read_points` for the arguments.
+
+    Raises:
+        TypeError, MessageError, ValueError: as `read_points`.
+        ValueError: the fields are of different types.
+    """
+    points = read_points(cloud, field_names, skip_nans, uvs, reshape_organized_cloud)
+    parts = [points.dtype[name].base for name in points.dtype.names or ()]
+    if any(part != parts[0] for part in parts):
+        kinds = ", ".join(
+            f"{n} {p.name}" for n, p in zip(points.dtype.names or (), parts, strict=True)
+        )
+        raise ValueError(
+            f"{SUBJECT}: its fields are of different types ({kinds}); choose some of one type with "
+            "field_names, or use read_points"
+        )
+    return np.asarray(structured_to_unstructured(points))
+
+
+def read_points_list(
+    cloud: PointCloud2,
+    field_names: Sequence[str] | None = None,
+    skip_nans: bool = False,  # the signatures of sensor_msgs_py
+    uvs: Iterable[Any] | None = None,
+) -> list[Any]:
+    """Return the points as a list of named tuples; slow, and convenient for a few.
+
+    See `read_points` for the arguments and the errors.
+    """
+    points = read_points(cloud, field_names, skip_nans, uvs)
+    point = namedtuple("Point", points.dtype.names or ())  # type: ignore[misc]  # noqa: PYI024  # known at run time
+    return [point._make(values) for values in points.tolist()]
+
+
+# Making
+
+
+def create_cloud(
+    header: Header,
+    fields: Iterable[PointField] | None,
+    points: Any,
+    step: int | None = None,
+) -> PointCloud2:
+    """Return a cloud of `points`.
+
+    A structured array that has the layout already is not copied: the message looks at it, so leave
+    it as it is until the message is published, which takes a snapshot. An array that is marked
+    read-only is never copied within the process.
+
+    Args:
+        header: When the points were measured, and their frame.
+        fields: What a point consists of; for a structured array None takes its own.
+        points: A structured array; an array whose last dimension are the fields; or tuples. One
+            dimension more makes rows: an organized cloud.
+        step: The bytes from one point to the next; without it, up to the end of the last field.
+
+    Raises:
+        TypeError: `fields` is None, and `points` no structured array.
+        MessageError: the fields contradict each other, or `step` (a ValueError).
+        ValueError: `points` have another number of fields.
+    """
+    structured = isinstance(points, np.ndarray) and points.dtype.names is not None
+    if fields is None:
+        if not structured:
+            raise TypeError(
+                "create_cloud: fields is None, which needs a structured array of points; give the "
+                "fields, or an array with a dtype such as [('x', 'f4'), ('y', 'f4'), ('z', 'f4')]"
+            )
+        step = points.dtype.itemsize if step is None else step
+        fields = fields_from_dtype(points.dtype)
+    fields = list(fields)
+    dtype = dtype_from_fields(fields, step)
+    array = arranged(points, dtype)
+    if array.ndim > 2:
+        raise ValueError(f"create_cloud: {array.ndim} dimensions of points; 1 or 2 fit (rows)")
+    height, width = array.shape if array.ndim == 2 else (1, array.shape[0])
+    array = np.ascontiguousarray(array)
+    return PointCloud2(
+        header=header,
+        height=height,
+        width=width,
+        fields=fields,
+        is_bigendian=False,
+        point_step=dtype.itemsize,
+        row_step=dtype.itemsize * width,
+        data=array.reshape(-1).view(np.uint8).data if array.size else b"",
+        is_dense=False,
+    )
+
+
+def arranged(points: Any, dtype: np.dtype[Any]) -> npt.NDArray[Any]:
+    """Return points as an array of `dtype`; itself if it is one."""
+    names = dtype.names or ()
+    if isinstance(points, np.ndarray) and points.dtype.names is not None:
+        if points.dtype == dtype:
+            return points
+        missing = [name for name in names if name not in points.dtype.names]
+        if missing:
+            raise ValueError(
+                f"create_cloud: the points have no {missing[0]!r}; they have "
+                f"{', '.join(points.dtype.names)}"
+            )
+        made = np.zeros(points.shape, dtype)
+        for name in names:
+            made[name] = points[name]
+        return made
+    array = np.asarray(points if isinstance(points, np.ndarray) else list(points))
+    columns = sum(math.prod(dtype[name].shape) for name in names)
+    if array.size == 0:
+        return np.zeros(array.shape[:-1] if array.ndim > 1 else 0, dtype)
+    if array.ndim < 2 or array.shape[-1] != columns:
+        raise ValueError(
+            f"create_cloud: points of shape {array.shape}; the last dimension has to be "
+            f"{columns}, one for each number of {', '.join(names)}"
+        )
+    return np.asarray(unstructured_to_structured(array, dtype))
+
+
+def create_cloud_xyz32(header: Header, points: Any, step: int | None = None) -> PointCloud2:
+    """Return a cloud of points with x, y and z as float32.
+
+    An array of float32 with three columns is not copied. See `create_cloud`.
+    """
+    fields = [
+        PointField(name=name, offset=offset, datatype=PointField.FLOAT32, count=1)
+        for name, offset in (("x", 0), ("y", 4), ("z", 8))
+    ]
+    if not (isinstance(points, np.ndarray) and points.dtype.names is not None):
+        points = np.asarray(points if isinstance(points, np.ndarray) else list(points), "<f4")
+    return create_cloud(header, fields, points, step)

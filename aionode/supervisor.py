@@ -1,0 +1,256 @@
+"""Running a node again when it fails, and telling how it is.
+
+The words are those of systemd: `restart` is its ``Restart=``. What takes a node down is an
+exception of a callback; the next node is a new one, made by the same function.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Generic, Literal, Self, TypeVar
+
+from aionode.clock import S_TO_NS, SteadyClock
+from aionode.errors import NodeNotRunningError
+from aionode.logging import get_logger
+from aionode.node import Node
+from aionode.node_end import NodeEnd, short_text
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from aionode.clock import TimeBase
+
+__all__ = ["Health", "Restart", "Supervisor"]
+
+NodeT = TypeVar("NodeT", bound=Node)
+
+Restart = Literal["on-failure", "always", "no"]
+
+
+@dataclass(frozen=True)
+class Health:
+    """How a supervised node is, for a log or as the answer of ``/healthz``.
+
+    Attributes:
+        ok: Whether the node runs now: 200, and else 503.
+        state: ``"starting"`` for the first time, ``"running"``, ``"restarting"`` (it failed, and
+            the next one starts soon) or ``"ended"``.
+        node: Full name of the node; empty before the first was made.
+        restarts: How often it was started again.
+        uptime_sec: For how long it has run, in seconds; 0 while it does not.
+        error: Why the last one failed, in one line; empty if none did.
+    """
+
+    ok: bool
+    state: Literal["starting", "running", "restarting", "ended"]
+    node: str
+    restarts: int
+    uptime_sec: float
+    error: str
+
+
+class Supervisor(Generic[NodeT]):
+    """Keeps a node running: makes a new one when it fails.
+
+    As the main program, or for as long as a web application lives::
+
+        aionode.run(Supervisor(Robot).run)
+
+        async with Supervisor(Robot) as robot:
+            ...
+            robot.node.arm.call(...)    # the node that runs now
+            robot.health()
+
+    The delay before a restart is `min_delay_sec`, and twice as long after each failure that follows
+    soon, up to `max_delay_sec`; a node that has run for `max_delay_sec` begins anew. Each failure
+    is logged with its traceback. What fails at the very first start, before the node runs, is not
+    tried again but raised: it is a mistake of the program, or of its arguments.
+
+    Args:
+        make_node: Makes the node, such as its class; called in the running loop, for each restart.
+        restart: ``"on-failure"`` when a callback raised; ``"always"`` also when the node was
+            destroyed; ``"no"`` never, for `health` alone.
+        min_delay_sec: The first delay, in seconds.
+        max_delay_sec: The longest delay, in seconds.
+        clock: Whose time the delays are, such as a `ManualClock`; the machine's without it.
+
+    Raises:
+        ValueError: `restart` is an unknown word, or the delays are not in order.
+    """
+
+    def __init__(
+        self,
+        make_node: Callable[[], NodeT],
+        *,
+        restart: Restart = "on-failure",
+        min_delay_sec: float = 0.5,
+        max_delay_sec: float = 30.0,
+        clock: TimeBase | None = None,
+    ) -> None:
+        if restart not in ("on-failure", "always", "no"):
+            raise ValueError(
+                f'Supervisor: restart={restart!r} is unknown; use "on-failure", "always" or "no"'
+            )
+        if not 0 <= min_delay_sec <= max_delay_sec:
+            raise ValueError(
+                f"Supervisor: min_delay_sec={min_delay_sec}, max_delay_sec={max_delay_sec}; the "
+                "first delay is at least 0 and at most the longest"
+            )
+        self._make_node = make_node
+        self._restart = restart
+        self._min_delay_sec = min_delay_sec
+        self._max_delay_sec = max_delay_sec
+        self._clock = SteadyClock(time_base=clock)
+        self._state: Literal["starting", "running", "restarting", "ended"] = "starting"
+        self._node: NodeT | None = None
+        self._name = ""
+        self._since_ns = 0
+        self._restarts = 0
+        self._failed_in_a_row = 0
+        self._last_end: NodeEnd | None = None
+        self._error = ""
+        self._tasks: asyncio.TaskGroup | None = None
+        self._work: asyncio.Task[None] | None = None
+
+    def __repr__(self) -> str:
+        return f"<Supervisor {self._name} {self._state} restarts={self._restarts}>"
+
+    # Lifetime
+
+    async def __aenter__(self) -> Self:
+        """Make the node, and return when it runs.
+
+        Raises:
+            RuntimeError: it was entered before.
+            Exception: the node could not be made, or not be started.
+        """
+        if self._tasks is not None:
+            raise RuntimeError("Supervisor: it can be entered once; make another one")
+        started: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._tasks = await asyncio.TaskGroup().__aenter__()
+        self._work = self._tasks.create_task(self._supervise(started), name="supervisor")
+        try:
+            await started
+        except BaseException:
+            await self.__aexit__(None, None, None)
+            raise
+        return self
+
+    async def __aexit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Destroy the node, and wait until its callbacks have ended.
+
+        What the block raised comes out as it is.
+        """
+        assert self._tasks is not None  # noqa: S101  # set by __aenter__
+        assert self._work is not None  # noqa: S101  # as above
+        self._work.cancel()
+        await self._tasks.__aexit__(None, None, None)
+
+    async def run(self) -> None:
+        """Run the node until it has ended for good; with ``restart="always"`` until cancelled.
+
+        Raises:
+            Exception: the node could not be started for the first time, or it failed and
+                ``restart="no"``.
+        """
+        async with self:
+            assert self._work is not None  # noqa: S101  # set by __aenter__
+            await asyncio.wait([self._work])
+        if self._last_end is not None and self._last_end.error is not None:
+            raise self._last_end.error
+
+    # Looking at it
+
+    @property
+    def node(self) -> NodeT:
+        """The node that runs now. Ask each time: after a restart it is another one.
+
+        Raises:
+            NodeNotRunningError: none does, as it failed or was destroyed (a RuntimeError).
+        """
+        if self._node is None:
+            raise NodeNotRunningError(self._name or "of the supervisor", self._why_none())
+        return self._node
+
+    def _why_none(self) -> str:
+        if self._state == "starting":
+            return "it has not started yet; enter the supervisor with `async with` first"
+        if self._state == "restarting":
+            return f"it failed ({self._error}), and starts again soon; answer 503, or ask later"
+        return f"it failed ({self._error})" if self._error else "it was destroyed"
+
+    def health(self) -> Health:
+        """Return how the node is now."""
+        running = self._state == "running"
+        return Health(
+            ok=running,
+            state=self._state,
+            node=self._name,
+            restarts=self._restarts,
+            uptime_sec=(self._clock.now_ns() - self._since_ns) / S_TO_NS if running else 0.0,
+            error=self._error,
+        )
+
+    # The work
+
+    async def _supervise(self, started: asyncio.Future[None]) -> None:
+        try:
+            while True:
+                self._last_end = end = await self._run_one(started)
+                if not started.done():
+                    started.set_exception(end.error or RuntimeError("the node did not start"))
+                    return
+                if not self._wants_another(end):
+                    return
+                await self._pause(end)
+                self._restarts += 1
+        finally:
+            self._state = "ended"
+
+    async def _run_one(self, started: asyncio.Future[None]) -> NodeEnd:
+        """Run one node until it ends; an exception is how it ended."""
+        try:
+            node = self._make_node()
+            self._name = node.get_fully_qualified_name()
+            async with node:
+                self._node = node
+                self._state = "running"
+                self._since_ns = self._clock.now_ns()
+                if not started.done():
+                    started.set_result(None)
+                await node.until_destroyed()
+        except Exception as error:  # noqa: BLE001  # said in the log, in `health` and by `run`
+            self._error = short_text(error)
+            return NodeEnd("failed", error)
+        finally:
+            self._node = None
+        return NodeEnd("destroyed")
+
+    def _wants_another(self, end: NodeEnd) -> bool:
+        return self._restart == "always" or (
+            self._restart == "on-failure" and end.reason == "failed"
+        )
+
+    async def _pause(self, end: NodeEnd) -> None:
+        """Wait before the next start, longer after each failure that follows soon."""
+        was_running, self._state = self._state == "running", "restarting"
+        ran_ns = self._clock.now_ns() - self._since_ns
+        if was_running and ran_ns >= self._max_delay_sec * S_TO_NS:
+            self._failed_in_a_row = 0
+        # Bounded, as 2.0**1024 overflows in a robot that fails for a week.
+        factor = 2.0 ** min(self._failed_in_a_row, 64)
+        delay_sec = min(self._max_delay_sec, self._min_delay_sec * factor)
+        self._failed_in_a_row += 1
+        trace = "" if end.error is None else ":\n" + "".join(traceback.format_exception(end.error))
+        get_logger("aionode.supervisor").error(
+            f"node {self._name} {end.reason}; it starts again in {delay_sec:g} s{trace}"
+        )
+        await self._clock.sleep(delay_sec)

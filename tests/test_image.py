@@ -1,0 +1,231 @@
+"""Images as numpy arrays and PIL images, with cv_bridge's encodings."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import PIL.Image
+import pytest
+
+from aionode.errors import MessageError
+from aionode.image import compress, decompress, from_numpy, from_pil, to_numpy, to_pil
+from aionode.interfaces.sensor_msgs.msg import CompressedImage, Image
+from aionode.interfaces.std_msgs.msg import Header
+from aionode.message import check
+from aionode.wire.cdr import decode, encode
+
+HEADER = Header(frame_id="camera")
+BGR = np.arange(2 * 3 * 3, dtype=np.uint8).reshape(2, 3, 3)
+
+
+@pytest.mark.parametrize(
+    ("encoding", "dtype", "channels"),
+    [
+        ("mono8", np.uint8, 1),
+        ("mono16", np.uint16, 1),
+        ("rgb8", np.uint8, 3),
+        ("bgr8", np.uint8, 3),
+        ("rgba8", np.uint8, 4),
+        ("bgra16", np.uint16, 4),
+        ("8UC1", np.uint8, 1),
+        ("8UC3", np.uint8, 3),
+        ("16SC1", np.int16, 1),
+        ("32SC2", np.int32, 2),
+        ("32FC1", np.float32, 1),
+        ("64FC10", np.float64, 10),
+        ("bayer_rggb8", np.uint8, 1),
+        ("bayer_grbg16", np.uint16, 1),
+        ("yuv422_yuy2", np.uint8, 2),
+    ],
+)
+def test_each_encoding_comes_back_as_it_was(encoding: str, dtype: type, channels: int) -> None:
+    """Through the wire."""
+    shape = (2, 3) if channels == 1 else (2, 3, channels)
+    pixels: npt.NDArray[Any] = np.arange(6 * channels).reshape(shape).astype(dtype)
+
+    image = decode(Image, encode(from_numpy(pixels, encoding, HEADER)))
+
+    assert (image.height, image.width, image.encoding) == (2, 3, encoding)
+    assert image.step == 3 * channels * np.dtype(dtype).itemsize
+    assert image.header.frame_id == "camera"
+    assert to_numpy(image).dtype == dtype
+    assert np.array_equal(to_numpy(image), pixels)
+
+
+def test_neither_way_copies_pixels() -> None:
+    """A camera sends thirty of them in a second; the order of colours is a view as well."""
+    image = from_numpy(BGR, "bgr8")
+
+    assert np.shares_memory(np.asarray(image.data), BGR)
+    assert np.shares_memory(to_numpy(image), BGR)
+    assert np.shares_memory(to_numpy(image, "rgb8"), BGR)
+    check(image)
+
+
+def test_rows_may_be_padded() -> None:
+    """`step` says where each begins."""
+    rows = b"".join(row.tobytes() + b"\xff" * 7 for row in BGR)
+
+    image = Image(height=2, width=3, encoding="bgr8", step=16, data=rows)
+
+    assert np.array_equal(to_numpy(image), BGR)
+
+
+def test_a_part_of_an_image_is_put_into_one_piece() -> None:
+    """A message has no gaps of someone else's pixels."""
+    part = from_numpy(BGR[:, 1:], "bgr8")
+
+    assert part.step == 6
+    assert np.array_equal(to_numpy(part), BGR[:, 1:])
+
+
+def test_the_highest_byte_may_be_first() -> None:
+    """In what is read, and in what is made."""
+    depth = np.array([[1, 256]], ">u2")
+
+    image = from_numpy(depth, "mono16")
+
+    assert image.is_bigendian == 1
+    assert to_numpy(image).tolist() == [[1, 256]]
+
+
+def test_passthrough_takes_the_type_of_opencv() -> None:
+    """As cv_bridge does, which cannot know the colours either."""
+    assert from_numpy(BGR).encoding == "8UC3"
+    assert from_numpy(np.zeros((2, 2), np.float32)).encoding == "32FC1"
+
+
+@pytest.mark.parametrize(
+    ("have", "want", "pixel", "result"),
+    [
+        ("bgr8", "rgb8", [1, 2, 3], [3, 2, 1]),
+        ("rgb8", "bgr8", [1, 2, 3], [3, 2, 1]),
+        ("rgba8", "bgra8", [1, 2, 3, 4], [3, 2, 1, 4]),
+        ("rgba8", "bgr8", [1, 2, 3, 4], [3, 2, 1]),
+        ("bgr8", "rgba8", [1, 2, 3], [3, 2, 1, 255]),
+        ("bgr8", "8UC3", [1, 2, 3], [1, 2, 3]),
+        ("rgb8", "mono8", [255, 0, 0], 76),
+        ("mono8", "rgb8", 7, [7, 7, 7]),
+        ("mono16", "bgra16", 7, [7, 7, 7, 65535]),
+    ],
+)
+def test_colours_come_in_the_order_that_is_wanted(
+    have: str, want: str, pixel: Any, result: Any
+) -> None:
+    """What each library takes for granted."""
+    dtype = np.uint16 if "16" in have else np.uint8
+    image = from_numpy(np.array([[pixel]], dtype), have)
+
+    assert to_numpy(image, want)[0, 0].tolist() == result
+
+
+# PIL and compressed images
+
+
+@pytest.mark.parametrize("mode", ["L", "RGB", "RGBA", "I;16", "F"])
+def test_a_pil_image_comes_back_as_it_was(mode: str) -> None:
+    """Every mode that has an encoding."""
+    picture = PIL.Image.new(mode, (3, 2))
+
+    back = to_pil(from_pil(picture, HEADER))
+
+    assert (back.mode, back.size) == (mode, (3, 2))
+    assert back.tobytes() == picture.tobytes()
+
+
+def test_pil_gets_colours_in_its_order() -> None:
+    """Cameras of OpenCV send bgr8, PIL has RGB."""
+    image = from_numpy(np.array([[[1, 2, 3]]], np.uint8), "bgr8")
+
+    assert to_pil(image).getpixel((0, 0)) == (3, 2, 1)
+
+
+def test_a_palette_becomes_colours() -> None:
+    """Pictures of the web have one."""
+    picture = PIL.Image.new("RGB", (2, 2), (9, 8, 7)).convert(
+        "P", palette=PIL.Image.Palette.ADAPTIVE
+    )
+
+    assert to_numpy(from_pil(picture))[0, 0].tolist() == [9, 8, 7]
+
+
+@pytest.mark.parametrize("encoding", ["mono8", "rgb8", "rgba8", "mono16"])
+def test_png_loses_nothing(encoding: str) -> None:
+    """Depth in 16 bits included."""
+    dtype = np.uint16 if encoding == "mono16" else np.uint8
+    shape = {"rgb8": (4, 4, 3), "rgba8": (4, 4, 4)}.get(encoding, (4, 4))
+    image = from_numpy(np.arange(np.prod(shape)).reshape(shape).astype(dtype), encoding, HEADER)
+
+    compressed = compress(image, "png")
+
+    assert compressed.format == "png"
+    assert decompress(compressed) == image
+
+
+def test_jpeg_is_a_picture_for_browsers() -> None:
+    """Smaller than it was, and almost the same."""
+    image = from_numpy(np.full((64, 64, 3), 100, np.uint8), "bgr8", HEADER)
+
+    compressed = compress(image, quality=90)
+
+    assert compressed.format == "jpeg"
+    assert bytes(compressed.data[:3]) == b"\xff\xd8\xff"
+    assert len(compressed.data) < len(image.data) / 4
+    assert np.abs(to_numpy(decompress(compressed)).astype(int) - 100).max() < 3
+
+
+# Mistakes
+
+
+@pytest.mark.parametrize(
+    ("values", "text"),
+    [
+        ({"data": b"123"}, r"\.data: 3 bytes, but 2 rows of 9 need 18"),
+        ({"step": 8}, r"\.step: 8, but 3 pixels of bgr8 need 9 bytes"),
+        ({"encoding": "hsv8"}, r"\.encoding: 'hsv8' is unknown; such as mono8"),
+    ],
+)
+def test_an_image_that_contradicts_itself_names_the_field(
+    values: dict[str, Any], text: str
+) -> None:
+    """What other programs send is looked at before it is read."""
+    image = from_numpy(BGR, "bgr8")
+    for name, value in values.items():
+        setattr(image, name, value)
+
+    with pytest.raises(MessageError, match=text):
+        to_numpy(image)
+
+
+def test_mistakes_say_what_fits() -> None:
+    """Each names what was given."""
+    with pytest.raises(TypeError, match=r"CompressedImage given.*`decompress`"):
+        to_numpy(CompressedImage())  # type: ignore[arg-type]  # the mistake
+    with pytest.raises(ValueError, match="32FC1 cannot become mono8"):
+        to_numpy(from_numpy(np.zeros((1, 1), np.float32)), "mono8")
+    with pytest.raises(ValueError, match="4 channels of uint8; bgr8 has 3 of uint8"):
+        from_numpy(np.zeros((1, 1, 4), np.uint8), "bgr8")
+    with pytest.raises(ValueError, match=r"shape \(3,\)"):
+        from_numpy(np.zeros(3, np.uint8))
+    with pytest.raises(ValueError, match="from_numpy: int64; uint8"):
+        from_numpy(np.zeros((1, 1), np.int64))
+    with pytest.raises(ValueError, match="8UC3 is none of PIL's"):
+        to_pil(from_numpy(BGR))
+    with pytest.raises(ValueError, match=r"mode CMYK.*convert"):
+        from_pil(PIL.Image.new("CMYK", (1, 1)))
+    with pytest.raises(ValueError, match="mono16 cannot be written as 'jpeg'"):
+        compress(from_numpy(np.zeros((1, 1), np.uint16), "mono16"))
+    with pytest.raises(MessageError, match=r"no image that can be read.*'png'"):
+        decompress(CompressedImage(format="png", data=b"nothing"))
+
+
+def test_without_pillow_the_error_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Numpy alone needs none."""
+    monkeypatch.setitem(sys.modules, "PIL.Image", None)
+    image = from_numpy(BGR, "bgr8")
+
+    with pytest.raises(ModuleNotFoundError, match="pip install pillow"):
+        to_pil(image)

@@ -1,0 +1,216 @@
+"""Messages as JSON Schema, as fields of Pydantic models, and as bodies and responses of FastAPI."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from typing import Annotated, Any
+
+import httpx
+import pytest
+from fastapi import Body, FastAPI
+from pydantic import BaseModel, ValidationError
+
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
+from aionode.interfaces.sensor_msgs.msg import Image, LaserScan
+from aionode.message import Array, Bounded, Message, Sequence, byte, float64, json_schema, uint8
+
+
+class Reading(Message, typename="tutorial/msg/Reading"):
+    """What one sensor saw.
+
+    Attributes:
+        sensor: Which one,
+            by its place.
+        values: What it measured, in V.
+    """
+
+    sensor: Bounded[str, 16] = "front"
+    values: Sequence[float64, 4]
+    place: Vector3
+    flags: uint8 = 3
+    kind: byte = b"\x02"
+    pair: Array[uint8, 2] = (1, 2)
+
+
+# JSON Schema
+
+
+def test_the_schema_of_a_message_is_an_object_for_tools() -> None:
+    """Docstring, ranges and defaults are in it, and nothing is elsewhere."""
+    assert json_schema(Reading) == {
+        "title": "Reading",
+        "type": "object",
+        "description": "What one sensor saw.",
+        "properties": {
+            "sensor": {
+                "type": "string",
+                "maxLength": 16,
+                "description": "Which one, by its place.",
+                "default": "front",
+            },
+            "values": {
+                "type": "array",
+                "items": {"type": "number"},
+                "maxItems": 4,
+                "description": "What it measured, in V.",
+            },
+            "place": {
+                "title": "Vector3",
+                "type": "object",
+                "description": (
+                    "A direction with a length, in the unit of what it is used for; "
+                    "a place is a Point."
+                ),
+                "properties": {axis: {"type": "number", "default": 0.0} for axis in "xyz"},
+                "additionalProperties": False,
+            },
+            "flags": {"type": "integer", "minimum": 0, "maximum": 255, "default": 3},
+            "kind": {"type": "integer", "minimum": 0, "maximum": 255, "default": 2},
+            "pair": {
+                "type": "array",
+                "items": {"type": "integer", "minimum": 0, "maximum": 255},
+                "minItems": 2,
+                "maxItems": 2,
+                "default": [1, 2],
+            },
+        },
+        "additionalProperties": False,
+    }
+
+
+def test_limits_that_a_float_cannot_hold_are_left_out() -> None:
+    """As 9.223372036854776e+18 the largest int64 would be one too large."""
+    assert json_schema(AddTwoInts.Request)["properties"]["a"] == {"type": "integer", "default": 0}
+
+
+def test_a_service_has_no_schema_but_its_halves_have() -> None:
+    """The mistake says what fits."""
+    with pytest.raises(TypeError, match=r"\.Request"):
+        json_schema(AddTwoInts)  # type: ignore[arg-type]  # the mistake
+
+
+# Pydantic
+
+
+class Order(BaseModel):
+    """A model with messages in it."""
+
+    twist: Twist
+    scan: LaserScan | None = None
+
+
+def test_a_model_reads_and_writes_messages() -> None:
+    """Arrays, bytes and the floats that JSON lacks are written as `to_json` writes them."""
+    order = Order.model_validate_json('{"twist": {"linear": {"x": 1}}, "scan": {"ranges": [2]}}')
+
+    assert order.twist == Twist(linear=Vector3(x=1.0))
+    order = Order(twist=Twist(), scan=LaserScan(ranges=[1.0, float("inf")]))
+    assert '"ranges":[1.0,"Infinity"]' in order.model_dump_json()
+    assert Order.model_validate_json(order.model_dump_json()).scan == order.scan
+
+
+def test_a_model_as_python_has_plain_values() -> None:
+    """As `to_builtins` gives them."""
+    order = Order(twist=Twist(), scan=LaserScan(ranges=[float("inf")]))
+
+    assert order.model_dump()["scan"]["ranges"] == [float("inf")]
+
+
+def test_a_message_that_is_one_already_is_taken_as_it_is() -> None:
+    """No copy, as with any other object of a model."""
+    twist = Twist()
+
+    assert Order(twist=twist).twist is twist
+
+
+def test_a_wrong_field_is_a_validation_error_with_its_path() -> None:
+    """FastAPI makes 422 of it."""
+    with pytest.raises(ValidationError, match=r"geometry_msgs/msg/Twist\.linear\.x: 'fast'"):
+        Order.model_validate({"twist": {"linear": {"x": "fast"}}})
+
+
+def test_bytes_are_lists_of_numbers() -> None:
+    """As ROS prints them."""
+
+    class Picture(BaseModel):
+        image: Image
+
+    picture = Picture(image=Image(data=b"\x00\xff"))
+
+    assert '"data":[0,255]' in picture.model_dump_json()
+    assert Picture.model_validate_json(picture.model_dump_json()).image == picture.image
+
+
+def test_the_schema_of_a_model_names_each_message_once() -> None:
+    """So generated clients have one type for each; both directions are the same."""
+    schema = Order.model_json_schema()
+
+    assert set(schema["$defs"]) == {"Twist", "Vector3", "LaserScan", "Header", "Time"}
+    assert schema["properties"]["twist"] == {"$ref": "#/$defs/Twist"}
+    twist = schema["$defs"]["Twist"]["properties"]
+    assert twist["linear"]["allOf"] == [{"$ref": "#/$defs/Vector3"}]
+    assert Order.model_json_schema(mode="serialization")["$defs"] == schema["$defs"]
+
+
+def test_a_message_needs_no_pydantic() -> None:
+    """Who has none never imports it."""
+    code = (
+        "import sys; from aionode.interfaces.std_msgs.msg import String; "
+        "from aionode.message import json_schema; json_schema(String); "
+        "sys.exit('pydantic' in sys.modules or 'pydantic_core' in sys.modules)"
+    )
+
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+# FastAPI
+
+
+@pytest.fixture
+def app() -> FastAPI:
+    """An application with messages as body and response."""
+    app = FastAPI()
+
+    @app.post("/stretch")
+    async def stretch(twist: Annotated[Twist, Body()]) -> LaserScan:
+        return LaserScan(ranges=[twist.linear.x, float("inf")])
+
+    return app
+
+
+async def ask(app: FastAPI, body: Any) -> httpx.Response:
+    """Send a request."""
+    transport = httpx.ASGITransport(app)
+    async with httpx.AsyncClient(transport=transport, base_url="http://robot") as client:
+        return await client.post("/stretch", json=body)
+
+
+async def test_a_route_takes_and_returns_messages(app: FastAPI) -> None:
+    """As it does models."""
+    response = await ask(app, {"linear": {"x": 0.5}})
+
+    assert response.status_code == 200
+    assert response.json()["ranges"] == [0.5, "Infinity"]
+
+
+async def test_a_wrong_body_is_a_422_that_names_the_field(app: FastAPI) -> None:
+    """And the handler is not called."""
+    response = await ask(app, {"linear": {"w": 0.5}})
+
+    assert response.status_code == 422
+    assert "geometry_msgs/msg/Twist.linear.w: no such field" in response.text
+
+
+def test_openapi_has_the_messages_as_components(app: FastAPI) -> None:
+    """By their names, for generated clients."""
+    schema = app.openapi()
+    post = schema["paths"]["/stretch"]["post"]
+    body = post["requestBody"]["content"]["application/json"]["schema"]
+    answer = post["responses"]["200"]["content"]["application/json"]["schema"]
+
+    assert body == {"$ref": "#/components/schemas/Twist"}
+    assert answer == {"$ref": "#/components/schemas/LaserScan"}
+    ranges = schema["components"]["schemas"]["LaserScan"]["properties"]["ranges"]
+    assert ranges["items"]["anyOf"][1]["enum"] == ["NaN", "Infinity", "-Infinity"]
