@@ -15,6 +15,7 @@ from aionode.endpoints.mismatch import MismatchReport
 from aionode.errors import ConfigurationError, EntityDestroyedError
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from aionode.message import type_name
+from aionode.settle import to_the_end
 from aionode.transport.base import Transport
 from aionode.transport.local import LocalTransport
 from aionode.transport.zenoh_config import network_from
@@ -79,7 +80,6 @@ class Context:
         network: Domain, discovery and peers, from the arguments and the environment.
         graph: The nodes and endpoints known now.
         time_base: Where the time comes from.
-        arguments: What the command line says; it holds for nodes made from now on.
         participant: Id of this context in the graph, in hexadecimal.
 
     Raises:
@@ -89,6 +89,7 @@ class Context:
     """
 
     _default: ClassVar[Context | None] = None
+    _command_line: ClassVar[Arguments] = Arguments()
 
     def __init__(
         self,
@@ -114,7 +115,7 @@ class Context:
             config=config,
         )
         self._transports = self._make_transports(transport, link)
-        self.arguments = Arguments()
+        self._arguments: Arguments | None = None
         self._nodes: dict[Node, None] = {}
         self._ids = 0
         self._users = 0
@@ -176,6 +177,25 @@ class Context:
         finally:
             cls._default = before
 
+    @classmethod
+    @contextlib.contextmanager
+    def obeying(cls, arguments: Arguments) -> Iterator[None]:
+        """Let `arguments` hold meanwhile for the nodes of every context. For `aionode.run`."""
+        before, cls._command_line = cls._command_line, arguments
+        try:
+            yield
+        finally:
+            cls._command_line = before
+
+    @property
+    def arguments(self) -> Arguments:
+        """What the command line says; it holds for nodes made from now on."""
+        return self._command_line if self._arguments is None else self._arguments
+
+    @arguments.setter
+    def arguments(self, arguments: Arguments) -> None:
+        self._arguments = arguments
+
     def ok(self) -> bool:
         """Whether the context can be used: `shutdown` was not called."""
         return not self._shut_down
@@ -194,7 +214,7 @@ class Context:
     ) -> None:
         """Destroy the nodes, wait for them, and close."""
         self.shutdown()
-        await self.release()
+        await to_the_end(self.release())
         if self._users:
             await self._closed.wait()
 
@@ -245,11 +265,14 @@ class Context:
                 await transport.open(self.graph)
         except BaseException:
             for transport in reversed(opened):
-                await transport.close()
+                await to_the_end(transport.close())
             raise
 
     async def release(self) -> None:
-        """Hold the context open no longer: the last holder closes it. For nodes."""
+        """Hold the context open no longer: the last holder closes it. For nodes.
+
+        It is not to be cancelled: see `to_the_end`.
+        """
         self._users -= 1
         async with self._turn:
             if self._users == 0 and self._open:  # else somebody goes on with what is open

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode import qos
 from aionode.clock import Time
+from aionode.endpoints.entity import EndStage
 from aionode.errors import QueueFullError
 from aionode.interfaces.rcl_interfaces.msg import (
     Log,
@@ -241,6 +242,7 @@ class TimeSource:
             self._subscription = self._node.create_subscription(
                 ClockMsg, "/clock", self._on_tick, CLOCK_QOS
             )
+            self._subscription.stage = EndStage.GOALS  # callbacks that clean up may sleep
         elif not active and self._subscription is not None:
             self._subscription.destroy()
             self._subscription = None

@@ -11,7 +11,7 @@ from uuid import uuid4
 from aionode.endpoints.action_words import expect_action_type, reason_id
 from aionode.endpoints.client_goal import ActionResult, ClientGoalHandle
 from aionode.endpoints.dispatch import accepts, give_way, pump
-from aionode.endpoints.entity import Entity
+from aionode.endpoints.entity import EndStage, Entity
 from aionode.endpoints.inbox import Inbox
 from aionode.endpoints.stats import CallbackStats
 from aionode.errors import (
@@ -111,7 +111,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         expect_action_type(action_type, f"action client of {action_name}")
         self.action_type = cast("Any", action_type)
         self.action_name = node.resolve_topic_name(action_name)
-        super().__init__(f"action client of {self.action_name}")
+        super().__init__(f"action client of {self.action_name}", EndStage.GOALS)
         self._check = checker(self.action_type.Goal)
         self._graph = node.graph
         self._participant = node.context.participant
@@ -438,7 +438,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
 
     # The end
 
-    def close(self) -> None:
+    def _close(self) -> None:
         """Withdraw the client, and cancel what waits, and so the goals that somebody awaits.
 
         The other goals go on at the server.

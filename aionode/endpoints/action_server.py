@@ -546,7 +546,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
 
     # The end
 
-    def close(self) -> None:
+    def _close(self) -> None:
         """Withdraw the server: clients are told at once that their goals are lost."""
         self._close_parts()
         for alarm in self._alarms.values():

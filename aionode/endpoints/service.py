@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from aionode.clock import perf_ns
 from aionode.endpoints.dispatch import accepts, checked_concurrency, is_unfinished, pump
-from aionode.endpoints.entity import Entity
+from aionode.endpoints.entity import EndStage, Entity
 from aionode.endpoints.inbox import Inbox
 from aionode.endpoints.shortcut import Shortcut
 from aionode.endpoints.stats import CallbackStats, ClientStats
 from aionode.errors import (
     AionodeError,
+    MessageError,
     RequestTimeoutError,
     ServiceUnavailableError,
     silence,
@@ -167,7 +168,7 @@ class Service(Entity, Generic[RequestT, ResponseT]):
             )
         request.reply(response)
 
-    def close(self) -> None:
+    def _close(self) -> None:
         """Withdraw the service; requests that wait are given up."""
         self._channel.close()
         for announcement in self._announcements:
@@ -193,7 +194,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         requesters: Sequence[Requester],
         time_base: TimeBase,
     ) -> None:
-        super().__init__(f"client of {channel.endpoint.name}")
+        super().__init__(f"client of {channel.endpoint.name}", EndStage.LAST)
         self.srv_type = srv_type
         self.qos_profile: QoSProfile = channel.endpoint.qos
         self.stats = ClientStats()
@@ -286,8 +287,10 @@ class Client(Entity, Generic[RequestT, ResponseT]):
             self.stats.errors += 1
             error.add_note(f"{self.srv_name}: no reply; {silence(self._servers())}")
             raise
-        except AionodeError:
+        except AionodeError as error:
             self.stats.errors += 1
+            if isinstance(error, MessageError):
+                error.add_note(f"in a call of {self.srv_name}")
             raise
         self.stats.run_time.record(perf_ns() - began_ns)
         return response
@@ -351,7 +354,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
                 "`await client.wait_for_service()` first"
             )
 
-    def close(self) -> None:
+    def _close(self) -> None:
         """Withdraw the client, and cancel its waits and calls."""
         self._channel.close()
         for answer in list(self._answers):  # first, or it would look as if the servers had gone
