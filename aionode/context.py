@@ -7,6 +7,7 @@ import contextlib
 import dataclasses
 import os
 import secrets
+import threading
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from aionode.arguments import Arguments
@@ -122,6 +123,7 @@ class Context:
         self._shut_down = False
         self._open = False
         self._loop: asyncio.AbstractEventLoop | None = None
+        self._entrance = threading.Lock()
         self._turn = asyncio.Lock()  # to open or to close, one after the other
         self._closed = asyncio.Event()
 
@@ -233,13 +235,18 @@ class Context:
         Raises:
             RuntimeError: the context is open in another event loop.
         """
-        self._enter_loop()
-        async with self._turn:
-            if not self._open and not self._shut_down:
-                await self._open_transports()
-                self._open = True
-                self._closed.clear()
-            self._users += 1
+        with self._entrance:  # loops may be in different threads
+            self._enter_loop()
+            self._users += 1  # before it is open, so that another loop sees it in use
+        try:
+            async with self._turn:
+                if not self._open and not self._shut_down:
+                    await self._open_transports()
+                    self._open = True
+                    self._closed.clear()
+        except BaseException:
+            self._users -= 1
+            raise
 
     def _enter_loop(self) -> None:
         """Note which loop the context works in: one at a time, but one after the other is fine."""

@@ -216,6 +216,7 @@ class TimeSource:
         self._node = node
         self._clock = clock
         self._subscription: Subscription[ClockMsg] | None = None
+        self._warned = False
         node.add_on_set_parameters_callback(self._check)
         if not node.has_parameter("use_sim_time"):
             node.declare_parameter("use_sim_time", False)
@@ -248,4 +249,20 @@ class TimeSource:
             self._subscription = None
 
     def _on_tick(self, msg: ClockMsg) -> None:
-        self._clock.set_ros_time_override(Time.from_msg(msg.clock))
+        try:
+            time = Time.from_msg(msg.clock)
+        except ValueError as error:
+            self._refuse(error)
+        else:
+            self._clock.set_ros_time_override(time)
+
+    def _refuse(self, error: ValueError) -> None:
+        """Count a time that is none, and say so the first time: it is not for this node to end."""
+        if self._subscription is not None:
+            self._subscription.stats.errors += 1
+        if not self._warned:
+            self._warned = True
+            self._node.get_logger().warning(
+                f"/clock: a message holds no time: {error}; it was left out, and more of that kind "
+                "are only counted. Which node publishes it, `aionode topic info -v /clock` says"
+            )

@@ -383,11 +383,16 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         if not goal.is_active:  # cancelled while it waited
             self.stats.dropped += 1
             return None
+        return self._run_goal(entered_ns, goal, dispatch or self._execute)
+
+    async def _run_goal(
+        self, entered_ns: int, goal: ServerGoalHandle[Any, Any, Any], dispatch: Dispatch
+    ) -> None:
+        if not goal.is_active:  # cancelled before this task had its first turn
+            self.stats.dropped += 1
+            return
         self.stats.received += 1
         self.stats.queue_wait.record(perf_ns() - entered_ns)
-        return self._run_goal(goal, dispatch or self._execute)
-
-    async def _run_goal(self, goal: ServerGoalHandle[Any, Any, Any], dispatch: Dispatch) -> None:
         goal.begin()
         try:
             async with asyncio.TaskGroup() as tasks:  # a cancelled goal cancels only its own task

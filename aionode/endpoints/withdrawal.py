@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode.errors import ServiceUnavailableError
@@ -80,12 +81,15 @@ class Withdrawal:
         if self._client.service_is_ready():
             exchange = self._client.begin(self._request)
             self._exchanges.append(exchange)
-            exchange.answer.add_done_callback(self._take)
+            exchange.answer.add_done_callback(partial(self._take, self._is_decided()))
         else:
             self._fail(ServiceUnavailableError(self._client.srv_name))
 
-    def _take(self, answer: asyncio.Future[Any]) -> None:
-        """Take what came of one request."""
+    def _take(self, decided: bool, answer: asyncio.Future[Any]) -> None:
+        """Take what came of one request; `decided` when it was sent, it is the last word.
+
+        Before that the server may have got it while it did not know the goal yet.
+        """
         if self._ended:
             return
         if answer.cancelled():  # with the client
@@ -98,7 +102,7 @@ class Withdrawal:
         elif error is not None:
             self._fail(error)
             self.end()
-        elif answer.result().return_code != CancelCode.UNKNOWN_GOAL_ID or self._is_decided():
+        elif decided or answer.result().return_code != CancelCode.UNKNOWN_GOAL_ID:
             self._take_response(answer.result())
 
     def _is_decided(self) -> bool:

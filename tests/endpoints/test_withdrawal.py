@@ -323,8 +323,9 @@ async def test_a_goal_that_another_server_accepts_after_its_cancellation_is_canc
     task.cancel()
     await asyncio.wait([task])
     door.may_answer.set()
+    await until(lambda: ends.server._goals)
 
-    await expect_canceled(await ends.worker.begun.get())
+    await expect_canceled(*ends.server._goals.values())
 
 
 async def test_a_goal_without_a_server_leaves_nothing_behind(ends: Ends) -> None:
