@@ -9,7 +9,7 @@ import contextlib
 from typing import TYPE_CHECKING, Any
 
 from aionode import qos
-from aionode.clock import Time
+from aionode.clock import S_TO_NS, Time
 from aionode.endpoints.entity import EndStage
 from aionode.errors import QueueFullError
 from aionode.interfaces.rcl_interfaces.msg import (
@@ -249,20 +249,16 @@ class TimeSource:
             self._subscription = None
 
     def _on_tick(self, msg: ClockMsg) -> None:
-        try:
-            time = Time.from_msg(msg.clock)
-        except ValueError as error:
-            self._refuse(error)
-        else:
-            self._clock.set_ros_time_override(time)
-
-    def _refuse(self, error: ValueError) -> None:
-        """Count a time that is none, and say so the first time: it is not for this node to end."""
+        if msg.clock.sec >= 0 and msg.clock.nanosec < S_TO_NS:
+            self._clock.set_ros_time_override(Time.from_msg(msg.clock))
+            return
+        # Anybody may publish there, and this node is not to end for it.
         if self._subscription is not None:
             self._subscription.stats.errors += 1
         if not self._warned:
             self._warned = True
             self._node.get_logger().warning(
-                f"/clock: a message holds no time: {error}; it was left out, and more of that kind "
-                "are only counted. Which node publishes it, `aionode topic info -v /clock` says"
+                f"/clock: a message holds no time: {msg.clock.sec} s and {msg.clock.nanosec} ns; "
+                f"0 s or more and less than {S_TO_NS} ns fit. It was left out, and more of them "
+                "are only counted; `aionode topic info -v /clock` names the publishers"
             )

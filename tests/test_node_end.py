@@ -79,9 +79,7 @@ async def test_a_callback_can_publish_in_finally(context: Context, node: Node, k
             node.create_client(AddTwoInts, "go").begin(AddTwoInts.Request())
         else:
             accept = CancelResponse.ACCEPT
-            robot.create_action_server(
-                Fibonacci, "go", drive, cancel_callback=lambda _goal: accept
-            )
+            robot.create_action_server(Fibonacci, "go", drive, cancel_callback=lambda _goal: accept)
             await node.create_action_client(Fibonacci, "go").send_goal(Fibonacci.Goal())
         async with asyncio.timeout(10):
             while 1.0 not in heard:
@@ -177,9 +175,7 @@ async def test_a_failing_callback_does_not_break_off_what_others_do_in_finally(
     assert heard == [0.0]
 
 
-async def test_an_impatient_caller_does_not_break_off_the_end(
-    context: Context, node: Node
-) -> None:
+async def test_an_impatient_caller_does_not_break_off_the_end(context: Context, node: Node) -> None:
     """Scopes of anyio cancel in every turn of the loop."""
     heard = heard_in(node)
     with anyio.move_on_after(0.05):

@@ -259,13 +259,11 @@ class Time:
 
         Raises:
             TypeError: `msg` is of another type.
-            ValueError: It holds a negative time, or a second or more in its nanoseconds.
+            ValueError: It holds a negative time.
         """
         from aionode.interfaces.builtin_interfaces.msg import Time as Msg
 
         expect_message(msg, Msg, "Time")
-        if not 0 <= msg.nanosec < S_TO_NS:
-            raise ValueError(f"Time: {msg.nanosec} nanoseconds; from 0 to {S_TO_NS - 1} fit")
         return cls(seconds=msg.sec, nanoseconds=msg.nanosec, clock_type=clock_type)
 
 

@@ -470,7 +470,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
             if goal.waiting and not goal.done:
                 self.withdraw(goal)
         for withdrawal in list(self._withdrawals):
-            withdrawal.answer.add_done_callback(lambda _, it=withdrawal: it.end())
+            withdrawal.end_with_answer()
         for wait in list(self._waits):  # first, as the end of the parts is a change of the graph
             wait.cancel(f"{self.subject}: destroyed")
         self._close_parts()

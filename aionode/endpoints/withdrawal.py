@@ -59,7 +59,7 @@ class Withdrawal:
         self._timer: asyncio.TimerHandle | None = None
         self._exchanges: list[Exchange] = []
         self._ended = False
-        if not self._is_decided():
+        if goal.sending is not None and not goal.sending.answer.done():
             goal.sending.answer.add_done_callback(self._decided)
         self._send()
 
@@ -133,6 +133,10 @@ class Withdrawal:
     def _fail(self, error: BaseException) -> None:
         if not self.answer.done():
             self.answer.set_exception(error)
+
+    def end_with_answer(self) -> None:
+        """Do not wait for a server that has gone to come back: the client ends."""
+        self.answer.add_done_callback(lambda _: self.end())
 
     def end(self) -> None:
         """Send nothing any more."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import gc
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Callable, Coroutine
 from contextlib import AsyncExitStack, suppress
 from typing import Any, NamedTuple
 
@@ -109,7 +109,7 @@ async def by_block(client: Client) -> None:
 
 # How it is cancelled
 
-Wait = Callable[[Client], Awaitable[None]]
+Wait = Callable[[Client], Coroutine[Any, Any, None]]
 
 
 async def after_timeout(wait: Wait, ends: Ends) -> None:
@@ -129,14 +129,14 @@ async def by_a_task_group(wait: Wait, ends: Ends) -> None:
     """As the frameworks do that are built on anyio, such as those for tools of language models."""
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(wait, ends.client)
-        await until(lambda: ends.worker.begun.qsize())
+        await until(ends.worker.begun.qsize)
         tasks.cancel_scope.cancel()
 
 
 async def cancelled_twice(wait: Wait, ends: Ends) -> None:
     """By somebody impatient."""
     task = beside(wait(ends.client))
-    await until(lambda: ends.worker.begun.qsize())
+    await until(ends.worker.begun.qsize)
     task.cancel()
     await asyncio.sleep(0)  # noqa: TID251  # between the two
     task.cancel()
@@ -153,7 +153,7 @@ async def by_leaving_the_node(wait: Wait, ends: Ends) -> None:
             await wait(client)
 
     task = beside(program())
-    await until(lambda: ends.worker.begun.qsize())
+    await until(ends.worker.begun.qsize)
     task.cancel()
     await asyncio.sleep(0)  # noqa: TID251  # between the two
     task.cancel()
@@ -173,7 +173,7 @@ CANCELS = [
 @pytest.mark.parametrize("cancel", CANCELS)
 @pytest.mark.parametrize("wait", WAITS)
 async def test_a_goal_ends_however_its_task_is_cancelled(
-    ends: Ends, wait: Wait, cancel: Callable[[Wait, Ends], Awaitable[None]]
+    ends: Ends, wait: Wait, cancel: Callable[[Wait, Ends], Coroutine[Any, Any, None]]
 ) -> None:
     """A robot that nobody waits for must not drive on."""
     await cancel(wait, ends)
@@ -345,14 +345,18 @@ async def test_a_goal_without_a_server_leaves_nothing_behind(ends: Ends) -> None
 async def faults() -> AsyncIterator[tuple[FaultyTransport, Ends]]:
     """Two nodes whose requests can be dropped on the way."""
     transport = FaultyTransport(LocalTransport())
-    async with Context(transport=transport) as context, asyncio.timeout(30):
-        async with Node("serving", context=context) as serving, Node("a", context=context) as node:
-            worker = Worker()
-            server: Server = serving.create_action_server(
-                Fibonacci, "fibonacci", worker, cancel_callback=lambda _goal: CancelResponse.ACCEPT
-            )
-            client: Client = node.create_action_client(Fibonacci, "fibonacci")
-            yield transport, Ends(serving, node, server, client, worker)
+    async with (
+        asyncio.timeout(30),
+        Context(transport=transport) as context,
+        Node("serving", context=context) as serving,
+        Node("asking", context=context) as asking,
+    ):
+        worker = Worker()
+        server: Server = serving.create_action_server(
+            Fibonacci, "fibonacci", worker, cancel_callback=lambda _goal: CancelResponse.ACCEPT
+        )
+        client: Client = asking.create_action_client(Fibonacci, "fibonacci")
+        yield transport, Ends(serving, asking, server, client, worker)
 
 
 async def test_a_lost_request_is_sent_again(faults: tuple[FaultyTransport, Ends]) -> None:

@@ -76,9 +76,7 @@ class Robot(Node):
 async def robot(end: str) -> None:
     """Drive until the end."""
     lines: asyncio.Queue[str] = asyncio.Queue()
-    asyncio.get_running_loop().add_reader(
-        sys.stdin, lambda: lines.put_nowait(sys.stdin.readline())
-    )
+    asyncio.get_running_loop().add_reader(sys.stdin, lambda: lines.put_nowait(sys.stdin.readline()))
     async with Robot() as node:
         client = node.create_action_client(Fibonacci, "/go")
         await client.wait_for_server()
