@@ -7,6 +7,7 @@ import contextlib
 import dataclasses
 import os
 import secrets
+import threading
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from aionode.arguments import Arguments, Usage
@@ -15,6 +16,7 @@ from aionode.endpoints.mismatch import MismatchReport
 from aionode.errors import ConfigurationError, EntityDestroyedError
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from aionode.message import type_name
+from aionode.settle import to_the_end
 from aionode.transport.base import Transport
 from aionode.transport.local import LocalTransport
 from aionode.transport.zenoh_config import network_from
@@ -79,7 +81,6 @@ class Context:
         network: Domain, discovery and peers, from the arguments and the environment.
         graph: The nodes and endpoints known now.
         time_base: Where the time comes from.
-        arguments: What the command line says; it holds for nodes made from now on.
         participant: Id of this context in the graph, in hexadecimal.
 
     Raises:
@@ -89,6 +90,7 @@ class Context:
     """
 
     _default: ClassVar[Context | None] = None
+    _command_line: ClassVar[Usage] = Usage(Arguments())
 
     def __init__(
         self,
@@ -114,14 +116,14 @@ class Context:
             config=config,
         )
         self._transports = self._make_transports(transport, link)
-        self.arguments = Arguments()
-        self._usage = Usage(self.arguments)
+        self._usage: Usage | None = None  # of arguments for this context alone
         self._nodes: dict[Node, None] = {}
         self._ids = 0
         self._users = 0
         self._shut_down = False
         self._open = False
         self._loop: asyncio.AbstractEventLoop | None = None
+        self._entrance = threading.Lock()
         self._turn = asyncio.Lock()  # to open or to close, one after the other
         self._closed = asyncio.Event()
 
@@ -177,6 +179,25 @@ class Context:
         finally:
             cls._default = before
 
+    @classmethod
+    @contextlib.contextmanager
+    def obeying(cls, arguments: Arguments) -> Iterator[None]:
+        """Let `arguments` hold meanwhile for the nodes of every context. For `aionode.run`."""
+        before, cls._command_line = cls._command_line, Usage(arguments)
+        try:
+            yield
+        finally:
+            cls._command_line = before
+
+    @property
+    def arguments(self) -> Arguments:
+        """What the command line says; it holds for nodes made from now on."""
+        return self.usage.arguments
+
+    @arguments.setter
+    def arguments(self, arguments: Arguments) -> None:
+        self._usage = Usage(arguments)
+
     def ok(self) -> bool:
         """Whether the context can be used: `shutdown` was not called."""
         return not self._shut_down
@@ -195,7 +216,7 @@ class Context:
     ) -> None:
         """Destroy the nodes, wait for them, and close."""
         self.shutdown()
-        await self.release()
+        await to_the_end(self.release())
         if self._users:
             await self._closed.wait()
 
@@ -214,13 +235,18 @@ class Context:
         Raises:
             RuntimeError: the context is open in another event loop.
         """
-        self._enter_loop()
-        async with self._turn:
-            if not self._open and not self._shut_down:
-                await self._open_transports()
-                self._open = True
-                self._closed.clear()
-            self._users += 1
+        with self._entrance:  # loops may be in different threads
+            self._enter_loop()
+            self._users += 1  # before it is open, so that another loop sees it in use
+        try:
+            async with self._turn:
+                if not self._open and not self._shut_down:
+                    await self._open_transports()
+                    self._open = True
+                    self._closed.clear()
+        except BaseException:
+            self._users -= 1
+            raise
 
     def _enter_loop(self) -> None:
         """Note which loop the context works in: one at a time, but one after the other is fine."""
@@ -246,11 +272,14 @@ class Context:
                 await transport.open(self.graph)
         except BaseException:
             for transport in reversed(opened):
-                await transport.close()
+                await to_the_end(transport.close())
             raise
 
     async def release(self) -> None:
-        """Hold the context open no longer: the last holder closes it. For nodes."""
+        """Hold the context open no longer: the last holder closes it. For nodes.
+
+        It is not to be cancelled: see `to_the_end`.
+        """
         self._users -= 1
         async with self._turn:
             if self._users == 0 and self._open:  # else somebody goes on with what is open
@@ -288,9 +317,7 @@ class Context:
     @property
     def usage(self) -> Usage:
         """What the nodes have made of the arguments that hold now."""
-        if self._usage.arguments is not self.arguments:
-            self._usage = Usage(self.arguments)
-        return self._usage
+        return self._command_line if self._usage is None else self._usage
 
     @property
     def transports(self) -> tuple[Transport, ...]:

@@ -12,6 +12,8 @@ from aionode.clock import ROSClock
 from aionode.context import Context
 from aionode.endpoints.channel import Channel
 from aionode.endpoints.dispatch import Callbacks
+from aionode.endpoints.ending import Ending
+from aionode.endpoints.entity import EndStage
 from aionode.endpoints.home import Home
 from aionode.endpoints.no_effect import policies_without_effect
 from aionode.endpoints.rate import Rate
@@ -28,6 +30,7 @@ from aionode.node_end import EndRecord, NodeEnd
 from aionode.node_graph import NodeGraphMethods
 from aionode.node_parameters import NodeParameterMethods
 from aionode.parameter import Parameter, ParameterStore, declare_qos_overrides
+from aionode.settle import to_the_end
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -44,6 +47,7 @@ if TYPE_CHECKING:
     from aionode.message import ServiceClass
     from aionode.parameter import QoSOverridingOptions
     from aionode.qos import QoSProfile
+    from aionode.transport.base import Announcement, Transport
 
 __all__ = ["Node"]
 
@@ -51,6 +55,7 @@ MsgT = TypeVar("MsgT", bound=Message)
 RequestT = TypeVar("RequestT", bound=Message)
 ResponseT = TypeVar("ResponseT", bound=Message)
 EntityT = TypeVar("EntityT", bound="Entity")
+AnnouncedT = TypeVar("AnnouncedT", bound="Announcement")
 
 
 class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
@@ -63,7 +68,8 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
     An exception in the callback of a subscription or timer ends the node, unless the entity's
     `on_error` says otherwise: all its callbacks are cancelled, and the exception comes out of
     ``async with`` or `run` in an ExceptionGroup, as from an `asyncio.TaskGroup`. Services and
-    action servers tell the caller, log the exception, and go on.
+    action servers tell the caller, log the exception, and go on. What the body of ``async with``
+    itself raises comes out as it is.
 
     Args:
         node_name: Letters, digits and underscores, not beginning with a digit.
@@ -111,6 +117,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         # the rules, of which the first that matches counts, and last among the parameters.
         own = parse_arguments(cli_args or ())
         own.refuse_unknown()
+        self.uses_global_arguments = use_global_arguments
         shared = self.context.arguments if use_global_arguments else Arguments()
         self._rules = own.remap_rules + shared.remap_rules
         self._usages = [Usage(own), self.context.usage if use_global_arguments else Usage(shared)]
@@ -135,38 +142,45 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             budget_ns=round(callback_budget_ms * 1e6),
         )
         self._home = Home()
-        self.context.add_node(self)
+        self._ending = Ending(self._entities, self._callbacks, self._leave)
+        self._unlog: Callable[[], None] | None = None
+        self._announcements: list[Announcement] = []
         self._info = self.context.describe_node(
             node_name, namespace, enclave=own.enclave or shared.enclave or "/"
         )
-        self._announcements = [t.create_node(self._info) for t in self.context.transports]
-        self.context.graph.add_node(self._info)
-        self._unlog: Callable[[], None] | None = None
-        if enable_rosout and shared.rosout_logs and own.rosout_logs:
-            self._unlog = node_services.publish_log(self, rosout_qos_profile)
-        full_name = self.get_fully_qualified_name()
-        self._parameters = ParameterStore(
-            full_name,
-            overrides=[
-                *parameters_from(shared.parameters_for(full_name)),
-                *parameters_from(own.parameters_for(full_name)),
-                *(parameter_overrides or ()),
-            ],
-            allow_undeclared=allow_undeclared_parameters,
-            publish=node_services.publish_parameter_events(self),
-        )
-        for usage in self._usages:
-            if not usage.is_over:
-                usage.note_parameters(self._parameters)
-        if automatically_declare_parameters_from_overrides:
-            for name in self._parameters.overrides:
-                self.declare_parameter(name, descriptor=ParameterDescriptor(dynamic_typing=True))
-        node_services.TimeSource(self, self._clock)
-        if start_parameter_services:
-            node_services.serve_parameters(self, self._parameters)
-        node_services.serve_type_descriptions(self)
-        if enable_logger_service:
-            node_services.serve_logger_levels(self)
+        self.context.add_node(self)
+        try:
+            self._announcements = self._announced(lambda it: it.create_node(self._info))
+            self.context.graph.add_node(self._info)
+            if enable_rosout and shared.rosout_logs and own.rosout_logs:
+                self._unlog = node_services.publish_log(self, rosout_qos_profile)
+            full_name = self.get_fully_qualified_name()
+            self._parameters = ParameterStore(
+                full_name,
+                overrides=[
+                    *parameters_from(shared.parameters_for(full_name)),
+                    *parameters_from(own.parameters_for(full_name)),
+                    *(parameter_overrides or ()),
+                ],
+                allow_undeclared=allow_undeclared_parameters,
+                publish=node_services.publish_parameter_events(self),
+            )
+            for usage in self._usages:
+                if not usage.is_over:
+                    usage.note_parameters(self._parameters)
+            if automatically_declare_parameters_from_overrides:
+                dynamic = ParameterDescriptor(dynamic_typing=True)
+                for name in self._parameters.overrides:
+                    self.declare_parameter(name, descriptor=dynamic)
+            node_services.TimeSource(self, self._clock)
+            if start_parameter_services:
+                node_services.serve_parameters(self, self._parameters)
+            node_services.serve_type_descriptions(self)
+            if enable_logger_service:
+                node_services.serve_logger_levels(self)
+        except BaseException:
+            self.destroy_node()  # or half a node would stay in its context
+            raise
         self._made = True
 
     def __repr__(self) -> str:
@@ -196,7 +210,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         self._end_record.begin()
         self._tasks = await asyncio.TaskGroup().__aenter__()
         for entity in list(self._entities):
-            entity.start(self._tasks)
+            self._start(entity, self._tasks)
         for usage in self._usages:
             usage.begin(self.context.time_base, lambda: not self.destroyed, self._logger.warning)
         return self
@@ -207,21 +221,31 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         exc: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        """Destroy the node, and wait until its callbacks have ended.
+        """Destroy the node, and wait until its callbacks have ended; see `destroy_node`.
+
+        What the body of ``async with`` raised comes out as it is, unless callbacks failed as well.
 
         Raises:
-            ExceptionGroup: of what callbacks and the body of ``async with`` raised.
+            ExceptionGroup: of what callbacks raised, and the body, if it raised too.
         """
         tasks = self._tasks
         assert tasks is not None  # noqa: S101  # set by __aenter__
-        with self._end_record.recorded():
+        with self._end_record.recorded(exc):
             self.destroy_node()
             try:
+                await to_the_end(self._ending.wait())
+            except asyncio.CancelledError as cancelled:
+                if exc is None:
+                    exc_type, exc, traceback = type(cancelled), cancelled, cancelled.__traceback__
+            try:
                 await tasks.__aexit__(exc_type, exc, traceback)
+            except BaseExceptionGroup as group:
+                if group.exceptions != (exc,):
+                    raise
             finally:
                 self._running = False
                 self._home.move_out()
-                await self.context.release()
+                await to_the_end(self.context.release())
 
     async def run(self) -> None:
         """Run until `destroy_node`, which any callback may call.
@@ -267,10 +291,18 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         return self._running
 
     def destroy_node(self) -> None:
-        """End the node: its entities are destroyed and its callbacks cancelled. Twice is allowed.
+        """End the node. Twice is allowed.
 
-        `run` returns when the callbacks have ended. It may be called in any thread; outside that of
-        the node's event loop it returns before the loop has done it.
+        Subscriptions, services, timers and action servers are destroyed at once, and their
+        callbacks cancelled. Publishers, clients and the clock work until these have ended, so that
+        a callback can stop a robot in ``finally``; then they are destroyed, and the node leaves the
+        graph. In a node that does not run, all of that is done when this returns.
+
+        `run` and ``async with`` wait for it, up to 5 s for callbacks and 1 s for the servers whose
+        goals are cancelled, and send what was published. The log names callbacks that take long.
+
+        It may be called in any thread; outside that of the node's event loop it returns before the
+        loop has done it.
         """
         if self.destroyed:
             return
@@ -278,10 +310,12 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             self._home.call(self.destroy_node)
             return
         self._destroyed.set()
+        self._ending.begin()
+
+    def _leave(self) -> None:
+        """End what is left when all entities are destroyed."""
         if self._unlog is not None:
             self._unlog()
-        for entity in reversed(list(self._entities)):
-            entity.destroy()
         self._clock.destroy()
         for announcement in self._announcements:
             announcement.close()
@@ -408,10 +442,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         channel = self._channel(
             EndpointKind.PUBLISHER, topic, msg_type, qos_profile, qos_overriding_options
         )
-        writers = [
-            transport.create_writer(channel.endpoint, msg_type)
-            for transport in self.context.transports
-        ]
+        writers = self._announced(lambda it: it.create_writer(channel.endpoint, msg_type))
         return self._add(Publisher(channel, msg_type, writers, self.context.time_base), channel)
 
     @overload
@@ -495,10 +526,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             offload=offload,
         )
         subscription.connect(
-            [
-                transport.create_reader(channel.endpoint, msg_type, subscription)
-                for transport in self.context.transports
-            ]
+            self._announced(lambda it: it.create_reader(channel.endpoint, msg_type, subscription))
         )
         return self._add(subscription, channel)
 
@@ -546,10 +574,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             offload=offload,
         )
         service.connect(
-            [
-                transport.create_server(channel.endpoint, srv_type, service.serve)
-                for transport in self.context.transports
-            ]
+            self._announced(lambda it: it.create_server(channel.endpoint, srv_type, service.serve))
         )
         return self._add(service, channel)
 
@@ -575,10 +600,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         self._refuse_if_destroyed("client")
         expect_service_type(srv_type, f"client of {srv_name}")
         channel = self._channel(EndpointKind.CLIENT, srv_name, srv_type, qos_profile)
-        requesters = [
-            transport.create_requester(channel.endpoint, srv_type)
-            for transport in self.context.transports
-        ]
+        requesters = self._announced(lambda it: it.create_requester(channel.endpoint, srv_type))
         return self._add(Client(channel, srv_type, requesters, self.context.time_base), channel)
 
     def create_timer(
@@ -716,8 +738,25 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         if channel is not None:
             channel.open()
         if self._tasks is not None:
-            entity.start(self._tasks)
+            self._start(entity, self._tasks)
         return entity
+
+    def _start(self, entity: Entity, tasks: asyncio.TaskGroup) -> None:
+        """Let `entity` work; the end of the node waits for what calls callbacks."""
+        task = entity.start(tasks)
+        if task is not None and entity.stage is EndStage.CALLBACKS:
+            self._ending.watch(task)
+
+    def _announced(self, announce: Callable[[Transport], AnnouncedT]) -> list[AnnouncedT]:
+        """Announce something to every transport of the context, or, if one refuses, to none."""
+        made: list[AnnouncedT] = []
+        try:
+            made.extend(map(announce, self.context.transports))
+        except BaseException:
+            for announcement in made:
+                announcement.close()
+            raise
+        return made
 
     def _forget(self, entity: Entity) -> None:
         self._entities.pop(entity, None)

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from aionode.message import Message
 
 if TYPE_CHECKING:
+    import asyncio
     from collections.abc import Callable
 
     from aionode.action import ActionClient, ActionServer, ServerGoalHandle
     from aionode.endpoints.dispatch import Callbacks, OnError
+    from aionode.endpoints.ending import Ending
     from aionode.endpoints.entity import Entity
     from aionode.message import ActionClass
 
@@ -25,6 +27,7 @@ class NodeActionMethods:
     """The part of `Node` that has actions."""
 
     _callbacks: Callbacks
+    _ending: Ending
     _add: Callable[[Entity], Entity]
 
     def create_action_server(
@@ -83,3 +86,10 @@ class NodeActionMethods:
         For entities that are made of others, such as an action server.
         """
         self._add(entity)
+
+    def expect_at_end(self, answer: asyncio.Future[Any]) -> None:
+        """Let the end of the node wait for `answer`, before it destroys clients; a second at most.
+
+        For action clients, whose requests to cancel goals must arrive.
+        """
+        self._ending.expect(answer)

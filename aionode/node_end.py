@@ -60,19 +60,20 @@ class EndRecord:
             self._known.set()
 
     @contextlib.contextmanager
-    def recorded(self) -> Iterator[None]:
-        """Note how this block ends, which waits for the last of the node."""
-        end = NodeEnd("destroyed")
+    def recorded(self, body: BaseException | None) -> Iterator[None]:
+        """Note how this block ends, which waits for the last of the node.
+
+        Args:
+            body: What the node's ``async with`` block raised.
+        """
+        error = body
         try:
             yield
-        except asyncio.CancelledError:
-            end = NodeEnd("cancelled")
-            raise
-        except BaseException as error:
-            end = NodeEnd("failed", error)
+        except BaseException as raised:
+            error = raised
             raise
         finally:
-            self.note(end)
+            self.note(end_with(error))
 
     async def wait(self) -> NodeEnd:
         """Return the end once it is there.
@@ -88,3 +89,12 @@ class EndRecord:
         await self._known.wait()
         assert self._end is not None  # noqa: S101  # set before the event
         return self._end
+
+
+def end_with(error: BaseException | None) -> NodeEnd:
+    """Return the end of a node out of which `error` came."""
+    if error is None:
+        return NodeEnd("destroyed")
+    if isinstance(error, asyncio.CancelledError):
+        return NodeEnd("cancelled")
+    return NodeEnd("failed", error)

@@ -9,7 +9,8 @@ import contextlib
 from typing import TYPE_CHECKING, Any
 
 from aionode import qos
-from aionode.clock import Time
+from aionode.clock import S_TO_NS, Time
+from aionode.endpoints.entity import EndStage
 from aionode.errors import QueueFullError
 from aionode.interfaces.rcl_interfaces.msg import (
     Log,
@@ -215,6 +216,7 @@ class TimeSource:
         self._node = node
         self._clock = clock
         self._subscription: Subscription[ClockMsg] | None = None
+        self._warned = False
         node.add_on_set_parameters_callback(self._check)
         if not node.has_parameter("use_sim_time"):
             node.declare_parameter("use_sim_time", False)
@@ -241,9 +243,22 @@ class TimeSource:
             self._subscription = self._node.create_subscription(
                 ClockMsg, "/clock", self._on_tick, CLOCK_QOS
             )
+            self._subscription.stage = EndStage.GOALS  # callbacks that clean up may sleep
         elif not active and self._subscription is not None:
             self._subscription.destroy()
             self._subscription = None
 
     def _on_tick(self, msg: ClockMsg) -> None:
-        self._clock.set_ros_time_override(Time.from_msg(msg.clock))
+        if msg.clock.sec >= 0 and msg.clock.nanosec < S_TO_NS:
+            self._clock.set_ros_time_override(Time.from_msg(msg.clock))
+            return
+        # Anybody may publish there, and this node is not to end for it.
+        if self._subscription is not None:
+            self._subscription.stats.errors += 1
+        if not self._warned:
+            self._warned = True
+            self._node.get_logger().warning(
+                f"/clock: a message holds no time: {msg.clock.sec} s and {msg.clock.nanosec} ns; "
+                f"0 s or more and less than {S_TO_NS} ns fit. It was left out, and more of them "
+                "are only counted; `aionode topic info -v /clock` names the publishers"
+            )

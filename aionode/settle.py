@@ -9,14 +9,16 @@ from __future__ import annotations
 import asyncio
 import gc
 from collections import deque
+from contextvars import copy_context
+from functools import partial
 from types import coroutine
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 from weakref import WeakKeyDictionary
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Sized
+    from collections.abc import Callable, Coroutine, Generator, Sized
 
-__all__ = ["Activity", "activity", "off_loop", "one_turn", "settle"]
+__all__ = ["Activity", "activity", "off_loop", "one_turn", "settle", "to_the_end"]
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -44,10 +46,51 @@ def one_turn() -> Generator[None, None, None]:
 async def off_loop(callback: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
     """Run `callback` in a thread and return its result; `settle` waits for it.
 
-    Cancelling gives up the result, but cannot stop the thread.
+    A thread cannot be stopped. So cancelling waits until `callback` has returned, and raises
+    CancelledError then; cancelling once more gives the thread up.
     """
     with activity():
-        return await asyncio.to_thread(callback, *args, **kwargs)
+        loop = asyncio.get_running_loop()
+        work = partial(copy_context().run, callback, *args, **kwargs)
+        running = loop.run_in_executor(None, work)
+        try:
+            return await asyncio.shield(running)
+        except asyncio.CancelledError:
+            # Its exception is looked at, so that asyncio does not report it.
+            running.add_done_callback(lambda done: done.cancelled() or done.exception())
+            await asyncio.wait([running])
+            raise
+
+
+async def to_the_end(work: Coroutine[Any, Any, T]) -> T:
+    """Return the result of `work`, which cancelling the caller does not interrupt.
+
+    For what has to be done however a task ends, such as closing connections.
+
+    Raises:
+        CancelledError: the caller was cancelled meanwhile; `work` is done all the same.
+        Exception: what `work` raised.
+    """
+    cancelled: asyncio.CancelledError | None = None
+    outcome: asyncio.Future[T] = asyncio.get_running_loop().create_future()
+
+    async def run() -> None:
+        try:
+            outcome.set_result(await work)
+        except BaseException as error:  # noqa: BLE001  # raised below
+            outcome.set_exception(error)
+
+    async with asyncio.TaskGroup() as tasks:
+        tasks.create_task(run())
+        while not outcome.done():
+            try:
+                await asyncio.wait([outcome])
+            except asyncio.CancelledError as error:
+                cancelled = error
+    result = outcome.result()
+    if cancelled is not None:
+        raise cancelled
+    return result
 
 
 class Activity:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ import pytest
 from aionode.context import Context
 from aionode.errors import EntityDestroyedError, TransportError
 from aionode.node import Node
+from aionode.settle import one_turn
 from aionode.testing import local_context, settle
 from aionode.transport.local import LocalTransport
 
@@ -132,6 +134,60 @@ async def test_a_context_works_in_one_loop_at_a_time() -> None:
             pool.submit(asyncio.run, other.run()).result()
     async with other:
         assert other.is_running
+
+
+def test_two_loops_that_open_a_context_at_once_are_told_at_once() -> None:
+    """Also while the first is still connecting: one works, the other gets the error."""
+    opening, may_open = threading.Event(), threading.Event()
+
+    class Slow(LocalTransport):
+        async def open(self, graph: Graph) -> None:
+            opening.set()
+            while not may_open.is_set():
+                await one_turn()
+            await super().open(graph)
+
+    context = Context(transport=Slow())
+
+    async def use(name: str) -> None:
+        async with Node(name, context=context):
+            pass
+
+    with ThreadPoolExecutor(2) as pool:
+        first = pool.submit(asyncio.run, use("first"))
+        assert opening.wait(10)
+        second = pool.submit(asyncio.run, use("second"))
+        try:
+            with pytest.raises(RuntimeError, match="open in another event loop"):
+                second.result(10)
+        finally:
+            may_open.set()
+        first.result(10)
+
+
+async def test_a_context_that_could_not_be_opened_is_not_in_use() -> None:
+    """A second attempt may succeed, in another loop too."""
+
+    class Failing(LocalTransport):
+        fails = True
+
+        async def open(self, graph: Graph) -> None:
+            if self.fails:
+                raise ConnectionError("no network")
+            await super().open(graph)
+
+    transport = Failing()
+    context = Context(transport=transport)
+    with pytest.raises(ConnectionError):
+        await context.acquire()
+    transport.fails = False
+
+    async def use() -> None:
+        async with Node("node", context=context):
+            pass
+
+    with ThreadPoolExecutor(1) as pool:
+        pool.submit(asyncio.run, use()).result(10)
 
 
 def test_a_context_may_be_used_in_one_loop_after_another() -> None:

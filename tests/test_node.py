@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from aionode.context import Context
-from aionode.errors import EntityDestroyedError, NodeNameNonExistentError
+from aionode.errors import EntityDestroyedError, NodeNameNonExistentError, ServiceError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.node import Node
@@ -200,6 +200,7 @@ async def test_the_clock_of_a_destroyed_node_is_destroyed(node: Node) -> None:
     """Whoever sleeps on it is woken by cancellation."""
     clock = node.get_clock()
     node.destroy_node()
+    await settle()  # callbacks that clean up may sleep
     with pytest.raises(RuntimeError):
         await clock.sleep(1.0)
 
@@ -222,16 +223,63 @@ async def test_an_exception_of_a_callback_ends_the_node(
     assert caught.group_contains(ValueError, match="cannot use x")
 
 
-async def test_an_exception_of_the_body_comes_in_a_group(context: Context) -> None:
-    """The body of `async with` is treated as in a TaskGroup, and the node is destroyed."""
+async def test_an_exception_of_the_body_comes_out_as_it_is(context: Context) -> None:
+    """So that ``except LookupError`` around the node catches it; the node is destroyed."""
     node = Node("node", context=context)
 
-    with pytest.raises(ExceptionGroup) as caught:
+    with pytest.raises(LookupError, match="body"):
         async with node:
             raise LookupError("body")
 
-    assert caught.group_contains(LookupError, match="body")
     assert node.destroyed
+    assert not node.is_running
+
+
+async def test_an_error_of_a_service_can_be_caught_around_the_node(context: Context) -> None:
+    """As in the README: a function that makes a node, calls, and returns the answer."""
+
+    def fail(_request: AddTwoInts.Request) -> AddTwoInts.Response:
+        raise ValueError("cannot add")
+
+    async def add() -> AddTwoInts.Response:
+        async with Node("asking", context=context) as node:
+            return await node.create_client(AddTwoInts, "add").call(AddTwoInts.Request())
+
+    async with Node("serving", context=context) as serving:
+        serving.create_service(AddTwoInts, "add", fail, on_error="log")
+        with pytest.raises(ServiceError, match="cannot add"):
+            await add()
+
+
+async def test_exceptions_of_body_and_callback_come_in_one_group(context: Context) -> None:
+    """Neither may hide the other."""
+    node = Node("node", context=context)
+    node.create_subscription(String, "words", failing)
+    node.create_publisher(String, "words", 10).publish(String(data="x"))
+
+    async def body() -> None:
+        try:
+            await asyncio.Event().wait()
+        finally:
+            raise LookupError("body")
+
+    with pytest.raises(ExceptionGroup) as caught:
+        async with node:
+            await body()
+
+    assert caught.group_contains(LookupError, match="body")
+    assert caught.group_contains(ValueError, match="cannot use x")
+
+
+async def test_a_group_that_the_body_raised_comes_out_as_it_is(context: Context) -> None:
+    """Such as that of a TaskGroup inside the node."""
+    group = ExceptionGroup("own", [LookupError("body")])
+
+    with pytest.raises(ExceptionGroup) as caught:
+        async with Node("node", context=context):
+            raise group
+
+    assert caught.value is group
 
 
 async def test_a_failing_callback_interrupts_the_body(context: Context) -> None:

@@ -6,7 +6,9 @@ import asyncio
 import threading
 from typing import TYPE_CHECKING, Any
 
+import hypothesis
 import pytest
+from hypothesis import strategies as st
 
 from aionode.clock import ClockType, Time
 from aionode.errors import (
@@ -17,12 +19,15 @@ from aionode.errors import (
 from aionode.interfaces.builtin_interfaces.msg import Time as TimeMsg
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.geometry_msgs.msg import Twist
+from aionode.interfaces.rcl_interfaces import srv
 from aionode.interfaces.rcl_interfaces.msg import (
     Log,
     LoggerLevel,
     ParameterEvent,
+    ParameterValue,
     SetParametersResult,
 )
+from aionode.interfaces.rcl_interfaces.msg import Parameter as ParameterMsg
 from aionode.interfaces.rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
 from aionode.interfaces.rosgraph_msgs.msg import Clock as ClockMsg
 from aionode.interfaces.std_msgs.msg import String
@@ -31,7 +36,7 @@ from aionode.node import Node
 from aionode.parameter import Parameter
 from aionode.parameter_client import AsyncParameterClient
 from aionode.qos import QoSProfile, qos_profile_rosout_default
-from aionode.testing import settle
+from aionode.testing import local_context, settle
 from aionode.wire.typehash import type_hash
 
 if TYPE_CHECKING:
@@ -311,3 +316,100 @@ async def test_use_sim_time_must_be_true_or_false(node: Node) -> None:
     """A typing mistake must not freeze a robot."""
     (result,) = node.set_parameters([Parameter("use_sim_time", value="yes")])
     assert not result.successful
+
+
+# What peers send
+
+
+@pytest.mark.parametrize(
+    "wrong", [TimeMsg(sec=-1), TimeMsg(nanosec=10**9), TimeMsg(nanosec=2**32 - 1)]
+)
+async def test_a_clock_message_that_holds_no_time_is_counted(
+    node: Node,
+    node_factory: Callable[..., Node],
+    wrong: TimeMsg,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Anybody may publish on /clock; a node that follows it must not end for that."""
+    sim = node_factory("sim", parameter_overrides=[Parameter("use_sim_time", value=True)])
+    source = node.create_publisher(ClockMsg, "/clock", QoSProfile(depth=10))
+    for clock in (TimeMsg(sec=1), wrong, wrong, TimeMsg(sec=2)):
+        source.publish(ClockMsg(clock=clock))
+        await settle()
+
+    assert sim.is_running
+    assert sim.get_clock().now() == Time(seconds=2, clock_type=ClockType.ROS_TIME)
+    (subscription,) = sim.subscriptions
+    assert subscription.stats.errors == 2
+    assert capsys.readouterr().err.count("/clock: a message holds no time") == 1
+
+
+NAMES = st.sampled_from(["speed", "limit", "", "a b", "use_sim_time", "qos_overrides./x.y"])
+VALUES: Any = st.builds(
+    ParameterValue,
+    type=st.integers(0, 255),
+    bool_value=st.booleans(),
+    integer_value=st.integers(-(2**63), 2**63 - 1),
+    double_value=st.floats(),
+    string_value=st.text(max_size=5),
+    byte_array_value=st.binary(max_size=3),
+    integer_array_value=st.lists(st.integers(-(2**63), 2**63 - 1), max_size=3),
+)
+PARAMETERS = st.lists(st.builds(ParameterMsg, name=NAMES, value=VALUES), max_size=3)
+REQUESTS = st.one_of(
+    st.builds(srv.GetParameters.Request, names=st.lists(NAMES, max_size=3)),
+    st.builds(srv.GetParameterTypes.Request, names=st.lists(NAMES, max_size=3)),
+    st.builds(srv.DescribeParameters.Request, names=st.lists(NAMES, max_size=3)),
+    st.builds(
+        srv.ListParameters.Request, prefixes=st.lists(NAMES), depth=st.integers(0, 2**64 - 1)
+    ),
+    st.builds(srv.SetParameters.Request, parameters=PARAMETERS),
+    st.builds(srv.SetParametersAtomically.Request, parameters=PARAMETERS),
+    st.builds(GetLoggerLevels.Request, names=st.lists(st.text(max_size=5), max_size=2)),
+    st.builds(
+        SetLoggerLevels.Request,
+        levels=st.lists(
+            st.builds(LoggerLevel, name=st.just("of_nobody"), level=st.integers(0, 2**32 - 1)),
+            max_size=2,
+        ),
+    ),
+    st.builds(GetTypeDescription.Request, type_name=st.text(max_size=5)),
+)
+SERVICES: dict[Any, str] = {
+    srv.GetParameters: "get_parameters",
+    srv.GetParameterTypes: "get_parameter_types",
+    srv.DescribeParameters: "describe_parameters",
+    srv.ListParameters: "list_parameters",
+    srv.SetParameters: "set_parameters",
+    srv.SetParametersAtomically: "set_parameters_atomically",
+    GetLoggerLevels: "get_logger_levels",
+    SetLoggerLevels: "set_logger_levels",
+    GetTypeDescription: "get_type_description",
+}
+
+
+@hypothesis.settings(max_examples=150, deadline=None)
+@hypothesis.given(requests=st.lists(REQUESTS, min_size=1, max_size=5), undeclared=st.booleans())
+def test_no_request_of_a_peer_ends_a_node(requests: list[Any], *, undeclared: bool) -> None:
+    """Whatever a program of somebody else asks, the node's own services answer it."""
+
+    async def ask() -> None:
+        async with (
+            local_context() as context,
+            Node(
+                "robot",
+                context=context,
+                enable_logger_service=True,
+                allow_undeclared_parameters=undeclared,
+            ) as robot,
+            Node("peer", context=context) as peer,
+        ):
+            robot.declare_parameter("speed", 1.0)
+            robot.declare_parameter("limit", 3)
+            for request in requests:
+                (kind,) = (each for each in SERVICES if type(request) is each.Request)
+                client = peer.create_client(kind, f"/robot/{SERVICES[kind]}")
+                await client.call(request)
+            assert robot.is_running
+
+    asyncio.run(ask())

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import signal
 import subprocess
 import sys
 import textwrap
 import threading
+from pathlib import Path
 from typing import Any, Self
 
 import pytest
@@ -111,8 +113,8 @@ def test_a_second_signal_ends_the_program_at_once() -> None:
         assert program.process.stdout.readline() == "no\n"
         program.process.send_signal(signal.SIGINT)
         status, _, err = program.end()
-    assert status == -signal.SIGINT
-    assert "Traceback" not in err
+    assert status == 130
+    assert err == "aionode: ended at once by a second signal (SIGINT)\n"
 
 
 def test_the_second_signal_works_while_a_callback_blocks_the_loop() -> None:
@@ -139,8 +141,74 @@ def test_the_second_signal_works_while_a_callback_blocks_the_loop() -> None:
         while program.process.poll() is None:
             program.process.send_signal(signal.SIGTERM)
         status, _, err = program.end()
-    assert status == -signal.SIGTERM
-    assert "Traceback" not in err
+    assert status == 143
+    assert err == "aionode: ended at once by a second signal (SIGTERM)\n"
+
+
+THREAD_AT_WORK = """
+import threading
+done = threading.Event()
+
+def work():
+    print("ready", flush=True)
+    done.wait(20)
+
+def make():
+    node = aionode.Node("robot", context=context)
+    node.create_timer(0.01, work, offload=True)
+    return node
+
+aionode.run(make, args=[], loop_factory={loop})
+print("after run", flush=True)
+"""
+
+
+@pytest.mark.parametrize("loop", ["asyncio.new_event_loop", "None"])
+def test_ctrl_c_names_the_thread_that_it_waits_for_and_a_second_one_ends_at_once(
+    loop: str,
+) -> None:
+    """A thread cannot be cancelled, so the user has to know of it, and needs a way out of it."""
+    with Program(THREAD_AT_WORK.replace("{loop}", loop)) as program:
+        program.wait_until_ready()
+        program.process.send_signal(signal.SIGINT)
+        assert program.process.stderr is not None
+        line = program.process.stderr.readline()
+        program.process.send_signal(signal.SIGINT)
+        status, out, err = program.end()
+    assert "waits up to 5 s for timer of 0.01 s (callback work) in a thread" in line
+    assert (status, out) == (130, "")
+    assert err == "aionode: ended at once by a second signal (SIGINT)\n"
+
+
+def test_a_second_ctrl_c_ends_a_program_whose_stderr_nobody_reads() -> None:
+    """A full pipe would hold up whoever writes the last line into it."""
+    full = """
+    def callback():
+        try:
+            while True:
+                os.write(2, b"x" * 4096)
+        except BlockingIOError:
+            os.set_blocking(2, True)
+        print("ready", flush=True)
+        time.sleep(20)
+
+    import os
+    os.set_blocking(2, False)
+
+    def make():
+        node = aionode.Node("robot", context=context)
+        node.create_timer(0.01, callback)
+        return node
+
+    aionode.run(make, args=[])
+    """
+    with Program(full) as program:
+        program.wait_until_ready()
+        program.process.send_signal(signal.SIGINT)
+        program.process.send_signal(signal.SIGTERM)
+        while program.process.poll() is None:
+            program.process.send_signal(signal.SIGTERM)
+    assert program.process.returncode in (130, 143)
 
 
 def test_a_bug_in_a_callback_is_shown_with_its_traceback() -> None:
@@ -168,6 +236,119 @@ def test_an_error_of_aionode_is_one_line() -> None:
     assert status == 1
     assert err.startswith("error: ")
     assert "Traceback" not in err
+
+
+SPEAKER = """
+class Speaker(aionode.Node):
+    def __init__(self):
+        super().__init__("speaker", namespace="/robot", context=context)
+        self.publisher = self.create_publisher(String, "words", 10)
+        self.create_timer(0.0, self.speak)
+
+    def speak(self):
+        {line}
+
+aionode.run(Speaker, args=[])
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "texts"),
+    [
+        (
+            "self.publisher.publish(String(data=5))",
+            ["error: std_msgs/msg/String.data: 5", "published by publisher of /robot/words\n"],
+        ),
+        ("self.get_parameter('speed')", ["undeclared parameter(s): speed"]),
+        ("self.create_publisher(String, '1', 10)", ["error: Invalid topic name"]),
+    ],
+)
+def test_an_error_of_aionode_in_a_callback_says_where(
+    tmp_path: Path, line: str, texts: list[str]
+) -> None:
+    """Which of the hundred lines that publish made it; the traceback has too much for that."""
+    program = tmp_path / "speaker.py"
+    program.write_text(PREAMBLE + SPEAKER.replace("{line}", line))
+    at = program.read_text().splitlines().index(f"        {line}") + 1
+
+    def run(environment: dict[str, str]) -> str:
+        done = subprocess.run(
+            [sys.executable, program],
+            capture_output=True,
+            text=True,
+            timeout=20,
+            check=False,
+            env={**os.environ, **environment},
+        )
+        assert done.returncode == 1
+        return done.stderr
+
+    err = run({})
+    for text in texts:
+        assert text in err
+    assert "in timer of 0 s (callback Speaker.speak) of node /robot/speaker\n" in err
+    assert f'File "{program}", line {at}, in speak: {line}\n' in err
+    assert "Traceback" not in err
+    assert "Traceback (most recent call last)" in run({"AIONODE_TRACEBACK": "1"})
+
+
+def test_an_error_in_a_constructor_names_node_and_line() -> None:
+    """There is no callback, but the node has its name already."""
+    body = """
+    class Robot(aionode.Node):
+        def __init__(self):
+            super().__init__("robot", context=context)
+            self.get_parameter("speed")
+
+    aionode.run(Robot, args=[])
+    """
+    with Program(body) as program:
+        status, _, err = program.end()
+    assert status == 1
+    assert "in node /robot\n" in err
+    assert ", in __init__" in err
+
+
+def test_arguments_that_come_too_late_for_a_node_are_refused() -> None:
+    """They would be ignored; the way that works is in the text."""
+    body = """
+    class Robot(aionode.Node):
+        def __init__(self):
+            super().__init__("robot", context=context)
+
+    aionode.run(Robot(), args=["--ros-args", "-r", "__node:=r2"])
+    """
+    with Program(body) as program:
+        status, _, err = program.end()
+    assert status == 1
+    assert "'-r __node:=r2': too late for node /robot" in err
+    assert "aionode.run(Robot)" in err
+
+
+def test_arguments_that_no_node_needs_are_fine_for_a_node_made_before() -> None:
+    """A log level holds for the process."""
+    node = Node("robot", context=local_context())
+    node.create_timer(0.0, node.destroy_node)
+    arguments = ["--ros-args", "--log-level", "info"]
+    aionode.run(node, args=arguments, loop_factory=asyncio.new_event_loop)
+
+
+def test_arguments_hold_for_nodes_of_every_context_while_run_runs() -> None:
+    """Not only for those of the default context; and not for what comes after."""
+    context = local_context()
+    names: list[str] = []
+
+    def make() -> Node:
+        node = Node("robot", context=context)
+        names.append(node.get_name())
+        node.create_timer(0.0, node.destroy_node)
+        return node
+
+    arguments = ["--ros-args", "-r", "__node:=r2"]
+    aionode.run(make, args=arguments, loop_factory=asyncio.new_event_loop)
+
+    assert names == ["r2"]
+    assert Node("robot", context=context).get_name() == "robot"
 
 
 def run_in_this_process(*nodes: Any) -> None:

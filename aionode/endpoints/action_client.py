@@ -11,10 +11,11 @@ from uuid import uuid4
 from aionode.endpoints.action_words import expect_action_type, reason_id
 from aionode.endpoints.client_goal import ActionResult, ClientGoalHandle
 from aionode.endpoints.dispatch import accepts, give_way, pump
-from aionode.endpoints.entity import Entity
+from aionode.endpoints.entity import EndStage, Entity
 from aionode.endpoints.future import Futures, asks
 from aionode.endpoints.inbox import Inbox
 from aionode.endpoints.stats import CallbackStats
+from aionode.endpoints.withdrawal import Withdrawal
 from aionode.errors import (
     GoalAbortedError,
     GoalCanceledError,
@@ -112,14 +113,16 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         expect_action_type(action_type, f"action client of {action_name}")
         self.action_type = cast("Any", action_type)
         self.action_name = node.resolve_topic_name(action_name)
-        super().__init__(f"action client of {self.action_name}")
+        super().__init__(f"action client of {self.action_name}", EndStage.GOALS)
         self._check = checker(self.action_type.Goal)
         self._graph = node.graph
         self._participant = node.context.participant
         self._goals: dict[bytes, ClientGoalHandle[ResultT, FeedbackT]] = {}
         self._accepted: Inbox[Any] = Inbox(UNLIMITED, CallbackStats(), keep_all=True)
-        self._waits: set[asyncio.Future[None]] = set()
+        self._waits: set[asyncio.Future[Any]] = set()
         self._futures = Futures(self.subject)
+        self._withdrawals: dict[Withdrawal, None] = {}
+        self._expect_at_end = node.expect_at_end
 
         impl = self.action_type.Impl
         hidden = f"{self.action_name}/_action"
@@ -234,8 +237,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
     ) -> ResultT:
         """Send `goal`, wait for its end, and return the result message.
 
-        Cancelling cancels the goal: the server is asked once, and its answer is waited for up to
-        1 s before CancelledError goes on. So does ``asyncio.timeout``.
+        Cancelling cancels the goal, by `asyncio.timeout` too; see `ClientGoalHandle`.
 
         Args:
             goal: An instance of ``action_type.Goal``.
@@ -273,8 +275,8 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         """Send `goal`, and return its handle when the server has accepted it.
 
         Without a server nothing answers, so `wait_for_server` first, or limit the wait with
-        `asyncio.timeout`. When cancelled, a goal that the server has accepted meanwhile is
-        cancelled, too.
+        `asyncio.timeout`. Cancelling cancels the goal, whether the server has accepted it by then,
+        accepts it later, or never.
 
         Args:
             goal: An instance of ``action_type.Goal``; it may be changed after the call began.
@@ -335,15 +337,15 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         # Entered first, because feedback may be faster than the answer.
         self._goals.setdefault(handle.key, handle)
         try:
-            response = await self.awaiting(
-                handle,
-                self._send_goal.call(
-                    self.action_type.Impl.SendGoalService.Request(goal_id=handle.goal_id, goal=goal)
-                ),
+            handle.sending = self._send_goal.begin(
+                self.action_type.Impl.SendGoalService.Request(goal_id=handle.goal_id, goal=goal)
             )
+            # It goes on when the caller is cancelled, so that `Withdrawal` knows what became of it.
+            response = await self.awaiting(handle, self._kept(handle.sending.answer))
         except BaseException:
             self._forget(handle)
             raise
+        handle.sending.cancel()  # has ended
         if not response.accepted:
             self._forget(handle)
             handle.end(lost=GoalLostError(self.action_name, handle.text, "the server refused it"))
@@ -358,33 +360,54 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         if self._goals.get(goal.key) is goal:
             del self._goals[goal.key]
 
+    async def _kept(self, answer: asyncio.Future[T]) -> T:
+        """Wait for `answer`, which goes on when the wait is cancelled; by `_close`, too."""
+        wait = asyncio.shield(answer)
+        self._waits.add(wait)
+        wait.add_done_callback(self._waits.discard)
+        return await wait
+
     async def awaiting(self, goal: ClientGoalHandle[ResultT, FeedbackT], wait: Awaitable[T]) -> T:
         """Return what `wait` returns; if cancelled, cancel `goal` as well. For its handle."""
         goal.waiting += 1
         try:
             return await wait
         except asyncio.CancelledError:
-            if not (self.destroyed or goal.done or goal.withdrawn):
-                goal.withdrawn = True  # one request is enough, however many wait
-                # The answer is awaited, because whoever is cancelled may end the node next.
-                with suppress(ServiceError, RequestTimeoutError):
-                    await self.cancel_goal(goal, ANSWER_LIMIT_S)
+            if not (self.destroyed or goal.done):
+                self.withdraw(goal)
             raise
         finally:
             goal.waiting -= 1
 
-    async def cancel_goal(
-        self, goal: ClientGoalHandle[ResultT, FeedbackT], timeout_sec: float | None = None
-    ) -> Any:
+    def withdraw(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
+        """Have `goal` cancelled at the server, without waiting. For its handle."""
+        if goal.sending is not None and not goal.sending.calls:
+            goal.sending.cancel()  # there was no server that could have got it
+        elif not goal.withdrawn:
+            goal.withdrawn = True  # one request is enough, however many wait
+
+            def over(_: asyncio.Future[Any]) -> None:
+                goal.withdrawn = False
+
+            self._begin_to_cancel(goal).answer.add_done_callback(over)
+
+    def _begin_to_cancel(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> Withdrawal:
+        withdrawal = Withdrawal(self._cancel_goal, goal, self._on_withdrawn)
+        self._withdrawals[withdrawal] = None
+        self._expect_at_end(withdrawal.answer)
+        return withdrawal
+
+    def _on_withdrawn(self, withdrawal: Withdrawal) -> None:
+        self._withdrawals.pop(withdrawal, None)
+        if self.destroyed:
+            self._close_parts()
+
+    async def cancel_goal(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> Any:
         """Ask the server to cancel `goal`. For its handle."""
+        self.refuse_if_destroyed("asked to cancel a goal")
         if not self._cancel_goal.service_is_ready():  # it was, so it has gone
             raise ServiceUnavailableError(self._cancel_goal.srv_name)
-        return await self._cancel_goal.call(self._cancel_request(goal), timeout_sec)
-
-    def _cancel_request(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> Any:
-        request = self.action_type.Impl.CancelGoalService.Request()
-        request.goal_info.goal_id = goal.goal_id
-        return request
+        return await self._kept(self._begin_to_cancel(goal).answer)
 
     # What the server says
 
@@ -477,15 +500,16 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
 
     # The end
 
-    def close(self) -> None:
+    def _close(self) -> None:
         """Withdraw the client, and cancel what waits, and so the goals that somebody awaits.
 
         The other goals go on at the server.
         """
         for goal in self._goals.values():
-            # There is no time for an answer: the node may be stopping.
-            if goal.waiting and not (goal.withdrawn or self._cancel_goal.destroyed):
-                self._cancel_goal.send(self._cancel_request(goal))
+            if goal.waiting and not goal.done:
+                self.withdraw(goal)
+        for withdrawal in list(self._withdrawals):
+            withdrawal.end_with_answer()
         for wait in list(self._waits):  # first, as the end of the parts is a change of the graph
             wait.cancel(f"{self.subject}: destroyed")
         self._futures.close()
@@ -495,8 +519,10 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
             goal.end()
 
     def _close_parts(self) -> None:
+        """Destroy all parts; those that cancel goals when that is done."""
         for part in self._parts:
-            part.destroy()
+            if not (self._withdrawals and part in (self._send_goal, self._cancel_goal)):
+                part.destroy()
 
 
 def uuid_message(goal_id: bytes) -> Any:

@@ -58,6 +58,10 @@ FeedbackT = TypeVar("FeedbackT", bound=Message)
 UNLIMITED = 2**63 - 1
 """Depth of the queues of goals: `goal_callback` decides how many there are."""
 
+WITHDRAWN_NS = 10_000_000_000
+REMEMBERED_WITHDRAWN = 1000
+"""How long, and how many, ids of goals are remembered that were cancelled before they came."""
+
 DRAIN_LIMIT_S = 1.0
 """How long a result waits for the last feedback to be sent, in seconds of the machine."""
 
@@ -165,6 +169,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         self._offload = offload
         self._checked_result = snapshotter(self.action_type.Result)
         self._goals: dict[bytes, ServerGoalHandle[GoalT, ResultT, FeedbackT]] = {}
+        self._withdrawn: dict[bytes, int] = {}  # and when, by the steady clock
         self._alarms: dict[bytes, Alarm] = {}
         self._accepted: Inbox[Any] = Inbox(UNLIMITED, CallbackStats(), keep_all=True)
         self._waiting: Inbox[Any] = Inbox(UNLIMITED, self.stats, keep_all=True)
@@ -289,9 +294,9 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
     async def _on_goal(self, request: Any) -> Any:
         response = self.action_type.Impl.SendGoalService.Response()
         goal_id = request.goal_id.uuid.tobytes()
-        if goal_id in self._goals or not await self._welcomes(request.goal):
+        if self._is_refused(goal_id) or not await self._welcomes(request.goal):
             return response
-        if goal_id in self._goals:  # while the callback was thinking
+        if self._is_refused(goal_id):  # while the callback was thinking
             return response
         response.accepted = True
         response.stamp = self._clock.now().to_msg()
@@ -302,6 +307,21 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         else:
             self._accepted.put(goal)
         return response
+
+    def _is_refused(self, goal_id: bytes) -> bool:
+        """Whether there is such a goal already, or its client has cancelled it before."""
+        return goal_id in self._goals or goal_id in self._withdrawn
+
+    def _note_withdrawn(self, goal_id: bytes) -> None:
+        """Remember for a while that a goal was cancelled before it was accepted.
+
+        Its request waits in the queue, or its `goal_callback` is thinking.
+        """
+        now_ns = self._time_base.steady_ns()
+        for known, since_ns in list(self._withdrawn.items()):
+            if now_ns - since_ns > WITHDRAWN_NS or len(self._withdrawn) >= REMEMBERED_WITHDRAWN:
+                del self._withdrawn[known]
+        self._withdrawn[goal_id] = now_ns
 
     async def _welcomes(self, goal: GoalT) -> bool:
         if self._goal_callback is None:
@@ -365,11 +385,16 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         if not goal.is_active:  # cancelled while it waited
             self.stats.dropped += 1
             return None
+        return self._run_goal(entered_ns, goal, dispatch or self._execute)
+
+    async def _run_goal(
+        self, entered_ns: int, goal: ServerGoalHandle[Any, Any, Any], dispatch: Dispatch
+    ) -> None:
+        if not goal.is_active:  # cancelled before this task had its first turn
+            self.stats.dropped += 1
+            return
         self.stats.received += 1
         self.stats.queue_wait.record(perf_ns() - entered_ns)
-        return self._run_goal(goal, dispatch or self._execute)
-
-    async def _run_goal(self, goal: ServerGoalHandle[Any, Any, Any], dispatch: Dispatch) -> None:
         goal.begin()
         try:
             async with asyncio.TaskGroup() as tasks:  # a cancelled goal cancels only its own task
@@ -427,6 +452,8 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         asked = GoalKey(info.goal_id.uuid.tobytes(), stamp_ns(info.stamp))
         code, meant = candidates([goal.key for goal in self._goals.values()], asked)
         response = self.action_type.Impl.CancelGoalService.Response()
+        if code is CancelCode.UNKNOWN_GOAL_ID:
+            self._note_withdrawn(asked.goal_id)
         refused = False
         for goal_id in meant:
             goal = self._goals.get(goal_id)
@@ -548,7 +575,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
 
     # The end
 
-    def close(self) -> None:
+    def _close(self) -> None:
         """Withdraw the server: clients are told at once that their goals are lost."""
         self._close_parts()
         for alarm in self._alarms.values():

@@ -13,7 +13,10 @@ from aionode.goal import GoalStatus
 from aionode.message import Message
 
 if TYPE_CHECKING:
+    from types import TracebackType
+
     from aionode.endpoints.action_client import ActionClient
+    from aionode.endpoints.service import Exchange
     from aionode.errors import GoalLostError
 
 __all__ = ["ActionResult", "ClientGoalHandle"]
@@ -48,11 +51,13 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
     It is an async iterator of feedback: ``async for feedback in goal`` yields what has come since
     the goal was sent (the newest 100 are kept) and what comes, and ends when the goal has.
 
-    Cancelling a task that awaits the goal, in `result` or in the iteration, cancels the goal: the
-    server is asked once, and its answer is waited for up to 1 s before CancelledError goes on. So
-    does destroying the client, or its node, while a task awaits the goal. To
-    give up only the wait, put ``asyncio.shield`` around `result`; leaving the iteration with
-    ``break`` has no effect on the goal.
+    Cancelling a task that awaits the goal, in `result` or in the iteration, cancels the goal. The
+    request is sent at once, and CancelledError goes on without waiting for the answer; the request
+    is sent again until the server has answered, or is gone, whatever is cancelled meanwhile. The
+    node does not end before the answer, for up to 1 s. So does destroying the client, or its node,
+    while a task awaits the goal. To give up only the wait, put ``asyncio.shield`` around `result`;
+    leaving the iteration with ``break`` has no effect on the goal, unless it is in
+    ``async with goal:``, which cancels the goal when it is left.
 
     Attributes:
         goal_id: Its id, as unique_identifier_msgs/msg/UUID.
@@ -73,6 +78,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         self.status = GoalStatus.UNKNOWN
         self.accepted = False
         self.feedback_callback = feedback_callback
+        self.sending: Exchange | None = None
         self.withdrawn = False
         self.waiting = 0
         self._client = client
@@ -99,6 +105,29 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
     def done(self) -> bool:
         """Whether it is known how the goal ended."""
         return self._ended.is_set()
+
+    @property
+    def is_known_to_have_ended(self) -> bool:
+        """Whether the server has told how the goal ended; one that was lost may go on there."""
+        return self._outcome is not None
+
+    async def __aenter__(self) -> Self:
+        """Bind the goal to a block: one that has not ended when the block is left is cancelled.
+
+        However it is left: by an exception, a cancellation, ``break`` or ``return``, or by the end
+        of an async generator around it, such as the stream of a web server whose client has gone.
+        """
+        return self
+
+    async def __aexit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Cancel the goal if it has not ended, without waiting for the answer."""
+        if not self.done:
+            self._client.withdraw(self)
 
     # What a caller awaits
 
@@ -157,7 +186,8 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
     async def cancel(self) -> Any:
         """Ask the server to cancel the goal, and return its answer.
 
-        The goal has not ended then, and may still succeed: `result` tells.
+        The goal has not ended then, and may still succeed: `result` tells. The request is sent
+        again until the server has answered. Cancelling gives up the answer, not the request.
 
         Returns:
             An action_msgs/srv/CancelGoal response: ``return_code`` is 0 if the server agreed, 1 if

@@ -10,7 +10,7 @@ import asyncio
 import inspect
 import traceback
 from collections.abc import Awaitable, Callable, Coroutine, Generator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from aionode.clock import perf_ns
@@ -74,6 +74,7 @@ class Dispatch:
         offload: Whether a sync callback runs in a thread.
         budget_ns: How long a callback may block the loop before that is reported.
         logger: The node's logger.
+        waiting: The callbacks of the node that have begun and wait for something.
 
     Raises:
         TypeError: `callback` or `on_error` is of a wrong kind.
@@ -93,6 +94,7 @@ class Dispatch:
         offload: bool = False,
         budget_ns: int,
         logger: RcutilsLogger,
+        waiting: set[object] | None = None,
     ) -> None:
         if isinstance(on_error, str):
             if on_error not in ("raise", "log"):
@@ -118,6 +120,7 @@ class Dispatch:
         self.runs_through = not offload and not _is_async(callback)
         self.budget_ns = budget_ns
         self._logger = logger
+        self.waiting: set[object] = set() if waiting is None else waiting
         self._last_report_ns = -REPORT_INTERVAL_NS
 
     def run(self, *args: Any) -> Coroutine[Any, Any, None] | None:
@@ -225,12 +228,18 @@ class Dispatch:
         """
         self.stats.errors += 1
         if self._on_error == "raise":
+            error.add_note(f"in {self._context.subject} of node {self._context.node}")
             raise error
         if self._on_error == "log":
             trace = "".join(traceback.format_exception(error))
             self._logger.error(f"{self._context.subject} failed:\n{trace}")
         else:
             self._on_error(error, self._context)
+
+    @property
+    def subject(self) -> str:
+        """What is called, such as ``subscription of /chatter (callback on_text)``."""
+        return self._context.subject
 
     def _record_sync(self, took_ns: int) -> None:
         self.stats.record_took(took_ns)
@@ -259,11 +268,13 @@ class Callbacks:
         node: Full name of the node.
         logger: Its logger.
         budget_ns: How long a callback may block the loop before that is reported.
+        waiting: Those that have begun and wait for something; each says as a string what it is.
     """
 
     node: str
     logger: RcutilsLogger
     budget_ns: int
+    waiting: set[object] = field(default_factory=set)
 
     def dispatch(
         self,
@@ -290,6 +301,7 @@ class Callbacks:
             offload=offload,
             budget_ns=self.budget_ns,
             logger=self.logger,
+            waiting=self.waiting,
         )
 
 
@@ -310,10 +322,14 @@ class _Measured:
             if give_up is not None:
                 give_up()
 
+    def __str__(self) -> str:
+        return self._dispatch.subject
+
     def __await__(self) -> Generator[Any, Any, Any]:
         dispatch = self._dispatch
         awaitable, self._awaitable = self._awaitable, None
         steps = awaitable.__await__()
+        dispatch.waiting.add(self)
         began_ns = perf_ns()
         longest_ns = 0
         thrown: BaseException | None = None
@@ -333,6 +349,7 @@ class _Measured:
         except StopIteration as stop:
             return stop.value
         finally:
+            dispatch.waiting.discard(self)
             dispatch.stats.run_time.record(perf_ns() - began_ns)
             dispatch.stats.blocking.record(longest_ns)
             if longest_ns > dispatch.budget_ns:
@@ -348,15 +365,21 @@ class _Offloaded:
         self._dispatch = dispatch
         self._args = args
 
+    def __str__(self) -> str:
+        return f"{self._dispatch.subject} in a thread, which cannot be cancelled"
+
     def __await__(self) -> Generator[Any, Any, Any]:
         return self._run().__await__()
 
     async def _run(self) -> Any:
         stats = self._dispatch.stats
+        waiting = self._dispatch.waiting
         began_ns = perf_ns()
+        waiting.add(self)
         try:
             return await off_loop(self._dispatch.callback, *self._args)
         finally:
+            waiting.discard(self)
             stats.run_time.record(perf_ns() - began_ns)
             stats.blocking.record(0)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import IntEnum
 from typing import TYPE_CHECKING
 
 from aionode.errors import EntityDestroyedError
@@ -11,7 +12,21 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine
     from typing import Any
 
-__all__ = ["Entity"]
+__all__ = ["EndStage", "Entity"]
+
+
+class EndStage(IntEnum):
+    """The steps in which a node ends; the entities of each are destroyed, the newest first.
+
+    Attributes:
+        CALLBACKS: What calls callbacks; they are cancelled, and waited for before the next step.
+        GOALS: What cancels goals; the servers' answers are waited for before the next step.
+        LAST: What callbacks may use until they have ended: publishers, clients, rates.
+    """
+
+    CALLBACKS = 0
+    GOALS = 1
+    LAST = 2
 
 
 class Entity:
@@ -19,10 +34,16 @@ class Entity:
 
     The node starts `run` in its TaskGroup, at once if it runs already, or when it begins to.
     Destroying an entity cancels that task and gives the entity back to its node.
+
+    Attributes:
+        subject: What it is, for errors and logs, such as ``publisher of /chatter``.
+        destroyed: Whether it was destroyed.
+        stage: When it is destroyed as its node ends.
     """
 
-    def __init__(self, subject: str) -> None:
+    def __init__(self, subject: str, stage: EndStage = EndStage.CALLBACKS) -> None:
         self.subject = subject
+        self.stage = stage
         self.destroyed = False
         self._task: asyncio.Task[None] | None = None
         self._on_destroy: Callable[[Entity], None] | None = None
@@ -31,8 +52,8 @@ class Entity:
         """Name the owner, who is told of the end. Called once, by the node."""
         self._on_destroy = on_destroy
 
-    def start(self, tasks: asyncio.TaskGroup) -> None:
-        """Begin to work, in a task of `tasks`. Called by the node."""
+    def start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:
+        """Begin to work, in a task of `tasks`, and return that if there is one. For the node."""
         work = self.run()
         if work is not None:
             try:
@@ -41,6 +62,7 @@ class Entity:
                 # The node is failing already; it will destroy the entity in a moment.
                 work.close()
                 raise
+        return self._task
 
     def run(self) -> Coroutine[Any, Any, None] | None:
         """Return the work of the entity as a coroutine; None where there is none."""
@@ -51,13 +73,15 @@ class Entity:
         if self.destroyed:
             return
         self.destroyed = True
-        if self._task is not None:
+        # A callback that failed has cancelled the others already; once more would break off what
+        # they do in `finally`.
+        if self._task is not None and not self._task.cancelling():
             self._task.cancel()
-        self.close()
+        self._close()
         if self._on_destroy is not None:
             self._on_destroy(self)
 
-    def close(self) -> None:
+    def _close(self) -> None:
         """Release what the entity holds; called once, by `destroy`."""
 
     def refuse_if_destroyed(self, action: str = "used") -> None:

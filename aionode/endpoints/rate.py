@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from aionode.clock import S_TO_NS
 from aionode.endpoints.dispatch import give_way
-from aionode.endpoints.entity import Entity
+from aionode.endpoints.entity import EndStage, Entity
 from aionode.endpoints.ticker import Ticker
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ class Rate(Entity):
     """
 
     def __init__(self, frequency: float, clock: Clock) -> None:
-        super().__init__(f"rate of {frequency} Hz")
+        super().__init__(f"rate of {frequency} Hz", EndStage.LAST)
         self._ticker = Ticker(clock, to_rate_period_ns(frequency))
 
     def __repr__(self) -> str:
@@ -81,7 +81,7 @@ class Rate(Entity):
             await self._ticker.wait()
         return False
 
-    def close(self) -> None:
+    def _close(self) -> None:
         """End all sleeps."""
         self._ticker.close()
 

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from aionode.clock import perf_ns
 from aionode.endpoints.dispatch import accepts, checked_concurrency, is_unfinished, pump
-from aionode.endpoints.entity import Entity
+from aionode.endpoints.entity import EndStage, Entity
 from aionode.endpoints.future import Futures, asks
 from aionode.endpoints.inbox import Inbox
 from aionode.endpoints.shortcut import Shortcut
 from aionode.endpoints.stats import CallbackStats, ClientStats
 from aionode.errors import (
     AionodeError,
+    MessageError,
     RequestTimeoutError,
     ServiceUnavailableError,
     silence,
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from aionode.qos import QoSProfile
     from aionode.transport.base import Announcement, Call, Request, Requester
 
-__all__ = ["Client", "Service", "ServiceCallback"]
+__all__ = ["Client", "Exchange", "Service", "ServiceCallback"]
 
 RequestT = TypeVar("RequestT", bound=Message)
 ResponseT = TypeVar("ResponseT", bound=Message)
@@ -168,7 +169,7 @@ class Service(Entity, Generic[RequestT, ResponseT]):
             )
         request.reply(response)
 
-    def close(self) -> None:
+    def _close(self) -> None:
         """Withdraw the service; requests that wait are given up."""
         self._channel.close()
         for announcement in self._announcements:
@@ -194,7 +195,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         requesters: Sequence[Requester],
         time_base: TimeBase,
     ) -> None:
-        super().__init__(f"client of {channel.endpoint.name}")
+        super().__init__(f"client of {channel.endpoint.name}", EndStage.LAST)
         self.srv_type = srv_type
         self.qos_profile: QoSProfile = channel.endpoint.qos
         self.stats = ClientStats()
@@ -270,7 +271,6 @@ class Client(Entity, Generic[RequestT, ResponseT]):
             self.refuse_if_destroyed("called")
         if type(request) is not self.srv_type.Request:
             self._check(request)
-        self.stats.calls += 1
         began_ns = perf_ns()
         limit = None if timeout_sec is None else asyncio.timeout(timeout_sec)
         response: ResponseT
@@ -289,8 +289,10 @@ class Client(Entity, Generic[RequestT, ResponseT]):
             self.stats.errors += 1
             error.add_note(f"{self.srv_name}: no reply; {silence(self._servers())}")
             raise
-        except AionodeError:
+        except AionodeError as error:
             self.stats.errors += 1
+            if isinstance(error, MessageError):
+                error.add_note(f"in a call of {self.srv_name}")
             raise
         self.stats.run_time.record(perf_ns() - began_ns)
         return response
@@ -317,26 +319,24 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         super().start(tasks)
         self._futures.start(tasks)
 
-    def send(self, request: RequestT) -> None:
-        """Send `request` to the servers that are there now; the response is dropped.
+    async def _exchange(self, request: RequestT) -> Any:
+        """Send through every transport and return the first answer."""
+        exchange = self.begin(request)
+        try:
+            return await exchange.answer
+        finally:
+            exchange.cancel()
 
-        For what has to be said at the end, when nobody can wait any more.
+    def begin(self, request: RequestT) -> Exchange:
+        """Send `request` to the servers that are there now, and return what takes the answer.
+
+        For requests that are to go on when their sender is cancelled.
 
         Raises:
             TypeError: `request` is of another type.
             MessageError: a value does not fit its field.
-            EntityDestroyedError: the client was destroyed.
         """
-        self.refuse_if_destroyed("called")
-        self._check(request)
         self.stats.calls += 1
-        origin = Origin(self._channel.endpoint.gid, self.stats.calls, self._now_ns())
-        for requester in self._requesters:
-            if requester.servers:
-                requester.send(request, origin, _Nobody())
-
-    async def _exchange(self, request: Any) -> Any:
-        """Send through every transport and return the first answer."""
         servers = 0
         reached = []
         for requester in self._requesters:
@@ -347,23 +347,17 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         if servers == 0:
             self._check(request)
             self._warn_of_silence()
-        answer: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
         endpoint = self._channel.endpoint
         origin = Origin(endpoint.gid, self.stats.calls, self._now_ns())
-        exchange = _Exchange(endpoint.name, answer, servers)
-        calls: list[Call] = []
-        self._answers.add(answer)
+        exchange = Exchange(endpoint.name, servers, self._answers)
         try:
             for requester in reached:
                 exchange.open += 1
-                calls.append(requester.send(request, origin, exchange))
-            return await answer
-        finally:
-            self._answers.discard(answer)
-            if not answer.cancel() and not answer.cancelled():
-                answer.exception()  # looked at, so that asyncio does not report it
-            for call in calls:
-                call.cancel()
+                exchange.calls.append(requester.send(request, origin, exchange))
+        except BaseException:
+            exchange.cancel()
+            raise
+        return exchange
 
     def _servers(self) -> int:
         return sum(requester.servers for requester in self._requesters)
@@ -376,7 +370,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
                 "`await client.wait_for_service()` first"
             )
 
-    def close(self) -> None:
+    def _close(self) -> None:
         """Withdraw the client, and cancel its waits and calls."""
         self._channel.close()
         for answer in list(self._answers):  # first, or it would look as if the servers had gone
@@ -386,43 +380,52 @@ class Client(Entity, Generic[RequestT, ResponseT]):
             requester.close()
 
 
-class _Exchange:
+class Exchange:
     """The client's end of one call: the first answer of any transport counts.
 
     With no server at the beginning there is nobody who could go away, so the call goes on waiting.
+
+    Args:
+        service: Name of the service.
+        servers: How many servers there are.
+        answers: Those that the client waits for; this one is among them until it is there.
+
+    Attributes:
+        answer: The response, or the error in its place. Awaiting it directly, a cancelled task
+            cancels it, too; `asyncio.shield` keeps it.
+        calls: What was sent, through each transport.
+        open: How many of these may still answer.
     """
 
-    def __init__(self, service: str, answer: asyncio.Future[Any], servers: int) -> None:
+    def __init__(self, service: str, servers: int, answers: set[asyncio.Future[Any]]) -> None:
+        self.answer: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
+        self.calls: list[Call] = []
         self.open = 0
         self._service = service
-        self._answer = answer
         self._servers = servers
+        self._answers = answers
+        answers.add(self.answer)
 
     def reply(self, response: Any, origin: Origin) -> None:  # noqa: ARG002  # part of ReplyTo
         """Take a response."""
-        if not self._answer.done():
-            self._answer.set_result(response)
+        if not self.answer.done():
+            self.answer.set_result(response)
 
     def fail(self, error: ServiceError) -> None:
         """Take a server's error."""
-        if not self._answer.done():
-            self._answer.set_exception(error)
+        if not self.answer.done():
+            self.answer.set_exception(error)
 
     def end(self) -> None:
         """Note that no answer will come any more through one transport."""
         self.open -= 1
-        if self.open == 0 and not self._answer.done():
-            self._answer.set_exception(ServiceUnavailableError(self._service))
+        if self.open == 0 and not self.answer.done():
+            self.answer.set_exception(ServiceUnavailableError(self._service))
 
-
-class _Nobody:
-    """What becomes of a call that nobody waits for."""
-
-    def reply(self, response: Any, origin: Origin) -> None:
-        """Drop a response."""
-
-    def fail(self, error: ServiceError) -> None:
-        """Drop an error."""
-
-    def end(self) -> None:
-        """Nothing was expected."""
+    def cancel(self) -> None:
+        """Forget the call; a server that has not begun need not serve it."""
+        self._answers.discard(self.answer)
+        if not self.answer.cancel() and not self.answer.cancelled():
+            self.answer.exception()  # looked at, so that asyncio does not report it
+        for call in self.calls:
+            call.cancel()

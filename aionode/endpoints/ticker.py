@@ -66,9 +66,11 @@ class Ticker:
             nonlocal alarm
             if waiter.done():
                 return
-            if on_ring is not None and self.clock.follows_machine and on_ring():
-                if not waiter.done():  # the call may have woken or cancelled who waits here
-                    alarm = call_at(schedule.next_ns, ring)
+            called = on_ring is not None and self.clock.follows_machine and on_ring()
+            if waiter.done():
+                return  # the call has woken or cancelled who waits here
+            if called:
+                alarm = call_at(schedule.next_ns, ring)
             else:
                 waiter.set_result(None)
 

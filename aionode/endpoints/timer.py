@@ -204,7 +204,7 @@ class Timer(Entity):
             )
         )
 
-    def close(self) -> None:
+    def _close(self) -> None:
         """Stop following the clock."""
         self._ticker.close()
 

@@ -15,11 +15,11 @@ from aionode.endpoints.dispatch import (
     give_way,
     pump,
 )
-from aionode.endpoints.entity import Entity
+from aionode.endpoints.entity import EndStage, Entity
 from aionode.endpoints.inbox import Inbox
 from aionode.endpoints.shortcut import Shortcut
 from aionode.endpoints.stats import CallbackStats, PublisherStats
-from aionode.errors import EntityDestroyedError, QueueFullError
+from aionode.errors import EntityDestroyedError, MessageError, QueueFullError
 from aionode.graph import EndpointKind
 from aionode.message import Message, checker
 from aionode.qos import HistoryPolicy
@@ -85,7 +85,7 @@ class Publisher(Entity, Generic[MsgT]):
         writers: Sequence[Writer],
         time_base: TimeBase,
     ) -> None:
-        super().__init__(f"publisher of {channel.endpoint.name}")
+        super().__init__(f"publisher of {channel.endpoint.name}", EndStage.LAST)
         self.msg_type = msg_type
         self.qos_profile: QoSProfile = channel.endpoint.qos
         self.stats = PublisherStats(writers, channel.matched)
@@ -144,12 +144,16 @@ class Publisher(Entity, Generic[MsgT]):
         stats = self.stats
         origin = Origin(self._gid, stats.published + 1, self._now_ns())
         used = False
-        for writer in self._writers:
-            if writer.active:
-                writer.write(msg, origin)
-                used = True
-        if not used:
-            self._check(msg)
+        try:
+            for writer in self._writers:
+                if writer.active:
+                    writer.write(msg, origin)
+                    used = True
+            if not used:
+                self._check(msg)
+        except MessageError as error:
+            error.add_note(f"published by {self.subject}")
+            raise
         stats.published += 1
 
     def _fitting(self, msg: Any) -> Any:
@@ -178,7 +182,7 @@ class Publisher(Entity, Generic[MsgT]):
         """Wait until at least `count` subscriptions are matched; `asyncio.timeout` limits it."""
         await self._channel.until(lambda: self.get_subscription_count() >= count)
 
-    def close(self) -> None:
+    def _close(self) -> None:
         """Withdraw the publisher."""
         self._channel.close()
         for writer in self._writers:
@@ -377,7 +381,7 @@ class Subscription(Entity, Generic[ItemT]):
             return lambda entered_ns, item: receive(entered_ns, *item)
         return receive
 
-    def close(self) -> None:
+    def _close(self) -> None:
         """Withdraw the subscription; unread messages are kept for a reader only."""
         self._channel.close()
         for announcement in self._announcements:

@@ -145,3 +145,40 @@ async def test_an_error_ends_the_node_of_the_timer() -> None:
     with pytest.raises(ExceptionGroup) as caught:
         await run()
     assert caught.group_contains(ValueError, match="broken")
+
+
+@pytest.mark.parametrize("action", ["cancel", "destroy", "reset", "cancel and fail"])
+async def test_a_sync_callback_may_end_its_own_timer(node: Node, action: str) -> None:
+    """Every one-shot timer does; the alarm that called it must not set what was set already."""
+    problems: list[dict[str, Any]] = []
+    asyncio.get_running_loop().set_exception_handler(lambda _, about: problems.append(about))
+    calls: list[int] = []
+    may_end = asyncio.Event()
+
+    def once() -> None:
+        calls.append(1)
+        if action == "destroy":
+            timer.destroy()
+        elif action == "reset":
+            timer.reset()
+        else:
+            timer.cancel()
+        if len(calls) == 2 or action != "reset":
+            may_end.set()
+        if action == "cancel and fail":
+            raise ValueError("broken")
+
+    timer = node.create_timer(PERIOD_S, once, on_error="log")
+    async with asyncio.timeout(20):
+        await may_end.wait()
+    for _ in range(5):
+        await one_turn()
+
+    assert not problems
+    if action.startswith("cancel"):
+        may_end.clear()
+        timer.reset()
+        async with asyncio.timeout(20):
+            await may_end.wait()
+        assert len(calls) == 2
+    node.destroy_node()

@@ -4,7 +4,8 @@
 ``ended STATUS``; a line with a word on stdin makes it tell ``WORD GOALS RESULTS REQUESTS``, the
 sizes of its tables. ``… client STEPS`` sends one goal of so many steps and tells ``open``,
 ``ready``, ``accepted``, ``feedback N``, ``result STATUS TEXT``, ``error TYPE: TEXT``, and
-``tables GOALS``.
+``tables GOALS``. ``… impatient SECONDS`` calls with a goal that does not end, leaves the call after
+so many seconds, as anyio and web servers do, and ends at once.
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ from __future__ import annotations
 import asyncio
 import sys
 from typing import Any
+
+import anyio
 
 import aionode
 from aionode import CancelResponse, Node, ServerGoalHandle
@@ -99,6 +102,15 @@ async def ask() -> None:
         tell("tables", len(client._goals))
 
 
+async def leave() -> None:
+    """Be a client that does not wait for the end of its goal."""
+    async with Node("asking", enable_rosout=False, start_parameter_services=False) as node:
+        client = node.create_action_client(Fibonacci, "/count")
+        await client.wait_for_server()
+        with anyio.move_on_after(float(sys.argv[2])):
+            await client.call(Fibonacci.Goal(order=100_000))
+
+
 if __name__ == "__main__":
-    aionode.run(serve if sys.argv[1] == "server" else ask)
+    aionode.run({"server": serve, "client": ask, "impatient": leave}[sys.argv[1]])
     tell("stopped")

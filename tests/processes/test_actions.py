@@ -7,6 +7,8 @@ import time  # noqa: TID251  # how long it takes to notice is what is tested
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+import pytest
+
 from tests.processes.process import Process
 
 if TYPE_CHECKING:
@@ -102,3 +104,17 @@ def test_ctrl_c_at_the_client_cancels_its_goal() -> None:
         expect_empty_tables(server)
 
     assert status == 0
+
+
+@pytest.mark.parametrize("link", ["on", "off"])
+def test_a_client_that_leaves_its_call_cancels_its_goal(
+    monkeypatch: pytest.MonkeyPatch, link: str
+) -> None:
+    """The request leaves the process before that ends, over a link as over Zenoh."""
+    monkeypatch.setenv("AIONODE_LINK", link)
+    with Process(PROGRAM, "server") as server:
+        server.expect("open")
+        with Process(PROGRAM, "impatient", "0.5") as client:
+            server.expect("executing")
+            server.expect("ended CANCELED")
+            client.expect("stopped")

@@ -1,0 +1,116 @@
+"""A robot for tests that is stopped: each of its callbacks drives, and stops driving in `finally`.
+
+``python tests/processes/stopping_member.py robot END`` publishes 1.0 on /timer, /thread and /goal
+from a coroutine, a callback in a thread and a goal, and 0.0 when these end; it tells ``driving``
+and ``stopped``. With END ``signal`` it ends with a signal, with ``destroy`` it destroys its node
+when a line comes, with ``leave`` it leaves the node's block then.
+``… reader`` tells ``TOPIC VALUE`` at each change of what it hears.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+import threading
+from typing import Any
+
+import aionode
+from aionode import CancelResponse, Node
+from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.interfaces.std_msgs.msg import Float64
+
+TOPICS = ("/timer", "/thread", "/goal")
+STEP_SEC = 0.02
+
+
+def tell(*words: object) -> None:
+    """Write one line at once."""
+    sys.stdout.write(" ".join(str(word) for word in words) + "\n")
+    sys.stdout.flush()
+
+
+class Robot(Node):
+    """Drives in three ways."""
+
+    def __init__(self) -> None:
+        super().__init__("robot", enable_rosout=False, start_parameter_services=False)
+        self.speeds = {topic: self.create_publisher(Float64, topic, 10) for topic in TOPICS}
+        self.create_timer(0.0, self.drive)
+        self.create_timer(0.0, self.drive_in_thread, offload=True)
+        self.create_action_server(
+            Fibonacci, "/go", self.go, cancel_callback=lambda _goal: CancelResponse.ACCEPT
+        )
+
+    async def follow(self, topic: str) -> None:
+        """Drive until cancelled, and stop, slowly."""
+        publisher = self.speeds[topic]
+        try:
+            while True:
+                publisher.publish(Float64(data=1.0))
+                await self.get_clock().sleep(STEP_SEC)
+        finally:
+            await self.get_clock().sleep(STEP_SEC)
+            publisher.publish(Float64(data=0.0))
+
+    async def drive(self) -> None:
+        """Drive in a coroutine."""
+        await self.follow("/timer")
+
+    def drive_in_thread(self) -> None:
+        """Drive in a thread, which has to look for the end itself."""
+        publisher = self.speeds["/thread"]
+        pause = threading.Event()
+        try:
+            while not self.destroyed:
+                publisher.publish(Float64(data=1.0))
+                pause.wait(STEP_SEC)
+        finally:
+            publisher.publish(Float64(data=0.0))
+
+    async def go(self, _goal: Any) -> Fibonacci.Result:
+        """Drive as a goal."""
+        await self.follow("/goal")
+        return Fibonacci.Result()
+
+
+async def robot(end: str) -> None:
+    """Drive until the end."""
+    lines: asyncio.Queue[str] = asyncio.Queue()
+    asyncio.get_running_loop().add_reader(sys.stdin, lambda: lines.put_nowait(sys.stdin.readline()))
+    async with Robot() as node:
+        client = node.create_action_client(Fibonacci, "/go")
+        await client.wait_for_server()
+        await client.send_goal(Fibonacci.Goal())
+        for publisher in node.speeds.values():
+            await publisher.wait_for_subscribers()
+        tell("driving")
+        await lines.get()
+        if end == "destroy":
+            node.destroy_node()
+            await asyncio.Event().wait()
+
+
+class Reader(Node):
+    """Tells of changes."""
+
+    def __init__(self) -> None:
+        super().__init__("reader", enable_rosout=False, start_parameter_services=False)
+        self.last: dict[str, float] = {}
+        for topic in TOPICS:
+            self.create_subscription(Float64, topic, lambda msg, it=topic: self.hear(it, msg), 100)
+
+    def hear(self, topic: str, msg: Float64) -> None:
+        """Tell what is new."""
+        if self.last.get(topic) != msg.data:
+            self.last[topic] = msg.data
+            tell(topic, msg.data)
+
+
+if __name__ == "__main__":
+    if sys.argv[1] == "reader":
+        aionode.run(Reader, args=[])
+    elif sys.argv[2] == "run":
+        aionode.run(Robot, args=[])
+    else:
+        aionode.run(lambda: robot(sys.argv[2]), args=[])
+    tell("stopped")

@@ -1,0 +1,59 @@
+"""The end of a robot's program: the last command of each callback arrives in another process."""
+
+from __future__ import annotations
+
+import signal
+
+import pytest
+
+from tests.processes.process import Process
+
+PROGRAM = "tests/processes/stopping_member.py"
+TOPICS = ("/timer", "/thread", "/goal")
+
+
+@pytest.mark.parametrize("link", ["on", "off"])
+@pytest.mark.parametrize("end", ["SIGINT", "SIGTERM", "leave"])
+def test_what_callbacks_publish_in_finally_arrives(
+    monkeypatch: pytest.MonkeyPatch, link: str, end: str
+) -> None:
+    """A robot whose program ends must not drive on with its last speed."""
+    monkeypatch.setenv("AIONODE_LINK", link)
+    with Process(PROGRAM, "reader") as reader, Process(PROGRAM, "robot", end) as robot:
+        robot.expect("driving")
+        reader.expect(*(f"{topic} 1.0" for topic in TOPICS))
+
+        if end == "leave":
+            robot.write("leave")
+        else:
+            robot.send(signal.Signals[end])
+
+        reader.expect(*(f"{topic} 0.0" for topic in TOPICS))
+        robot.expect("stopped")
+        assert not [line for _, line in robot.lines if "Error" in line or "Traceback" in line]
+
+
+@pytest.mark.parametrize("link", ["on", "off"])
+def test_a_destroyed_node_lets_its_callbacks_stop_the_robot(
+    monkeypatch: pytest.MonkeyPatch, link: str
+) -> None:
+    """Also while the program goes on."""
+    monkeypatch.setenv("AIONODE_LINK", link)
+    with Process(PROGRAM, "reader") as reader, Process(PROGRAM, "robot", "destroy") as robot:
+        robot.expect("driving")
+        reader.expect(*(f"{topic} 1.0" for topic in TOPICS))
+
+        robot.write("destroy")
+
+        reader.expect(*(f"{topic} 0.0" for topic in TOPICS))
+
+
+def test_ctrl_c_stops_a_robot_that_is_run_by_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    """``aionode.run(Robot)`` ends in the same way."""
+    with Process(PROGRAM, "reader") as reader, Process(PROGRAM, "robot", "run") as robot:
+        reader.expect("/timer 1.0", "/thread 1.0")
+
+        _, status = robot.stop()
+
+        reader.expect("/timer 0.0", "/thread 0.0")
+        assert status == 0
