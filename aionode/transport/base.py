@@ -47,12 +47,14 @@ class Origin(msgspec.Struct, frozen=True, gc=False):
         sequence: The sender's number of the message, from 1 and rising by 1.
         source_ns: When it was sent, in nanoseconds since 1970 by the sender's clock; 0 if unknown.
         remote: Whether it came from another context.
+        arrived_ns: When it arrived, in nanoseconds since 1970, if it was held back since; else 0.
     """
 
     gid: bytes
     sequence: int
     source_ns: int
     remote: bool = False
+    arrived_ns: int = 0
 
 
 class Announcement(ABC):
