@@ -14,7 +14,15 @@ if TYPE_CHECKING:
     from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
     from aionode.parameter import Parameter
 
-__all__ = ["LABELS", "TYPE_WORDS", "description", "descriptor_record", "file_form", "file_text", "plain"]
+__all__ = [
+    "LABELS",
+    "TYPE_WORDS",
+    "description",
+    "descriptor_record",
+    "file_form",
+    "file_text",
+    "plain",
+]
 
 TYPE_WORDS = (
     "not set",
