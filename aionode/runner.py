@@ -18,6 +18,7 @@ from aionode.context import Context
 from aionode.errors import AionodeError
 from aionode.logging import configure, get_logger
 from aionode.node import Node
+from aionode.streams import UnreadWatch, interrupt_main
 
 __all__ = ["Runnable", "run"]
 
@@ -137,11 +138,27 @@ def signals_to(stop: Callable[[], object]) -> Iterator[None]:
         yield
         return
 
+    first: list[int] = []
+    woken: list[int] = []
+
+    def wake() -> None:
+        woken.append(first[0])
+        interrupt_main(signal.Signals(first[0]))
+
+    # What blocks the loop may be a full pipe that nobody reads any more.
+    unread = UnreadWatch(wake)
+
     def on_signal(number: int, _frame: object) -> None:
         signal.signal(number, on_second)
+        if not first:
+            first.append(number)
+            unread.start()
         stop()
 
     def on_second(number: int, _frame: object) -> None:
+        if number in woken:
+            woken.remove(number)
+            return
         signal.signal(number, signal.SIG_DFL)
         os.kill(os.getpid(), number)
 
@@ -150,6 +167,7 @@ def signals_to(stop: Callable[[], object]) -> Iterator[None]:
     try:
         yield
     finally:
+        unread.stop()
         for number, handler in zip(watched, before, strict=True):
             signal.signal(number, handler)
 

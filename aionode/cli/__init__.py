@@ -9,6 +9,7 @@ module                 what is in it
 ====================== =============================================================
 `command`              groups that import late, errors in one line, the main program
 `session`              a node for a command, signals, the exit status
+`ending`               an end at the promised time
 `output`               what a command prints: text for people, ``--json`` for programs
 `options`              options that several commands share
 `completing`           names for the shell to complete
@@ -41,6 +42,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         # Imported here, so that Ctrl-C in the first moment leaves no traceback.
         from aionode.cli import command
 
-        return command.main(argv)
+        status = command.main(argv)
+        if argv is None:  # this is the process's own main program
+            from aionode.cli.ending import leave_if_busy
+
+            leave_if_busy(status)
     except KeyboardInterrupt:
         return 130  # what shells know as ended by Ctrl-C
+    else:
+        return status

@@ -1,24 +1,27 @@
 """The main program: which nouns there are, and what becomes of their errors.
 
-Nothing but click is imported here; the noun that was named is, and nothing else.
+Nothing large but click is imported here; the noun that was named is, and nothing else.
 """
 
 from __future__ import annotations
 
+import errno
 import importlib
-import os
+import io
 import sys
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from aionode.cli.output import unwritable
 from aionode.errors import AionodeError, NameValidationException
+from aionode.streams import discard, open_missing
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["LateGroup", "main", "one_line", "root"]
+__all__ = ["LateGroup", "main", "one_line", "report", "root", "status_of"]
 
 NOUNS = {
     "action": ("aionode.cli.action:action", "Send goals, and see who serves which action."),
@@ -32,6 +35,11 @@ NOUNS = {
     "service": ("aionode.cli.service:service", "List, find and call services."),
     "topic": ("aionode.cli.topic:topic", "List, print, publish and measure topics."),
 }
+
+UNWRITABLE = {
+    getattr(errno, name, errno.EIO) for name in ("ENOSPC", "EDQUOT", "EFBIG", "EIO", "EBADF")
+}
+"""What the system says of a file or terminal that takes nothing more."""
 
 INTERRUPTED = 130
 """The exit status of a program that Ctrl-C ended before it was done, as shells know it."""
@@ -65,7 +73,7 @@ class LateGroup(click.Group):
         try:
             return super().invoke(ctx)
         except BrokenPipeError:
-            silence_stdout()
+            discard(sys.stdout)
             ctx.exit(0)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
@@ -93,11 +101,29 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit status.
 
     Errors are one line on stderr. A reader that goes away, as ``head`` does, ends a command
-    quietly.
+    quietly; a full disk is an error.
 
     Args:
         argv: The arguments without the name of the program; those of the process without it.
     """
+    open_missing()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            # What a terminal or a pipe cannot show is shown as its number, and ends nothing.
+            stream.reconfigure(errors="backslashreplace")
+    status = run(argv)
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        discard(sys.stdout)
+    except OSError as error:
+        discard(sys.stdout)
+        return report(unwritable(error), 1)
+    return status
+
+
+def run(argv: Sequence[str] | None) -> int:
+    """Run the command line, report an error, and return the exit status."""
     try:
         status = root.main(args=argv, prog_name="aionode", standalone_mode=False)
     except click.exceptions.NoArgsIsHelpError as error:
@@ -110,13 +136,28 @@ def main(argv: Sequence[str] | None = None) -> int:
     except (click.Abort, KeyboardInterrupt):
         return INTERRUPTED
     except AionodeError as error:
-        return report(one_line(error), getattr(error, "status", 1))
+        return report(one_line(error), status_of(error))
+    except OSError as error:
+        if error.errno not in UNWRITABLE:
+            raise
+        discard(sys.stdout)
+        return report(unwritable(error), 1)  # by click: help, and scripts of completion
     return status if isinstance(status, int) else 0
 
 
+def status_of(error: AionodeError) -> int:
+    """Return the exit status that an error stands for."""
+    status: int = getattr(error, "status", 1)
+    return status
+
+
 def report(text: str, status: int) -> int:
-    """Print an error and return the exit status."""
-    sys.stderr.write(f"{text}\n")
+    """Print an error, if stderr can be written to, and return the exit status."""
+    try:
+        sys.stderr.write(f"{text}\n")
+        sys.stderr.flush()
+    except OSError:
+        discard(sys.stderr)
     return status
 
 
@@ -134,9 +175,3 @@ def one_line(error: BaseException) -> str:
         where = f", at character {error.invalid_index + 1} ({found!r})" if found else ""
         return f"Invalid {error.name_type} {error.name!r}: {error.error_msg}{where}"
     return "; ".join(line.strip() for line in str(error).splitlines() if line.strip())
-
-
-def silence_stdout() -> None:
-    """Send what is still to come nowhere, so that Python's own flush at the exit does not fail."""
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, sys.stdout.fileno())

@@ -85,7 +85,7 @@ def yaml_text(
     import yaml
 
     base: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)  # libyaml is optional
-    dumper = base
+    dumper: Any = base
     if quoted is not None:
         dumper = type("Quoting", (base,), {})
 

@@ -190,13 +190,13 @@ def test_a_reader_that_goes_away_ends_a_command_quietly(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     """``| head`` is no error."""
-    silenced: list[bool] = []
-    monkeypatch.setattr(command, "silence_stdout", lambda: silenced.append(True))
+    silenced: list[object] = []
+    monkeypatch.setattr(command, "discard", silenced.append)
     failing(BrokenPipeError())
 
     assert main(["interface", "packages"]) == 0
     assert capsys.readouterr().err == ""
-    assert silenced == [True]
+    assert silenced == [sys.stdout]
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
