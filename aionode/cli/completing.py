@@ -17,6 +17,9 @@ __all__ = ["complete_interfaces", "complete_names", "completion"]
 
 Completer = Callable[[click.Context, click.Parameter, str], list[str]]
 
+QUIET_S = 0.3
+"""How long nothing has to come before what is known is offered: somebody waits at a prompt."""
+
 SETUP = """\
 # Put the following into {file}:
 #   {line}
@@ -61,6 +64,8 @@ async def names_now(what: str) -> list[str]:
     from aionode.cli.session import make_node
 
     async with make_node() as node:
+        for transport in node.context.transports:
+            await transport.all_known(QUIET_S)
         return names_of(node, what)
 
 

@@ -31,6 +31,15 @@ CLOSE_S = 0.9
 STOP_S = 3.5
 """How long it may take after a signal: a goal is cancelled meanwhile, which the server answers."""
 
+QUIET_S = 2.0
+"""How long nothing has to come before what is known counts as all there is, in seconds.
+
+Zenoh has been seen to pause for so long between the first of 3000 endpoints and the rest.
+"""
+
+PROGRESS_S = 1.0
+"""How often a command says what it is waiting for, in seconds."""
+
 UNLIMITED_MS = 3_600_000.0
 """How long a command may block its own loop: nothing else runs there, and terminals are slow."""
 
@@ -62,6 +71,7 @@ def run_verb(
     use_sim_time: bool = False,
     endless: bool = False,
     busy: bool = False,
+    asks: bool = True,
 ) -> None:
     """Run `verb` with a node, until it returns or Ctrl-C; then end the command.
 
@@ -72,6 +82,7 @@ def run_verb(
         use_sim_time: Whether the node's time is that of ``/clock``.
         endless: Whether Ctrl-C is the usual end, with status 0, and not an interruption (130).
         busy: Whether many messages are expected, so that the faster loop is worth its import.
+        asks: Whether its answer is made of what is on the network, and all of that is waited for.
 
     Raises:
         click.exceptions.Exit: always, with the status.
@@ -86,6 +97,8 @@ def run_verb(
     async def work() -> int | None:
         async with make_node(node_name=node_name, use_sim_time=use_sim_time) as node:
             try:
+                if asks:
+                    await wait_until_known(node, output)
                 status = await verb(node, output)
             except AionodeError as error:
                 text, status = f"{one_line(error)}\n", status_of(error)
@@ -106,6 +119,24 @@ def run_verb(
     finally:
         deadline.cancel()
     raise click.exceptions.Exit(stopped_status if status is None else status)
+
+
+async def wait_until_known(node: Node, output: Output) -> None:
+    """Wait until all who can be reached have said what there is; say so if it takes long.
+
+    As long as something comes it is waited for. If somebody does not answer, there is a warning
+    that the answer may be incomplete.
+    """
+    transports = node.context.transports
+    asked = asyncio.gather(*(transport.all_known(QUIET_S) for transport in transports))
+    while not (await asyncio.wait((asked,), timeout=PROGRESS_S))[0]:
+        count = len(node.graph.nodes()) + len(node.graph.endpoints())
+        output.warn(f"Waiting for what there is to be known: {count} nodes and endpoints so far")
+    if not all(await asked):
+        output.warn(
+            "WARNING: somebody who can be reached has not said what there is (frozen, overloaded "
+            "or far away?): this may be incomplete"
+        )
 
 
 def run_until_stopped(

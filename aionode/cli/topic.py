@@ -212,6 +212,7 @@ def pub_command(
         use_sim_time=use_sim_time,
         endless=times == 0,
         busy=True,
+        asks=False,
     )
 
 

@@ -253,6 +253,14 @@ class Transport(ABC):
     async def close(self) -> None:
         """Withdraw everything and disconnect, within a second; it can be opened again."""
 
+    async def all_known(self, quiet_s: float) -> bool:  # noqa: ARG002  # here nobody is waited for
+        """Wait until everybody who can be reached has said what there is.
+
+        `open` waits for that as well, but not for long. False when somebody has not, and nothing
+        has come for `quiet_s` seconds. For tools, whose answer is to be complete.
+        """
+        return True
+
     async def links(self) -> Linkage:
         """Return who of the others can be linked, and who is. For tools: everybody is asked."""
         return Linkage(set(), set())

@@ -81,6 +81,10 @@ class LinkTransport(Transport):
         if beacon is not None and own.is_near(beacon):
             self.hub.on_beacon(beacon, present)
 
+    async def all_known(self, quiet_s: float) -> bool:
+        """Wait until everybody who can be reached has said what there is."""
+        return await self.zenoh.all_known(quiet_s)
+
     async def links(self) -> Linkage:
         """Ask everybody who can be linked, and who is."""
         return await self.zenoh.links()
