@@ -5,6 +5,7 @@ Nothing large but click is imported here; the noun that was named is, and nothin
 
 from __future__ import annotations
 
+import difflib
 import errno
 import importlib
 import io
@@ -67,6 +68,22 @@ class LateGroup(click.Group):
         module, _, attribute = self.late[cmd_name][0].partition(":")
         command: click.Command = getattr(importlib.import_module(module), attribute)
         return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Return the command that is meant; one that is not there is answered with a similar one.
+
+        click itself looks only among the commands that are imported.
+        """
+        try:
+            return super().resolve_command(ctx, args)
+        except click.UsageError as error:
+            close = difflib.get_close_matches(args[0], self.list_commands(ctx), 1)
+            if close and args[0] not in self.list_commands(ctx):
+                text = f"No such command '{args[0]}'. Did you mean '{close[0]}'?"
+                raise click.UsageError(text, ctx) from error
+            raise
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command; a reader of its output that has enough ends it quietly."""

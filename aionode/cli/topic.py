@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from aionode.cli import topics
-from aionode.cli.completing import complete_interfaces, complete_names
+from aionode.cli.completing import complete_interfaces, complete_names, complete_types_of
 from aionode.cli.options import (
     hidden_option,
     interfaces_option,
@@ -84,7 +84,7 @@ def find_command(message_type: str, json: bool, **options: Any) -> None:
 
 @topic.command("echo")
 @topic_argument
-@click.argument("message_type", required=False, shell_complete=complete_interfaces("msg"))
+@click.argument("message_type", required=False, shell_complete=complete_types_of("topic", "msg"))
 @qos_options("sensor_data")
 @click.option("--csv", is_flag=True, help="Print all values in one line, separated by commas.")
 @click.option("--field", metavar="PATH", help="Print one field, such as pose.position or name[0].")
@@ -134,7 +134,7 @@ def echo_command(
 
 @topic.command("pub")
 @topic_argument
-@type_argument
+@click.argument("message_type", shell_complete=complete_types_of("topic", "msg"))
 @click.argument("values", required=False)
 @click.option("--stdin", is_flag=True, help="Read the values from standard input.")
 @click.option(
