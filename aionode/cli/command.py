@@ -181,11 +181,27 @@ def report(text: str, status: int) -> int:
 def usage_text(error: click.UsageError) -> str:
     """Return in one line what is wrong with the arguments, and where to read what fits."""
     where = error.ctx.command_path if error.ctx is not None else "aionode"
-    problem = " ".join(error.format_message().split())
+    problem = limited(" ".join(error.format_message().split()))
     return f"{where}: {problem} See '{where} --help'."
 
 
+MOST_CHARACTERS = 1000
+"""How long an error may be: what was given may be of any length."""
+
+
+def limited(text: str) -> str:
+    """Return a text without its middle if it is too long."""
+    if len(text) <= MOST_CHARACTERS:
+        return text
+    return f"{text[: MOST_CHARACTERS // 2]} ... {text[-MOST_CHARACTERS // 2 :]}"
+
+
 def one_line(error: BaseException) -> str:
+    """Return what an error says, in one line, and not too long a one."""
+    return limited(text_of(error))
+
+
+def text_of(error: BaseException) -> str:
     """Return what an error says, in one line."""
     if isinstance(error, NameValidationException):
         found = error.name[error.invalid_index : error.invalid_index + 1]

@@ -167,7 +167,7 @@ def pattern_from(pattern: str | None) -> Callable[[str], bool]:
     """
     try:
         compiled = re.compile(pattern or "")
-    except re.error as error:
+    except (re.error, OverflowError, RecursionError) as error:
         raise CommandError(
             f"--filter {pattern!r}: no regular expression: {error}; one such as 'camera.*' fits"
         ) from error

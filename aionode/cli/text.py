@@ -114,7 +114,7 @@ def csv_line(plain: Any) -> str:
     return str(plain)
 
 
-FIELD_PART = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)((?:\[\d+\])*)")
+FIELD_PART = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)((?:\[[0-9]{1,18}\])*)")
 
 
 def field_of(msg: Message, path: str) -> tuple[Any, FieldType | None]:
