@@ -24,6 +24,7 @@ Where verbs have modules of their own, these are `topics`, `echo`, `pub` and `me
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -43,7 +44,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         from aionode.cli import command
 
         status = command.main(argv)
-        if argv is None:  # this is the process's own main program
+        # As the process's own main program. The threads of nodes that were run are the user's.
+        if argv is None and sys.argv[1:2] != ["run"]:
             from aionode.cli.ending import leave_if_busy
 
             leave_if_busy(status)

@@ -181,6 +181,39 @@ def test_what_a_terminal_cannot_show_is_shown_as_numbers(env: dict[str, str]) ->
     assert (done.returncode, done.stderr) == (0, "")
 
 
+THREADED = """
+import threading
+from aionode import Node
+
+class Threaded(Node):
+    def __init__(self):
+        super().__init__("threaded")
+        self.create_timer(0.01, self.destroy_node)
+        threading.Thread(target=self.finish).start()
+
+    def finish(self):
+        threading.Event().wait(0.5)
+        print("finished")
+"""
+
+
+def test_threads_of_a_node_that_was_run_are_waited_for(env: dict[str, str], tmp_path: Path) -> None:
+    """They are the user's, as in any program of Python."""
+    (tmp_path / "threaded.py").write_text(THREADED)
+
+    done = subprocess.run(
+        [*AIONODE, "run", "threaded.py:Threaded"],
+        env=env | {"PYTHONPATH": str(ROOT)},
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+
+    assert (done.returncode, done.stdout, done.stderr) == (0, "finished\n", "")
+
+
 HANGING_LOOP = """
 import threading
 from aionode.transport.zenoh.link import Entity
