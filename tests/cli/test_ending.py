@@ -22,7 +22,7 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="pipes whose siz
 AIONODE = [sys.executable, "-m", "aionode"]
 ROOT = Path(__file__).parents[2]
 PIPE_BYTES = 4096
-ENDS_S = 10.0
+ENDS_S = 30.0
 """Long for a busy machine, and far from what these commands once took: for ever."""
 
 CHATTERBOX = """
