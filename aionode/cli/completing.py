@@ -26,6 +26,9 @@ Completer = Callable[[click.Context, click.Parameter, str], list[str]]
 QUIET_S = 0.3
 """How long nothing has to come before what is known is offered: somebody waits at a prompt."""
 
+ANSWER_S = 1.0
+"""How long a node may take to say which parameters it has; it takes milliseconds."""
+
 SETUP = """\
 # Put the following into {file}:
 #   {line}
@@ -144,11 +147,14 @@ def complete_parameters(ctx: click.Context, param: click.Parameter, incomplete: 
         return []
 
     async def names(node: Node) -> list[str]:
-        from aionode.cli.parameters import parameters_of
+        from aionode.parameter_client import AsyncParameterClient
 
-        async with parameters_of(node, node_name, QUIET_S, hidden=True) as client:
+        name = node_name if node_name.startswith("/") else f"/{node_name}"
+        client = AsyncParameterClient(node, name)
+        async with asyncio.timeout(ANSWER_S):
+            await client.wait_for_services()
             found: list[str] = (await client.list_parameters()).names
-            return found
+        return found
 
     return beginning(incomplete, sorted(now(names)))
 
@@ -174,7 +180,7 @@ def now(question: Callable[[Node], Awaitable[list[str]]]) -> list[str]:
 
     try:
         return asyncio.run(ask())
-    except (AionodeError, ExceptionGroup):
+    except (AionodeError, ExceptionGroup, TimeoutError):
         return []
 
 
