@@ -21,6 +21,7 @@ from aionode.context import Context
 from aionode.errors import AionodeError, InvalidROSArgsError
 from aionode.logging import configure, get_logger
 from aionode.node import Node
+from aionode.streams import UnreadWatch, interrupt_main
 
 __all__ = ["Runnable", "run"]
 
@@ -208,16 +209,35 @@ def signals_to(stop: Callable[[], object]) -> Iterator[None]:
         yield
         return
 
-    def on_signal(_number: int, _frame: object) -> None:
+    first: list[int] = []
+    woken: list[int] = []
+
+    def wake() -> None:
+        woken.append(first[0])
+        interrupt_main(signal.Signals(first[0]))
+
+    # What blocks the loop may be a full pipe that nobody reads any more.
+    unread = UnreadWatch(wake)
+
+    def on_signal(number: int, _frame: object) -> None:
         for each in watched:
-            signal.signal(each, end_at_once)
+            signal.signal(each, on_second)
+        first.append(number)
+        unread.start()
         stop()
+
+    def on_second(number: int, frame: FrameType | None) -> None:
+        if number in woken:
+            woken.remove(number)
+        else:
+            end_at_once(number, frame)
 
     watched = (signal.SIGINT, signal.SIGTERM)
     before = [signal.signal(number, on_signal) for number in watched]
     try:
         yield
     finally:
+        unread.stop()
         for number, handler in zip(watched, before, strict=True):
             signal.signal(number, handler)
 

@@ -124,13 +124,13 @@ def zenoh_config(settings: Mapping[str, Any]) -> zenoh.Config:
 
 
 @contextmanager
-def raw_session() -> Iterator[zenoh.Session]:
-    """A plain Zenoh session that dials the first meeting port."""
+def raw_session(listen: str = "tcp/127.0.0.1:0") -> Iterator[zenoh.Session]:
+    """A plain Zenoh session that dials the first meeting port, unless it is there itself."""
     port = os.environ["AIONODE_MEETING_PORTS"].split(",")[0]
     config = zenoh_config(
         {
-            "listen/endpoints": ["tcp/127.0.0.1:0"],
-            "connect/endpoints": [f"tcp/127.0.0.1:{port}"],
+            "listen/endpoints": [listen],
+            "connect/endpoints": [] if listen.endswith(port) else [f"tcp/127.0.0.1:{port}"],
             "open/return_conditions/connect_scouted": False,
             "scouting/multicast/enabled": False,
             "timestamping/enabled": True,

@@ -9,6 +9,7 @@ module                 what is in it
 ====================== =============================================================
 `command`              groups that import late, errors in one line, the main program
 `session`              a node for a command, signals, the exit status
+`ending`               an end at the promised time
 `output`               what a command prints: text for people, ``--json`` for programs
 `options`              options that several commands share
 `completing`           names for the shell to complete
@@ -23,6 +24,7 @@ Where verbs have modules of their own, these are `topics`, `echo`, `pub` and `me
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -41,6 +43,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         # Imported here, so that Ctrl-C in the first moment leaves no traceback.
         from aionode.cli import command
 
-        return command.main(argv)
+        status = command.main(argv)
+        # As the process's own main program. The threads of nodes that were run are the user's.
+        if argv is None and sys.argv[1:2] != ["run"]:
+            from aionode.cli.ending import leave_if_busy
+
+            leave_if_busy(status)
     except KeyboardInterrupt:
         return 130  # what shells know as ended by Ctrl-C
+    else:
+        return status

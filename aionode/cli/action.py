@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from aionode.cli import lookup
-from aionode.cli.completing import complete_interfaces, complete_names
+from aionode.cli.completing import complete_interfaces, complete_names, complete_types_of
 from aionode.cli.options import (
     interfaces_option,
     json_option,
@@ -297,7 +297,7 @@ def find_command(action_type: str, json: bool, count: bool) -> None:
 
 @action.command("send_goal")
 @action_argument
-@type_argument
+@click.argument("action_type", shell_complete=complete_types_of("action", "action"))
 @click.argument("values", metavar="[GOAL]", required=False)
 @click.option("--stdin", is_flag=True, help="Read the goal from standard input.")
 @click.option("-f", "--feedback", is_flag=True, help="Print the feedback.")

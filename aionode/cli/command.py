@@ -1,24 +1,28 @@
 """The main program: which nouns there are, and what becomes of their errors.
 
-Nothing but click is imported here; the noun that was named is, and nothing else.
+Nothing large but click is imported here; the noun that was named is, and nothing else.
 """
 
 from __future__ import annotations
 
+import difflib
+import errno
 import importlib
-import os
+import io
 import sys
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from aionode.cli.output import unwritable
 from aionode.errors import AionodeError, NameValidationException
+from aionode.streams import discard, open_missing
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["LateGroup", "main", "one_line", "root"]
+__all__ = ["LateGroup", "main", "one_line", "report", "root", "status_of"]
 
 NOUNS = {
     "action": ("aionode.cli.action:action", "Send goals, and see who serves which action."),
@@ -33,6 +37,11 @@ NOUNS = {
     "service": ("aionode.cli.service:service", "List, find and call services."),
     "topic": ("aionode.cli.topic:topic", "List, print, publish and measure topics."),
 }
+
+UNWRITABLE = {
+    getattr(errno, name, errno.EIO) for name in ("ENOSPC", "EDQUOT", "EFBIG", "EIO", "EBADF")
+}
+"""What the system says of a file or terminal that takes nothing more."""
 
 INTERRUPTED = 130
 """The exit status of a program that Ctrl-C ended before it was done, as shells know it."""
@@ -61,12 +70,28 @@ class LateGroup(click.Group):
         command: click.Command = getattr(importlib.import_module(module), attribute)
         return command
 
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Return the command that is meant; one that is not there is answered with a similar one.
+
+        click itself looks only among the commands that are imported.
+        """
+        try:
+            return super().resolve_command(ctx, args)
+        except click.UsageError as error:
+            close = difflib.get_close_matches(args[0], self.list_commands(ctx), 1)
+            if close and args[0] not in self.list_commands(ctx):
+                text = f"No such command '{args[0]}'. Did you mean '{close[0]}'?"
+                raise click.UsageError(text, ctx) from error
+            raise
+
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command; a reader of its output that has enough ends it quietly."""
         try:
             return super().invoke(ctx)
         except BrokenPipeError:
-            silence_stdout()
+            discard(sys.stdout)
             ctx.exit(0)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
@@ -94,11 +119,29 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit status.
 
     Errors are one line on stderr. A reader that goes away, as ``head`` does, ends a command
-    quietly.
+    quietly; a full disk is an error.
 
     Args:
         argv: The arguments without the name of the program; those of the process without it.
     """
+    open_missing()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            # What a terminal or a pipe cannot show is shown as its number, and ends nothing.
+            stream.reconfigure(errors="backslashreplace")
+    status = run(argv)
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        discard(sys.stdout)
+    except OSError as error:
+        discard(sys.stdout)
+        return report(unwritable(error), 1)
+    return status
+
+
+def run(argv: Sequence[str] | None) -> int:
+    """Run the command line, report an error, and return the exit status."""
     try:
         status = root.main(args=argv, prog_name="aionode", standalone_mode=False)
     except click.exceptions.NoArgsIsHelpError as error:
@@ -111,33 +154,58 @@ def main(argv: Sequence[str] | None = None) -> int:
     except (click.Abort, KeyboardInterrupt):
         return INTERRUPTED
     except AionodeError as error:
-        return report(one_line(error), getattr(error, "status", 1))
+        return report(one_line(error), status_of(error))
+    except OSError as error:
+        if error.errno not in UNWRITABLE:
+            raise
+        discard(sys.stdout)
+        return report(unwritable(error), 1)  # by click: help, and scripts of completion
     return status if isinstance(status, int) else 0
 
 
+def status_of(error: AionodeError) -> int:
+    """Return the exit status that an error stands for."""
+    status: int = getattr(error, "status", 1)
+    return status
+
+
 def report(text: str, status: int) -> int:
-    """Print an error and return the exit status."""
-    sys.stderr.write(f"{text}\n")
+    """Print an error, if stderr can be written to, and return the exit status."""
+    try:
+        sys.stderr.write(f"{text}\n")
+        sys.stderr.flush()
+    except OSError:
+        discard(sys.stderr)
     return status
 
 
 def usage_text(error: click.UsageError) -> str:
     """Return in one line what is wrong with the arguments, and where to read what fits."""
     where = error.ctx.command_path if error.ctx is not None else "aionode"
-    problem = " ".join(error.format_message().split())
+    problem = limited(" ".join(error.format_message().split()))
     return f"{where}: {problem} See '{where} --help'."
 
 
+MOST_CHARACTERS = 1000
+"""How long an error may be: what was given may be of any length."""
+
+
+def limited(text: str) -> str:
+    """Return a text without its middle if it is too long."""
+    if len(text) <= MOST_CHARACTERS:
+        return text
+    return f"{text[: MOST_CHARACTERS // 2]} ... {text[-MOST_CHARACTERS // 2 :]}"
+
+
 def one_line(error: BaseException) -> str:
+    """Return what an error says, in one line, and not too long a one."""
+    return limited(text_of(error))
+
+
+def text_of(error: BaseException) -> str:
     """Return what an error says, in one line."""
     if isinstance(error, NameValidationException):
         found = error.name[error.invalid_index : error.invalid_index + 1]
         where = f", at character {error.invalid_index + 1} ({found!r})" if found else ""
         return f"Invalid {error.name_type} {error.name!r}: {error.error_msg}{where}"
     return "; ".join(line.strip() for line in str(error).splitlines() if line.strip())
-
-
-def silence_stdout() -> None:
-    """Send what is still to come nowhere, so that Python's own flush at the exit does not fail."""
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, sys.stdout.fileno())

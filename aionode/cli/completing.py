@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -13,14 +13,83 @@ from aionode.errors import AionodeError
 if TYPE_CHECKING:
     from aionode.node import Node
 
-__all__ = ["complete_interfaces", "complete_names", "completion"]
+__all__ = [
+    "complete_interfaces",
+    "complete_names",
+    "complete_parameters",
+    "complete_types_of",
+    "completion",
+]
 
 Completer = Callable[[click.Context, click.Parameter, str], list[str]]
+
+QUIET_S = 0.3
+"""How long nothing has to come before what is known is offered: somebody waits at a prompt."""
+
+ANSWER_S = 1.0
+"""How long a node may take to say which parameters it has; it takes milliseconds."""
 
 SETUP = """\
 # Put the following into {file}:
 #   {line}
 """
+BASH = """\
+_aionode_completion() {
+    local IFS=$'\\n' response completion type value
+    response=$(env COMP_WORDS="${COMP_WORDS[*]}" COMP_CWORD=$COMP_CWORD \\
+        _AIONODE_COMPLETE=bash_complete "$1")
+    for completion in $response; do
+        IFS=',' read -r type value <<< "$completion"
+        case $type in
+            dir) COMPREPLY=(); compopt -o dirnames ;;
+            file) COMPREPLY=(); compopt -o default ;;
+            plain)
+                COMPREPLY+=("$value")
+                # The name of a package, which goes on behind its slash.
+                [[ $value == */ ]] && compopt -o nospace ;;
+        esac
+    done
+    return 0
+}
+complete -o nosort -F _aionode_completion aionode
+"""
+ZSH = """\
+#compdef aionode
+_aionode_completion() {
+    local -a response plain unfinished described
+    local type key descr
+    (( ! $+commands[aionode] )) && return 1
+    response=("${(@f)$(env COMP_WORDS="${words[*]}" COMP_CWORD=$((CURRENT-1)) \\
+        _AIONODE_COMPLETE=zsh_complete aionode)}")
+    for type key descr in ${response}; do
+        case $type in
+            dir) _path_files -/ ;;
+            file) _path_files -f ;;
+            plain)
+                if [[ $descr != _ ]]; then
+                    described+=("${key//:/\\\\:}:$descr")
+                elif [[ $key == */ ]]; then
+                    # The name of a package, which goes on behind its slash.
+                    unfinished+=("$key")
+                else
+                    plain+=("$key")
+                fi ;;
+        esac
+    done
+    (( $#described )) && _describe -V unsorted described -U
+    (( $#unfinished )) && compadd -S '' -U -V unsorted -a unfinished
+    (( $#plain )) && compadd -U -V unsorted -a plain
+    return 0
+}
+if [[ $zsh_eval_context[-1] == loadautofunc ]]; then
+    _aionode_completion "$@"
+else
+    compdef _aionode_completion aionode
+fi
+"""
+OWN_SCRIPTS = {"bash": BASH, "zsh": ZSH}
+"""In place of click's, which put a blank behind everything. fish puts none behind a slash."""
+
 SHELLS = {
     "bash": ("~/.bashrc", 'eval "$(aionode completion bash)"'),
     "zsh": ("~/.zshrc", 'eval "$(aionode completion zsh)"'),
@@ -36,10 +105,13 @@ def completion(shell: str) -> None:
 
     from aionode.cli.command import root
 
-    made = get_completion_class(shell)
-    assert made is not None  # noqa: S101  # click knows all of SHELLS
     file, line = SHELLS[shell]
     click.echo(SETUP.format(file=file, line=line), nl=False)
+    if shell in OWN_SCRIPTS:
+        click.echo(OWN_SCRIPTS[shell], nl=False)
+        return
+    made = get_completion_class(shell)
+    assert made is not None  # noqa: S101  # click knows all of SHELLS
     click.echo(made(root, {}, "aionode", "_AIONODE_COMPLETE").source())
 
 
@@ -47,21 +119,74 @@ def complete_names(what: str) -> Completer:
     """Return what completes names on the network: ``node``, ``topic``, ``service``, ``action``."""
 
     def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
-        try:
-            names = asyncio.run(names_now(what))
-        except (AionodeError, ExceptionGroup):
-            return []  # there is no place for an error in the middle of a command line
-        return [name for name in names if name.startswith(incomplete)]
+        return beginning(incomplete, now(lambda node: done(names_of(node, what))))
 
     return complete
 
 
-async def names_now(what: str) -> list[str]:
-    """Return the names of this moment."""
-    from aionode.cli.session import make_node
+def complete_types_of(what: str, kind: str) -> Completer:
+    """Return what completes the type behind the name of a ``topic``, ``service`` or ``action``.
 
-    async with make_node() as node:
-        return names_of(node, what)
+    Those that the name has on the network, or all of a kind (``msg``, ``srv``, ``action``) if it
+    has none, or none begins as what is there already.
+    """
+    any_type = complete_interfaces(kind)
+
+    def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+        name = ctx.params.get(f"{what}_name")
+        known = now(lambda node: done(types_of(node, what, name))) if name else []
+        return beginning(incomplete, known) or any_type(ctx, param, incomplete)
+
+    return complete
+
+
+def complete_parameters(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Complete the names of the parameters of the node that was named before."""
+    node_name = ctx.params.get("node_name")
+    if not node_name:
+        return []
+
+    async def names(node: Node) -> list[str]:
+        from aionode.parameter_client import AsyncParameterClient
+
+        name = node_name if node_name.startswith("/") else f"/{node_name}"
+        client = AsyncParameterClient(node, name)
+        async with asyncio.timeout(ANSWER_S):
+            await client.wait_for_services()
+            found: list[str] = (await client.list_parameters()).names
+        return found
+
+    return beginning(incomplete, sorted(now(names)))
+
+
+def beginning(incomplete: str, names: list[str]) -> list[str]:
+    """Return the names that begin as what is there already."""
+    return [name for name in names if name.startswith(incomplete)]
+
+
+def now(question: Callable[[Node], Awaitable[list[str]]]) -> list[str]:
+    """Return what the network answers at this moment; nothing after an error.
+
+    There is no place for an error in the middle of a command line.
+    """
+
+    async def ask() -> list[str]:
+        from aionode.cli.session import make_node
+
+        async with make_node() as node:
+            for transport in node.context.transports:
+                await transport.all_known(QUIET_S)
+            return await question(node)
+
+    try:
+        return asyncio.run(ask())
+    except (AionodeError, ExceptionGroup, TimeoutError):
+        return []
+
+
+async def done(names: list[str]) -> list[str]:
+    """Return what is known without waiting."""
+    return names
 
 
 def names_of(node: Node, what: str) -> list[str]:
@@ -76,6 +201,19 @@ def names_of(node: Node, what: str) -> list[str]:
     if what == "action":
         return [name for name, _ in node.get_action_names_and_types()]
     return list(lookup.names_and_types(node, *lookup.TOPIC_KINDS))
+
+
+def types_of(node: Node, what: str, name: str) -> list[str]:
+    """Return the types of a name on the network."""
+    from aionode.cli import lookup
+    from aionode.graph import EndpointKind
+
+    if what == "action":
+        known = dict(node.get_action_names_and_types())
+    else:
+        kinds = (EndpointKind.SERVER,) if what == "service" else lookup.TOPIC_KINDS
+        known = lookup.names_and_types(node, *kinds, hidden=True)
+    return known.get(name if name.startswith("/") else f"/{name}", [])
 
 
 def complete_interfaces(kind: str = "") -> Completer:

@@ -108,13 +108,22 @@ class Bandwidth:
         self._messages.append((now_ns, size_bytes))
 
     def rate(self, now_ns: int) -> Rate | None:
-        """Return the rate from the oldest message until now; None with less than two."""
-        if len(self._messages) < 2 or now_ns <= self._messages[0][0]:
+        """Return the rate since the oldest message; None with less than two.
+
+        The oldest one began the time that is counted, so its own bytes are not. The time ends with
+        the newest one, or with `now_ns` as soon as the next one is overdue.
+        """
+        if len(self._messages) < 2:
             return None
         sizes = [size for _, size in self._messages]
+        first_ns, last_ns = self._messages[0][0], self._messages[-1][0]
+        overdue_ns = now_ns - last_ns - (last_ns - first_ns) / (len(sizes) - 1)
+        duration_s = (last_ns - first_ns + max(overdue_ns, 0)) / 1e9
+        if duration_s <= 0:
+            return None
         total = sum(sizes)
-        duration_s = (now_ns - self._messages[0][0]) / 1e9
-        return Rate(total / duration_s, len(sizes), total / len(sizes), min(sizes), max(sizes))
+        speed = (total - sizes[0]) / duration_s
+        return Rate(speed, len(sizes), total / len(sizes), min(sizes), max(sizes))
 
 
 def size_texts(bytes_per_s: float, *sizes: float) -> list[str]:

@@ -111,9 +111,10 @@ def filter_from(text: str | None) -> Callable[[Any], bool]:
         return lambda _: True
     try:
         code = compile(text, "--filter", "eval")
-    except SyntaxError as error:
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        problem = error.msg if isinstance(error, SyntaxError) else type(error).__name__
         raise CommandError(
-            f"--filter {text!r}: no Python expression: {error.msg}; one such as 'm.x > 1' fits"
+            f"--filter {text!r}: no Python expression: {problem}; one such as 'm.x > 1' fits"
         ) from error
 
     def fits(m: Any) -> bool:

@@ -2,6 +2,7 @@
 
 Messages are counted as they arrive, not when there is time to look at them, and none is decoded
 unless its content is asked for. So the figures are right at rates at which printing would not be.
+What comes in the first moments is not counted: connecting delays it.
 """
 
 from __future__ import annotations
@@ -11,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.cli.figures import Bandwidth, Intervals, Spread, Window, size_texts, table_text
 from aionode.cli.follow import Follower, filter_from, wait_for_type
-from aionode.clock import Time
 from aionode.errors import CommandError
 from aionode.message import fields, type_name
 from aionode.qos import qos_profile_sensor_data
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from aionode.cli.output import Output
     from aionode.endpoints.topic import MessageInfo, Subscription
+    from aionode.message import Message
     from aionode.node import Node
 
 __all__ = ["bw", "delay", "hz"]
@@ -29,6 +30,12 @@ DEPTH = 10_000
 """How many messages may wait to be counted: a second of the fastest topics."""
 
 PRINT_PERIOD_S = 1.0
+
+CONNECTING_S = 0.3
+"""How long a new subscription may be given messages late, and then several at once.
+
+Publishers of other processes are found, and go over to a link, meanwhile; it takes 0.1 s.
+"""
 
 QOS = qos_profile_sensor_data.replace(depth=DEPTH)
 
@@ -69,7 +76,9 @@ async def hz(
         if len(names) > 1:
             output.text(f"Subscribed to [{name}]")
         subscriptions.append(
-            follower.follow(msg_type, name, partial(take, name), QOS, raw=filter_text is None)
+            follow_connected(
+                node, follower, msg_type, name, partial(take, name), raw=filter_text is None
+            )
         )
     dropped = Dropped(subscriptions, output)
     shown: dict[str, Spread] = {}
@@ -87,6 +96,26 @@ async def hz(
     else:
         show = partial(print_rate if len(names) == 1 else print_rates, output)
         await every_second(node, follower, partial(look, show))
+
+
+def follow_connected(
+    node: Node,
+    follower: Follower,
+    msg_type: type[Message],
+    name: str,
+    take: Callable[[Any, MessageInfo], None],
+    *,
+    raw: bool,
+) -> Subscription[Any]:
+    """Call `take` with each message that comes when publishers have been connected."""
+    others = len(node.context.transports) > 1  # beside this process itself
+    begins_ns = node.context.time_base.system_ns() + int(CONNECTING_S * 1e9) * others
+
+    def take_connected(msg: Any, info: MessageInfo) -> None:
+        if info["received_timestamp"] >= begins_ns:
+            take(msg, info)
+
+    return follower.follow(msg_type, name, take_connected, QOS, raw=raw)
 
 
 def arrival_ns(node: Node, info: MessageInfo, *, wall_time: bool = True) -> int:
@@ -190,7 +219,7 @@ async def bw(node: Node, topic_name: str, *, output: Output, window: int = 100) 
     def take(data: bytes, info: MessageInfo) -> None:
         bandwidth.arrive(info["received_timestamp"], len(data))
 
-    subscription = follower.follow(msg_type, name, take, QOS, raw=True)
+    subscription = follow_connected(node, follower, msg_type, name, take, raw=True)
     dropped = Dropped([subscription], output)
     output.text(f"Subscribed to [{name}]")
 
@@ -236,10 +265,11 @@ async def delay(node: Node, topic_name: str, *, output: Output, window: int = 10
     follower = Follower(node)
 
     def take(msg: Any, info: MessageInfo) -> None:
-        stamp = Time.from_msg(msg.header.stamp).nanoseconds
-        delays.add(arrival_ns(node, info, wall_time=False) - stamp)
+        # Not as a `Time`, which cannot be before 1970; a stamp on the network can.
+        stamp_ns = msg.header.stamp.sec * 1_000_000_000 + msg.header.stamp.nanosec
+        delays.add(arrival_ns(node, info, wall_time=False) - stamp_ns)
 
-    follower.follow(msg_type, name, take, QOS)
+    follow_connected(node, follower, msg_type, name, take, raw=False)
 
     def show() -> None:
         spread = delays.spread()

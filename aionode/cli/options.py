@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -22,17 +23,21 @@ if TYPE_CHECKING:
     from aionode.qos import QoSProfile
 
 __all__ = [
+    "hertz",
     "hidden_option",
     "interfaces_option",
     "json_option",
     "load_interface_folders",
+    "natural",
     "positive",
     "qos_from",
     "qos_options",
     "ros2_options",
+    "seconds",
     "sim_time_option",
     "stdin_text",
     "timeout_option",
+    "whole",
     "window_option",
 ]
 
@@ -40,8 +45,40 @@ CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 
 json_option = click.option("--json", is_flag=True, help="Print one record per line, as JSON.")
 
-positive = click.FloatRange(min=0, min_open=True)
-"""A number above zero."""
+MOST_SECONDS = 1e9
+"""Thirty years, and few enough for every clock."""
+
+MOST = 2**31 - 1
+"""What fits every length of a queue."""
+
+
+class Number(click.FloatRange):
+    """A range of floats that are numbers: no ``nan``, which is in every range for click."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        """Return the number."""
+        number: float = super().convert(value, param, ctx)
+        if math.isnan(number):
+            self.fail(f"{value!r} is not a number.", param, ctx)
+        return number
+
+
+positive = Number(min=0, min_open=True, max=MOST_SECONDS)
+"""A number of seconds above zero."""
+
+seconds = Number(min=0, max=MOST_SECONDS)
+"""A number of seconds."""
+
+hertz = Number(min=1 / MOST_SECONDS, max=1e9)
+"""A rate whose period every clock has."""
+
+natural = click.IntRange(min=1, max=MOST)
+"""How many, at least one."""
+
+whole = click.IntRange(min=0, max=MOST)
+"""How many, or none."""
 
 timeout_option = click.option(
     "--timeout",
@@ -56,7 +93,7 @@ window_option = click.option(
     "-w",
     "--window",
     metavar="N",
-    type=click.IntRange(min=1),
+    type=natural,
     default=10_000,
     show_default=True,
     help="Number of messages that the figures are made of.",
@@ -137,7 +174,7 @@ def qos_options(preset: str) -> Callable[[CommandT], CommandT]:
             type=short_keys(QoSPresetProfiles),
             help=f"Preset to begin with (default: {preset}).",
         ),
-        click.option("--qos-depth", type=click.IntRange(min=0), help="Length of the queue."),
+        click.option("--qos-depth", type=whole, help="Length of the queue."),
         click.option("--qos-history", type=short_keys(HistoryPolicy)),
         click.option("--qos-reliability", type=short_keys(ReliabilityPolicy)),
         click.option("--qos-durability", type=short_keys(DurabilityPolicy)),

@@ -13,10 +13,13 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 import msgspec
 
+from aionode.errors import CommandError
+from aionode.streams import discard
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["Output"]
+__all__ = ["Output", "unwritable"]
 
 
 class Output:
@@ -69,8 +72,7 @@ class Output:
     def raw(self, text: str) -> None:
         """Print a text for people as it is, without a new line; nothing with ``--json``."""
         if not self.json:
-            self._stdout.write(text)
-            self._stdout.flush()
+            self._print(text)
 
     def progress(self, text: str) -> None:
         """Say what is being waited for: on stdout as ros2 does, on stderr with ``--json``."""
@@ -80,13 +82,25 @@ class Output:
             self._write(text)
 
     def warn(self, text: str) -> None:
-        """Print a line on stderr."""
-        self._stderr.write(f"{text}\n")
-        self._stderr.flush()
+        """Print a line on stderr, if that can be written to: there is no other place for it."""
+        try:
+            self._stderr.write(f"{text}\n")
+            self._stderr.flush()
+        except OSError:
+            discard(self._stderr)
 
     def _write(self, text: str) -> None:
-        self._stdout.write(f"{text}\n")
-        self._stdout.flush()
+        self._print(f"{text}\n")
+
+    def _print(self, text: str) -> None:
+        try:
+            self._stdout.write(text)
+            self._stdout.flush()
+        except BrokenPipeError:  # its reader has enough, and knows it
+            raise
+        except OSError as error:
+            discard(self._stdout)
+            raise CommandError(unwritable(error)) from error
 
     @contextlib.contextmanager
     def waiting(self, text: str) -> Iterator[None]:
@@ -107,6 +121,11 @@ class Output:
 
         with Live(console=Console(file=self._stdout), auto_refresh=False) as live:
             yield lambda table: live.update(table, refresh=True)
+
+
+def unwritable(error: OSError) -> str:
+    """Return what to say when the answer could not be printed."""
+    return f"stdout cannot be written to: {error.strerror}; the answer is incomplete"
 
 
 def with_words(plain: Any) -> Any:

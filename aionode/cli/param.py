@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from aionode.cli import parameters
-from aionode.cli.completing import complete_names
+from aionode.cli.completing import complete_names, complete_parameters
 from aionode.cli.options import json_option, ros2_options, timeout_option
 from aionode.cli.session import run_verb
 
@@ -38,7 +38,7 @@ def run(verb: Callable[..., Awaitable[int | None]], json: bool, **options: Any) 
 
 
 node_argument = click.argument("node_name", shell_complete=complete_names("node"))
-name_argument = click.argument("parameter_name")
+name_argument = click.argument("parameter_name", shell_complete=complete_parameters)
 
 
 @param.command("list")
@@ -85,7 +85,7 @@ def delete_command(json: bool, **options: Any) -> None:
 
 @param.command("describe")
 @node_argument
-@click.argument("parameter_names", nargs=-1, required=True)
+@click.argument("parameter_names", nargs=-1, required=True, shell_complete=complete_parameters)
 @node_options
 def describe_command(json: bool, **options: Any) -> None:
     """Print type, description and constraints of parameters."""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from aionode.cli.node import absolute
+from aionode.cli.text import yaml_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -12,7 +14,15 @@ if TYPE_CHECKING:
     from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
     from aionode.parameter import Parameter
 
-__all__ = ["LABELS", "TYPE_WORDS", "description", "descriptor_record", "file_form", "plain"]
+__all__ = [
+    "LABELS",
+    "TYPE_WORDS",
+    "description",
+    "descriptor_record",
+    "file_form",
+    "file_text",
+    "plain",
+]
 
 TYPE_WORDS = (
     "not set",
@@ -43,7 +53,7 @@ LABELS = (
 def plain(parameter: Parameter) -> Any:
     """Return a value for people and YAML: bytes as numbers."""
     value = parameter.value
-    if isinstance(value, list | tuple):
+    if isinstance(value, list | tuple | bytes):
         return [item[0] if isinstance(item, bytes) else item for item in value]
     return value
 
@@ -91,9 +101,20 @@ def descriptor_record(node_name: str, descriptor: ParameterDescriptor) -> dict[s
 def file_form(parameters: Iterable[Parameter]) -> dict[str, Any]:
     """Return parameters as a parameter file holds them: sorted, nested where names have dots."""
     values: dict[str, Any] = {}
-    for parameter in parameters:
+    # Of `a` and `a.b` the first comes first, and keeps the second one's name in one piece.
+    for parameter in sorted(parameters, key=attrgetter("name")):
         insert(values, parameter.name, plain(parameter))
     return ordered(values)
+
+
+def file_text(record: dict[str, Any]) -> str:
+    """Return what is in a parameter file as its text: strings are strings by its own rules, too.
+
+    Those differ from YAML's: ``INF`` is a number, for example.
+    """
+    from aionode.arguments.parameter_yaml import parse_scalar
+
+    return yaml_text(record, quoted=lambda text: parse_scalar(text) != text)
 
 
 def insert(values: dict[str, Any], name: str, value: Any) -> None:

@@ -15,9 +15,9 @@ from aionode.cli.parameter_text import (
     description,
     descriptor_record,
     file_form,
+    file_text,
     plain,
 )
-from aionode.cli.text import yaml_text
 from aionode.errors import AionodeError, CommandError, ParameterFileError
 from aionode.graph import EndpointKind
 
@@ -167,7 +167,7 @@ def pattern_from(pattern: str | None) -> Callable[[str], bool]:
     """
     try:
         compiled = re.compile(pattern or "")
-    except re.error as error:
+    except (re.error, OverflowError, RecursionError) as error:
         raise CommandError(
             f"--filter {pattern!r}: no regular expression: {error}; one such as 'camera.*' fits"
         ) from error
@@ -332,7 +332,7 @@ async def dump(
         names = sorted((await client.list_parameters()).names)
         found = await get_all(client, names)
     record = {absolute(node_name): {"ros__parameters": file_form(found)}}
-    output.item(yaml_text(record), record)
+    output.item(file_text(record), record)
 
 
 async def get_all(client: AsyncParameterClient, names: list[str]) -> list[Parameter]:
@@ -361,7 +361,6 @@ async def load(
         ParameterFileError: the file cannot be read.
     """
     from aionode.arguments import matching_parameters, read_parameter_file
-    from aionode.parameter import Parameter
 
     name = absolute(node_name)
     rules = read_parameter_file(parameter_file)
@@ -370,9 +369,17 @@ async def load(
     if not values:
         given = ", ".join(dict.fromkeys(rule.node for rule in rules)) or "nothing"
         raise ParameterFileError(str(parameter_file), 0, f"nothing for {name}; it has {given}")
-    parameters = [Parameter(key, value=value) for key, value in values.items()]
     async with parameters_of(node, name, timeout, hidden=hidden) as client:
+        declared = (await client.list_parameters()).names
+        present = await get_all(client, [key for key in values if key in declared])
+        before = {one.name: one for one in present}
+        parameters = [like(before.get(key), key, value) for key, value in values.items()]
         results = await client.set_parameters(parameters)
+    for one, result in zip(parameters, results, strict=True):
+        # What `dump` writes has read-only parameters too, and loading it changes none of them.
+        if not result.successful and before.get(one.name) == one:
+            result.successful = True
+            result.reason = "it has this value already"
     return max(
         say_result(
             output,
@@ -381,4 +388,26 @@ async def load(
             {"node": name, "name": one.name},
         )
         for one, result in zip(parameters, results, strict=True)
+    )
+
+
+def like(before: Parameter | None, name: str, value: Any) -> Parameter:
+    """Return a parameter with a value of a file, in the type that it has now where YAML has none.
+
+    That is so for bytes, which a file has as integers, and for an empty list.
+    """
+    from aionode.parameter import Parameter, ParameterType
+
+    type_ = None if before is None else before.type_
+    if value == [] and type_ is not None and type_.name.endswith("_ARRAY"):
+        return Parameter(name, type_, value)
+    if type_ is ParameterType.BYTE_ARRAY and is_bytes(value):
+        return Parameter(name, type_, [bytes([each]) for each in value])
+    return Parameter(name, value=value)
+
+
+def is_bytes(value: Any) -> bool:
+    """Whether a value is a list of numbers that fit bytes."""
+    return isinstance(value, list) and all(
+        isinstance(each, int) and not isinstance(each, bool) and 0 <= each < 256 for each in value
     )

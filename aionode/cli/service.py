@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from aionode.cli import lookup
-from aionode.cli.completing import complete_interfaces, complete_names
+from aionode.cli.completing import complete_interfaces, complete_names, complete_types_of
 from aionode.cli.options import (
+    hertz,
     hidden_option,
     interfaces_option,
     json_option,
@@ -220,10 +221,10 @@ def find_command(service_type: str, json: bool, **options: Any) -> None:
 
 @service.command("call")
 @service_argument
-@click.argument("service_type", shell_complete=complete_interfaces("srv"))
+@click.argument("service_type", shell_complete=complete_types_of("service", "srv"))
 @click.argument("values", required=False)
 @click.option("--stdin", is_flag=True, help="Read the values from standard input.")
-@click.option("-r", "--rate", metavar="N", type=positive, help="Call again and again, in Hz.")
+@click.option("-r", "--rate", metavar="N", type=hertz, help="Call again and again, in Hz.")
 @click.option("--timeout", metavar="N", type=positive, help="Wait no longer than N seconds.")
 @json_option
 @interfaces_option

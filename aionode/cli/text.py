@@ -11,6 +11,8 @@ from aionode.message import Message, fields, type_name
 from aionode.qos import HistoryPolicy
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from aionode.graph import EndpointInfo
     from aionode.message import FieldType
 
@@ -76,13 +78,25 @@ def described(values: Any, type_: FieldType) -> str:
     return f"<sequence type: {name}{bound}, length: {len(values)}>"
 
 
-def yaml_text(plain: object, *, flow_style: bool = False) -> str:
-    """Return plain values as YAML."""
+def yaml_text(
+    plain: object, *, flow_style: bool = False, quoted: Callable[[str], bool] | None = None
+) -> str:
+    """Return plain values as YAML; strings that YAML or `quoted` takes for no string in quotes."""
     import yaml
 
+    base: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)  # libyaml is optional
+    dumper: Any = base
+    if quoted is not None:
+        dumper = type("Quoting", (base,), {})
+
+        def represent(to: Any, text: str) -> Any:
+            style = "'" if quoted(text) else None
+            return to.represent_scalar("tag:yaml.org,2002:str", text, style)
+
+        dumper.add_representer(str, represent)
     text: str = yaml.dump(
         plain,
-        Dumper=getattr(yaml, "CSafeDumper", yaml.SafeDumper),  # libyaml is optional
+        Dumper=dumper,
         allow_unicode=True,
         default_flow_style=flow_style,
         sort_keys=False,
@@ -100,7 +114,7 @@ def csv_line(plain: Any) -> str:
     return str(plain)
 
 
-FIELD_PART = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)((?:\[\d+\])*)")
+FIELD_PART = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)((?:\[[0-9]{1,18}\])*)")
 
 
 def field_of(msg: Message, path: str) -> tuple[Any, FieldType | None]:

@@ -8,17 +8,21 @@ from typing import Any
 import click
 
 from aionode.cli import topics
-from aionode.cli.completing import complete_interfaces, complete_names
+from aionode.cli.completing import complete_interfaces, complete_names, complete_types_of
 from aionode.cli.options import (
+    hertz,
     hidden_option,
     interfaces_option,
     json_option,
+    natural,
     positive,
     qos_from,
     qos_options,
     ros2_options,
+    seconds,
     sim_time_option,
     stdin_text,
+    whole,
     window_option,
 )
 from aionode.cli.session import run_verb
@@ -84,7 +88,7 @@ def find_command(message_type: str, json: bool, **options: Any) -> None:
 
 @topic.command("echo")
 @topic_argument
-@click.argument("message_type", required=False, shell_complete=complete_interfaces("msg"))
+@click.argument("message_type", required=False, shell_complete=complete_types_of("topic", "msg"))
 @qos_options("sensor_data")
 @click.option("--csv", is_flag=True, help="Print all values in one line, separated by commas.")
 @click.option("--field", metavar="PATH", help="Print one field, such as pose.position or name[0].")
@@ -93,7 +97,7 @@ def find_command(message_type: str, json: bool, **options: Any) -> None:
     "-l",
     "--truncate-length",
     metavar="N",
-    type=click.IntRange(min=0),
+    type=whole,
     default=128,
     show_default=True,
     help="Print arrays and strings up to this length.",
@@ -134,23 +138,23 @@ def echo_command(
 
 @topic.command("pub")
 @topic_argument
-@type_argument
+@click.argument("message_type", shell_complete=complete_types_of("topic", "msg"))
 @click.argument("values", required=False)
 @click.option("--stdin", is_flag=True, help="Read the values from standard input.")
 @click.option(
-    "-r", "--rate", metavar="N", type=positive, default=1.0, show_default=True, help="In Hz."
+    "-r", "--rate", metavar="N", type=hertz, default=1.0, show_default=True, help="In Hz."
 )
 @click.option(
-    "-p", "--print", "print_nth", metavar="N", type=click.IntRange(min=0), default=1,
+    "-p", "--print", "print_nth", metavar="N", type=whole, default=1,
     help="Print only every N-th message.",
 )  # fmt: skip
 @click.option("-1", "--once", is_flag=True, help="Publish one message and end.")
 @click.option(
-    "-t", "--times", metavar="N", type=click.IntRange(min=0), default=0,
+    "-t", "--times", metavar="N", type=whole, default=0,
     help="Publish N messages and end.",
 )  # fmt: skip
 @click.option(
-    "-w", "--wait-matching-subscriptions", "wait_for", metavar="N", type=click.IntRange(min=0),
+    "-w", "--wait-matching-subscriptions", "wait_for", metavar="N", type=whole,
     help="Wait for N subscriptions first (default: 1 with --once or --times, else 0).",
 )  # fmt: skip
 @click.option(
@@ -158,7 +162,7 @@ def echo_command(
     help="Wait for subscriptions no longer than N seconds.",
 )  # fmt: skip
 @click.option(
-    "--keep-alive", "keep_alive_s", metavar="N", type=click.FloatRange(min=0), default=0.1,
+    "--keep-alive", "keep_alive_s", metavar="N", type=seconds, default=0.1,
     show_default=True, help="Stay for N seconds after the last message.",
 )  # fmt: skip
 @click.option("-n", "--node-name", help="Name of the node that publishes (default: a hidden one).")
@@ -212,6 +216,7 @@ def pub_command(
         use_sim_time=use_sim_time,
         endless=times == 0,
         busy=True,
+        asks=False,
     )
 
 
@@ -237,7 +242,7 @@ def hz_command(
 @topic.command("bw")
 @topic_argument
 @click.option(
-    "-w", "--window", metavar="N", type=click.IntRange(min=1), default=100, show_default=True,
+    "-w", "--window", metavar="N", type=natural, default=100, show_default=True,
     help="Number of messages that the figures are made of.",
 )  # fmt: skip
 @json_option

@@ -35,7 +35,7 @@ async def list_topics(
         name: {kind: len(lookup.endpoints(node, kind, name=name)) for kind in lookup.TOPIC_KINDS}
         for name in found
     }
-    if verbose and not output.json and found:
+    if verbose and not output.json:
         output.text(verbose_text("Published", "publisher", EndpointKind.PUBLISHER, found, numbers))
         output.text(
             verbose_text("Subscribed", "subscriber", EndpointKind.SUBSCRIPTION, found, numbers)

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Filler", "message_from_yaml"]
 
+DEEPEST = 100
+"""So many values may lie in each other."""
+
 HEADER = "std_msgs/msg/Header"
 TIME = "builtin_interfaces/msg/Time"
 
@@ -27,10 +30,14 @@ def plain_values(text: str, what: str) -> dict[str, Any]:
     import yaml
 
     try:
-        loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-        documents = [
-            each for each in yaml.load_all(text, loader) if each is not None
-        ]  # both are safe
+        expect_shallow(text, what)
+        documents = [each for each in yaml.load_all(text, loader()) if each is not None]
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        # Of PyYAML's constructors and of Python: `!!int` with nothing behind it, a number of too
+        # many digits, half a character.
+        raise CommandError(
+            f"The passed value is no YAML: {shortened(text)}: {error}; {what} fits"
+        ) from error
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         where = "" if mark is None else f" at line {mark.line + 1}, column {mark.column + 1}"
@@ -52,6 +59,38 @@ def plain_values(text: str, what: str) -> dict[str, Any]:
             f"{shortened(text)} is a {type(values).__name__}; {what} fits"
         )
     return values
+
+
+def expect_shallow(text: str, what: str) -> None:
+    """Raise CommandError if values lie deeper in each other than those of any message.
+
+    libyaml calls itself for each of them, and ends the process at some ten thousand.
+    """
+    import yaml
+
+    if sum(map(text.count, "[{-?")) <= DEEPEST:
+        return
+    depth = 0
+    for event in yaml.parse(text, loader()):
+        depth += isinstance(event, yaml.CollectionStartEvent)
+        depth -= isinstance(event, yaml.CollectionEndEvent)
+        if depth > DEEPEST:
+            raise CommandError(
+                f"The passed value is too deep: {shortened(text)} has more than {DEEPEST} brackets "
+                f"in each other; {what} fits"
+            )
+
+
+def loader() -> Any:
+    """Return PyYAML's safe loader, except that dates are strings: no field of ROS holds a date."""
+    import yaml
+
+    base = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml is optional
+    resolvers = {
+        first: [(tag, regexp) for tag, regexp in each if not tag.endswith(":timestamp")]
+        for first, each in base.yaml_implicit_resolvers.items()
+    }
+    return type("Loader", (base,), {"yaml_implicit_resolvers": resolvers})
 
 
 def shortened(text: str) -> str:

@@ -359,7 +359,7 @@ class Subscription(Entity, Generic[ItemT]):
         self._reception_sequence += 1
         return MessageInfo(
             source_timestamp=origin.source_ns,
-            received_timestamp=self._now_ns(),
+            received_timestamp=origin.arrived_ns or self._now_ns(),
             publication_sequence_number=origin.sequence,
             reception_sequence_number=self._reception_sequence,
             publisher_gid=origin.gid,

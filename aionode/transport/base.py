@@ -47,12 +47,14 @@ class Origin(msgspec.Struct, frozen=True, gc=False):
         sequence: The sender's number of the message, from 1 and rising by 1.
         source_ns: When it was sent, in nanoseconds since 1970 by the sender's clock; 0 if unknown.
         remote: Whether it came from another context.
+        arrived_ns: When it arrived, in nanoseconds since 1970, if it was held back since; else 0.
     """
 
     gid: bytes
     sequence: int
     source_ns: int
     remote: bool = False
+    arrived_ns: int = 0
 
 
 class Announcement(ABC):
@@ -250,6 +252,14 @@ class Transport(ABC):
     @abstractmethod
     async def close(self) -> None:
         """Withdraw everything and disconnect, within a second; it can be opened again."""
+
+    async def all_known(self, quiet_s: float) -> bool:  # noqa: ARG002  # here nobody is waited for
+        """Wait until everybody who can be reached has said what there is.
+
+        `open` waits for that as well, but not for long. False when somebody has not, and nothing
+        has come for `quiet_s` seconds. For tools, whose answer is to be complete.
+        """
+        return True
 
     async def links(self) -> Linkage:
         """Return who of the others can be linked, and who is. For tools: everybody is asked."""

@@ -159,6 +159,16 @@ def test_an_error_is_one_line_on_stderr(
     assert capsys.readouterr() == ("", f"{line}\n")
 
 
+def test_a_noun_that_is_not_there_is_answered_with_a_similar_one(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """As options and verbs are; nouns are imported late, and click does not know them."""
+    assert main(["topc", "list"]) == 2
+    assert capsys.readouterr().err == (
+        "aionode: No such command 'topc'. Did you mean 'topic'? See 'aionode --help'.\n"
+    )
+
+
 def test_an_index_behind_the_end_is_left_out() -> None:
     """An empty name has no character at fault."""
     text = one_line(InvalidTopicNameException("", "must not be empty", 0))
@@ -190,13 +200,13 @@ def test_a_reader_that_goes_away_ends_a_command_quietly(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     """``| head`` is no error."""
-    silenced: list[bool] = []
-    monkeypatch.setattr(command, "silence_stdout", lambda: silenced.append(True))
+    silenced: list[object] = []
+    monkeypatch.setattr(command, "discard", silenced.append)
     failing(BrokenPipeError())
 
     assert main(["interface", "packages"]) == 0
     assert capsys.readouterr().err == ""
-    assert silenced == [True]
+    assert silenced == [sys.stdout]
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

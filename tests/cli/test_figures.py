@@ -51,6 +51,31 @@ def test_one_message_makes_no_bandwidth() -> None:
     assert bandwidth.rate(1_000_000_000) is None
 
 
+@pytest.mark.parametrize("late_s", [0.0, 0.01, 0.019])
+def test_the_bandwidth_is_exact_from_the_second_message_on(late_s: float) -> None:
+    """The bytes of the first one came before the time that is counted: 5 of 4.8 MB/s otherwise."""
+    bandwidth = Bandwidth(100)
+    for number in range(3):
+        bandwidth.arrive(number * 20_000_000, 1_000)
+
+    rate = bandwidth.rate(40_000_000 + int(late_s * 1e9))
+
+    assert rate is not None
+    assert rate.bytes_per_s == 50_000
+
+
+def test_the_bandwidth_falls_when_nothing_comes_any_more() -> None:
+    """The time goes on as soon as the next message is overdue."""
+    bandwidth = Bandwidth(100)
+    for number in range(3):
+        bandwidth.arrive(number * 20_000_000, 1_000)
+
+    rate = bandwidth.rate(100_000_000)
+
+    assert rate is not None
+    assert rate.bytes_per_s == pytest.approx(25_000)
+
+
 @pytest.mark.parametrize(
     ("bytes_per_s", "texts"),
     [

@@ -16,7 +16,8 @@ from aionode.interfaces.builtin_interfaces.msg import Time as TimeMsg
 from aionode.interfaces.geometry_msgs.msg import TwistStamped
 from aionode.interfaces.rosgraph_msgs.msg import Clock
 from aionode.interfaces.std_msgs.msg import Header, String
-from aionode.testing import ManualClock, settle
+from aionode.testing import FaultyTransport, ManualClock, settle
+from aionode.transport.local import LocalTransport
 
 
 @pytest.fixture
@@ -148,7 +149,7 @@ async def test_bw_prints_bytes_per_second_and_sizes(
 
     assert screen.text == (
         "Subscribed to [/chatter]\n"
-        "118 B/s from 5 messages\n"
+        "100 B/s from 5 messages\n"
         "\tMessage size mean: 20 B min: 20 B max: 20 B\n"
     )
 
@@ -178,6 +179,45 @@ async def test_delay_prints_the_age_by_the_header(
     assert screen.text == (
         "average delay: 0.500\n\tmin: 0.500s max: 0.500s std dev: 0.00000s window: 3\n"
     )
+
+
+async def test_what_comes_while_publishers_are_connected_is_not_counted(
+    node_factory: Callable[..., Node], manual_clock: ManualClock, running: Any, screen: Any
+) -> None:
+    """Connecting to another process delays messages, which then come at once: 39 Hz of 30."""
+    network = FaultyTransport(LocalTransport(), drop=1.0)
+    context = Context(transport=[LocalTransport(), network], clock=manual_clock)
+    tool = node_factory("tool", context=context)
+    publisher = node_factory("burst", context=context).create_publisher(String, "/burst", 10)
+
+    async with running(hz(tool, ["/burst"], output=screen.json_output)):
+        for wait_s in (0.1, 0.15, 0.0, 0.0, 0.1, 0.2, 0.2):
+            await manual_clock.advance(wait_s)
+            publisher.publish(String())
+        await manual_clock.advance(0.5)
+
+    assert [record["rate_hz"] for record in screen.records] == [pytest.approx(5.0)]
+
+
+@pytest.mark.parametrize("stamp", [TimeMsg(sec=-1), TimeMsg(nanosec=4_000_000_000)])
+async def test_a_stamp_that_is_no_time_is_a_delay_nevertheless(
+    running: Any,
+    tool: Node,
+    node_factory: Callable[..., Node],
+    manual_clock: ManualClock,
+    screen: Any,
+    stamp: TimeMsg,
+) -> None:
+    """Whatever a driver writes into its header, the command says how far off it is."""
+    publisher = node_factory("camera").create_publisher(TwistStamped, "/stamped", 10)
+
+    async with running(delay(tool, "/stamped", output=screen.json_output)):
+        now_ns = tool.get_clock().now().nanoseconds
+        publisher.publish(TwistStamped(header=Header(stamp=stamp)))
+        await manual_clock.advance(1.05)
+
+    expected_s = now_ns / 1e9 - stamp.sec - stamp.nanosec / 1e9
+    assert screen.records[0]["delay_s"] == pytest.approx(expected_s)
 
 
 async def test_delay_needs_a_header(tool: Node, talker: Node, screen: Any) -> None:

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from aionode import Node
+from aionode import Node, Parameter
+from aionode.arguments import matching_parameters, read_parameter_file
+from aionode.cli.parameter_text import file_form, file_text
 from aionode.cli.parameters import (
     delete,
     describe,
     dump,
     get,
+    like,
     list_parameters,
     load,
     set_parameter,
@@ -236,6 +242,70 @@ async def test_what_dump_prints_load_reads(
     owner.set_parameters([type(owner.get_parameter("name"))("name", value="bob")])
     await load(tool, "/param_node", file, wildcards=False, output=screen.output)
     assert owner.get_parameter("name").value == "bob"
+
+
+async def test_a_dump_is_loaded_as_it_is(
+    tool: Node, owner: Node, tmp_path: Path, screen: Any
+) -> None:
+    """Read-only parameters are in it, and the types that YAML does not have."""
+    file = tmp_path / "values.yaml"
+    values = {
+        "data": b"\x01\xff",
+        "no_data": b"",
+        "camera.frame": "front",
+        "camera.gain.red": 1e30,
+        "texts": ["1", "true", "a\nb", "~"],
+        "no_texts": [],
+    }
+    for name, value in values.items():
+        type_ = Parameter.Type.STRING_ARRAY if value == [] else None
+        owner.declare_parameter(name, type_ or value)
+    owner.set_parameters([Parameter("no_texts", Parameter.Type.STRING_ARRAY, [])])
+    before = file_form(owner.get_parameters(list(values)))
+    await dump(tool, "/param_node", output=screen.output)
+    file.write_text(screen.text)
+
+    status = await load(tool, "/param_node", file, output=screen.output)
+
+    assert screen.errors == ""
+    assert status == 0
+    assert "start_type_description_service successful: it has this value already" in screen.text
+    assert file_form(owner.get_parameters(list(values))) == before
+
+
+PLAIN = (
+    st.booleans()
+    | st.integers(-(2**63), 2**63 - 1)
+    | st.floats(allow_nan=False)
+    | st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"))
+)
+VALUES = (
+    PLAIN
+    | st.binary(max_size=5)
+    | st.lists(st.booleans(), max_size=3)
+    | st.lists(st.integers(-(2**63), 2**63 - 1), min_size=1, max_size=3)
+    | st.lists(st.floats(allow_nan=False), min_size=1, max_size=3)
+    | st.lists(st.text(st.characters(exclude_categories=["Cs"])), min_size=1, max_size=3)
+)
+NAMES = st.from_regex(r"[a-z][a-z_0-9]{0,3}(\.[a-z][a-z_0-9]{0,3}){0,2}", fullmatch=True)
+
+
+@given(st.dictionaries(NAMES, VALUES, max_size=5))
+def test_every_value_goes_through_a_parameter_file(values: dict[str, Any]) -> None:
+    """What `dump` writes means the same when `load` reads it, whatever it looks like."""
+    before = {name: Parameter(name, value=value) for name, value in values.items()}
+    text = file_text({"/node": {"ros__parameters": file_form(before.values())}})
+
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "values.yaml"
+        file.write_text(text)
+        found = matching_parameters(read_parameter_file(file), "/node")
+
+    after = [like(before[name], name, value) for name, value in found.items()]
+    assert [one.to_parameter_msg() for one in after] == [
+        before[one.name].to_parameter_msg() for one in after
+    ]
+    assert len(after) == len(before)
 
 
 async def test_load_says_what_failed(tool: Node, owner: Node, tmp_path: Path, screen: Any) -> None:

@@ -270,13 +270,32 @@ def test_a_domain_that_cannot_be_is_said(terminals: Terminals) -> None:
 # The shell and other programs
 
 
-def test_the_shell_is_offered_names_on_the_network(terminals: Terminals) -> None:
-    """Topics, nodes and services of this moment."""
+@pytest.mark.parametrize(
+    ("words", "offered"),
+    [
+        (["topic", "info", "/ch"], ["/chatter"]),
+        (["topic", "pub", "/chatter", ""], ["std_msgs/msg/String"]),
+        (["topic", "echo", "/chatter", "std_s"], ["std_srvs/"]),
+        (["topic", "pub", "/nobody", "std_m"], ["std_msgs/"]),
+        (["service", "call", "/add_two_ints", ""], [ADD]),
+        (["action", "send_goal", "/fibonacci", "ex"], [FIBONACCI]),
+        (["param", "get", "/param_node", "s"], ["speed", "start_type_description_service"]),
+        (["param", "describe", "param_node", "name", "sp"], ["speed"]),
+        (["param", "get", "/nobody", ""], []),
+    ],
+)
+def test_the_shell_is_offered_what_is_on_the_network(
+    words: list[str], offered: list[str], terminals: Terminals
+) -> None:
+    """Names of this moment; and behind a name its types, or its parameters."""
     done = terminals.run(
-        _AIONODE_COMPLETE="bash_complete", COMP_WORDS="aionode topic info /ch", COMP_CWORD="3"
+        _AIONODE_COMPLETE="bash_complete",
+        COMP_WORDS="\n".join(["aionode", *words]),
+        COMP_CWORD=str(len(words)),
     )
 
-    assert done.stdout == "plain,/chatter\n"
+    assert done.stdout.split() == [f"plain,{name}" for name in offered]
+    assert done.stderr == ""
 
 
 def test_programs_get_one_record_for_each_line(terminals: Terminals) -> None:

@@ -221,10 +221,9 @@ class Hub:
                         writer.update()
             self._consider(participant, endpoint)
             return
-        for other in {
-            e.node.participant for e in self.remote(endpoint.kind.opposite, endpoint.name)
-        }:
-            self._consider(other)
+        theirs = self.remote(endpoint.kind.opposite, endpoint.name)
+        for one in {each.node.participant: each for each in theirs}.values():
+            self._consider(one.node.participant, one)
 
     def _consider(self, participant: str, endpoint: EndpointInfo | None = None) -> None:
         """Dial a context that has something for us, or meet what is new there."""
@@ -236,14 +235,16 @@ class Hub:
         elif (
             self.participant < participant
             and participant not in self._barred
-            and self._has_matches(participant)
+            and self._has_matches(participant, endpoint)
         ):
             self._dial(participant)
 
-    def _has_matches(self, participant: str) -> bool:
+    def _has_matches(self, participant: str, endpoint: EndpointInfo | None) -> bool:
+        """Whether a context, or what is new there, has something for us."""
         if self._graph is None:
             return False
-        for theirs in self._graph.endpoints():
+        # Of each new one only itself is looked at: all of them each time is a square.
+        for theirs in self._graph.endpoints() if endpoint is None else (endpoint,):
             if theirs.node.participant != participant:
                 continue
             for ours in self._graph.endpoints(theirs.kind.opposite, name=theirs.name):

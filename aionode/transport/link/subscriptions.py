@@ -6,6 +6,7 @@ from collections import deque
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import DecodeError
+from aionode.message import fields
 from aionode.qos import ReliabilityPolicy
 from aionode.transport.base import Announcement, Origin
 from aionode.transport.link.handover import Handover, Way
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from aionode.wire.cdr import Data
     from aionode.wire.frame import Frame
 
-__all__ = ["Inlet", "LinkReader", "Tap"]
+__all__ = ["Inlet", "LinkReader", "Tap", "may_be_large"]
 
 WINDOW: Final = 1_000
 """How many messages a KEEP_ALL reader lets a publisher send ahead of what it has used."""
@@ -152,6 +153,8 @@ class Inlet:
                 self._deliver(msg, origin, until_ns)
         else:
             before = handover.way
+            # It may be held for a while, and it is now that it has arrived.
+            origin = Origin(one.gid, one.sequence, one.source_ns, True, self._hub.now_ns())
             handover.from_link(msg, origin, until_ns)
             if handover.way is not before or handover.waits:
                 self._after()
@@ -231,6 +234,17 @@ class Inlet:
         self.connection = None
         self.handover.broken()
         self._after()
+
+
+def may_be_large(msg_type: type[Any]) -> bool:
+    """Whether messages hold numbers or bytes without a bound, at any depth."""
+    types = [field.type for field in fields(msg_type)]
+    return any(
+        may_be_large(type_.nested)
+        if type_.nested is not None
+        else type_.container == "unbounded" and type_.kind not in ("string", "wstring")
+        for type_ in types
+    )
 
 
 class LinkReader(Announcement):

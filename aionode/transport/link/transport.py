@@ -14,7 +14,7 @@ from aionode.transport.link.hub import Hub
 from aionode.transport.link.meeting import Beacon, Meeting, meeting_folder
 from aionode.transport.link.publishers import LinkWriter, can_link
 from aionode.transport.link.services import LinkRequester, LinkServer
-from aionode.transport.link.subscriptions import LinkReader, Tap
+from aionode.transport.link.subscriptions import LinkReader, Tap, may_be_large
 
 if TYPE_CHECKING:
     from aionode.graph import EndpointInfo, Graph, NodeInfo
@@ -81,6 +81,10 @@ class LinkTransport(Transport):
         if beacon is not None and own.is_near(beacon):
             self.hub.on_beacon(beacon, present)
 
+    async def all_known(self, quiet_s: float) -> bool:
+        """Wait until everybody who can be reached has said what there is."""
+        return await self.zenoh.all_known(quiet_s)
+
     async def links(self) -> Linkage:
         """Ask everybody who can be linked, and who is."""
         return await self.zenoh.links()
@@ -107,6 +111,9 @@ class LinkTransport(Transport):
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
     ) -> Announcement:
         """Announce a subscription."""
+        if may_be_large(msg_type):
+            # Shared memory is looked at through it: the first message would wait for the import.
+            import numpy  # noqa: F401, ICN001
         tap = Tap(reader)
         zenoh = self.zenoh.create_reader(endpoint, msg_type, tap)
         return LinkReader(self.hub, msg_type, reader, tap, zenoh)

@@ -216,9 +216,8 @@ async def open_router(listen: Iterable[str]) -> zenoh.Session:
     network = network_from({name: os.environ.get(name, "")})
 
     def work() -> zenoh.Session:
-        config = load_config(network, router_settings(endpoints))
         try:
-            return zenoh.open(config)
+            return zenoh.open(load_config(network, router_settings(endpoints)))
         except zenoh.ZError as error:
             raise TransportError(
                 f"router on {', '.join(endpoints)}: {reason(error)}; "

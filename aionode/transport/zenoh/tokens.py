@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import zenoh
 
+from aionode.clock import perf_ns
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.transport.zenoh.handlers import direct, translated
 from aionode.transport.zenoh.link import Entity
@@ -41,9 +42,14 @@ def ignore(_: zenoh.Reply) -> None:
 
 
 class Watcher:
-    """Keeps the graph as the tokens of others say."""
+    """Keeps the graph as the tokens of others say.
+
+    Attributes:
+        newest_ns: When the newest token came, by `perf_ns`.
+    """
 
     def __init__(self, link: Link) -> None:
+        self.newest_ns = 0
         self._link = link
         self._known: dict[str, NodeInfo | EndpointInfo] = {}
         self._domains: set[int] = set()
@@ -85,6 +91,7 @@ class Watcher:
         )
 
     def _take(self, item: zenoh.Sample | asyncio.Future[None]) -> None:
+        self.newest_ns = perf_ns()
         if not isinstance(item, zenoh.Sample):
             if not item.done():
                 item.set_result(None)

@@ -6,6 +6,7 @@ import asyncio
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
+from aionode.clock import perf_ns
 from aionode.transport.base import Transport
 from aionode.transport.zenoh.link import Link
 from aionode.transport.zenoh.neighbours import Neighbours
@@ -46,6 +47,9 @@ class ZenohTransport(Transport):
         self._link = Link(participant, network.domain_id)
         self._watcher = Watcher(self._link)
         self.neighbours = Neighbours(self._link)
+        # Done when those who are linked have said what there is.
+        self._answered: asyncio.Future[None] | None = None
+        self._missing = 0  # so many who accept connections were not linked in time
 
     def __repr__(self) -> str:
         state = "closed" if self._link.session is None else "open"
@@ -80,18 +84,34 @@ class ZenohTransport(Transport):
             self._watcher.start(session)
             self.neighbours.start(session)
             await links.settle(neighbours)
-            answered: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-            self._watcher.ask(session, answered)
+            # Of those who were configured nobody knows whether they are there.
+            hoped_for = bool(self.network.static_peers or self.network.config_file)
+            self._missing = neighbours - hoped_for - len(session.info.transports())
+            self._answered = asyncio.get_running_loop().create_future()
+            self._watcher.ask(session, self._answered)
             with suppress(TimeoutError):
                 async with asyncio.timeout(KNOWN_S):
-                    await answered
+                    await asyncio.shield(self._answered)
             self._watcher.note_domains()
         finally:
             links.close()
 
+    async def all_known(self, quiet_s: float) -> bool:
+        """Wait until everybody who can be reached has said what there is."""
+        answered = self._answered
+        while answered is not None and not answered.done():
+            left_s = quiet_s - (perf_ns() - self._watcher.newest_ns) / 1e9
+            if left_s <= 0:
+                return False
+            with suppress(TimeoutError):
+                async with asyncio.timeout(left_s):
+                    await asyncio.shield(answered)
+        return self._missing <= 0
+
     async def close(self) -> None:
         """Withdraw everything and disconnect, within a second."""
         link = self._link
+        self._answered = None
         with suppress(TimeoutError):
             async with asyncio.timeout(FLUSH_S):
                 await link.flush()

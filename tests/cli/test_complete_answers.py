@@ -1,0 +1,99 @@
+"""Answers that are complete, however many there are, or say that they may not be."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import socket
+import subprocess
+import sys
+from contextlib import closing
+from typing import Any
+
+import pytest
+
+from aionode.cli.session import wait_until_known
+from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
+from aionode.node import Node
+from aionode.qos import qos_profile_default
+from aionode.wire.liveliness import endpoint_token
+from tests.peers import DOMAIN_ID, isolated_environment, raw_session
+
+AIONODE = [sys.executable, "-m", "aionode"]
+TOPICS = 3000
+
+
+@pytest.fixture
+def env(monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
+    """Out of earshot of everything else on the machine, this process included."""
+    isolated = isolated_environment()
+    for name, value in isolated.items():
+        monkeypatch.setenv(name, value)
+    return {**os.environ, **isolated}
+
+
+def test_three_thousand_topics_are_all_listed(env: dict[str, str]) -> None:
+    """The first answer is the answer; it was 0 to 2 of them."""
+    node = NodeInfo("8b20917502ee955ac4476e0266340d5c", 0, "many", "/")
+    qos = qos_profile_default.resolved()
+    chatter = ("std_msgs/msg/String", "RIHS01_0")
+    port = env["AIONODE_MEETING_PORTS"].split(",")[0]
+    with raw_session(listen=f"tcp/127.0.0.1:{port}") as session:
+        tokens = [
+            session.liveliness().declare_token(endpoint_token(DOMAIN_ID, endpoint))
+            for endpoint in (
+                EndpointInfo(EndpointKind.PUBLISHER, node, n, f"/t{n}", *chatter, qos, b"")
+                for n in range(1, TOPICS + 1)
+            )
+        ]
+        done = subprocess.run(
+            [*AIONODE, "topic", "list", "-c"],
+            env=env,
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+
+    assert len(tokens) == TOPICS
+    assert done.stdout == f"{TOPICS}\n"
+    assert "may be incomplete" not in done.stderr
+
+
+def test_an_answer_that_may_be_incomplete_says_so(env: dict[str, str]) -> None:
+    """A process that accepts connections and says nothing is frozen, or no node at all."""
+    port = int(env["AIONODE_MEETING_PORTS"].split(",")[0])
+    with closing(socket.create_server(("127.0.0.1", port))):
+        done = subprocess.run(
+            [*AIONODE, "topic", "list", "-c"],
+            env=env,
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+
+    assert (done.returncode, done.stdout) == (0, "0\n")
+    assert "this may be incomplete" in done.stderr
+
+
+async def test_what_takes_long_is_said_on_stderr(
+    tool: Node, screen: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A second without a word is a long time, and stdout is for the answer."""
+    monkeypatch.setattr("aionode.cli.session.PROGRESS_S", 0.001)
+    said = asyncio.Event()
+    monkeypatch.setattr(screen.stderr, "flush", said.set)
+
+    async def all_known(_: float) -> bool:
+        await said.wait()
+        return False
+
+    (transport,) = tool.context.transports
+    monkeypatch.setattr(transport, "all_known", all_known)
+
+    await wait_until_known(tool, screen.output)
+
+    assert screen.text == ""
+    assert screen.errors.startswith("Waiting for what there is to be known: 3 nodes and endpoints")
+    assert screen.errors.endswith("this may be incomplete\n")

@@ -1,0 +1,260 @@
+"""Commands whose output is not read or cannot be written, and ends that are held up."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import signal
+import subprocess
+import sys
+import termios
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from tests.peers import isolated_environment
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="pipes whose size can be set")
+
+AIONODE = [sys.executable, "-m", "aionode"]
+ROOT = Path(__file__).parents[2]
+PIPE_BYTES = 4096
+ENDS_S = 30.0
+"""Long for a busy machine, and far from what these commands once took: for ever."""
+
+CHATTERBOX = """
+from aionode import Node
+
+class Chatterbox(Node):
+    def __init__(self):
+        super().__init__("chatterbox")
+        self.create_timer(0.001, lambda: self.get_logger().info("and another thing " * 5))
+"""
+
+
+@pytest.fixture(scope="module")
+def env() -> dict[str, str]:
+    """Out of earshot of everything else on the machine."""
+    return {**os.environ, **isolated_environment()}
+
+
+@contextmanager
+def unread() -> Iterator[int]:
+    """Give the end of a small pipe that nobody reads."""
+    reading, writing = os.pipe()
+    fcntl.fcntl(writing, fcntl.F_SETPIPE_SZ, PIPE_BYTES)
+    try:
+        yield writing
+    finally:
+        os.close(reading)
+        os.close(writing)
+
+
+def wait_until_full(pipe: int) -> None:
+    """Return when hardly anything more fits into a pipe."""
+    waiting = threading.Event()
+    held = 0
+    while held < PIPE_BYTES - 200:
+        waiting.wait(0.01)
+        held = int.from_bytes(fcntl.ioctl(pipe, termios.FIONREAD, bytes(4)), sys.byteorder)
+    waiting.wait(0.1)  # for the write that does not fit
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    ("stream", "arguments"),
+    [
+        ("stdout", ["topic", "pub", "-r", "1000", "/out", "std_msgs/msg/String"]),
+        ("stdout", ["topic", "pub", "-r", "1000", "--json", "/out", "std_msgs/msg/String"]),
+        ("stderr", ["run", "chatterbox.py:Chatterbox"]),
+    ],
+)
+def test_a_signal_ends_what_nobody_reads(
+    stream: str,
+    arguments: list[str],
+    number: signal.Signals,
+    env: dict[str, str],
+    tmp_path: Path,
+) -> None:
+    """The write that waits for a reader would else hold up the loop, and with it the end."""
+    (tmp_path / "chatterbox.py").write_text(CHATTERBOX)
+    with (
+        unread() as pipe,
+        subprocess.Popen(
+            [*AIONODE, *arguments],
+            env=env | {"PYTHONPATH": str(ROOT)},
+            cwd=tmp_path,
+            stdout=pipe if stream == "stdout" else subprocess.DEVNULL,
+            stderr=pipe if stream == "stderr" else subprocess.PIPE,
+        ) as child,
+    ):
+        try:
+            wait_until_full(pipe)
+            child.send_signal(number)
+            child.wait(ENDS_S)
+        finally:
+            child.kill()
+        errors = child.stderr.read() if child.stderr is not None else b""
+
+    assert (child.returncode, errors) == (0, b"")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["--help"], ["interface", "list"], ["topic", "list", "-c"], ["completion", "bash"]],
+)
+def test_a_full_disk_is_one_line(arguments: list[str], env: dict[str, str]) -> None:
+    """And a status that says that the answer is not there: 45 lines of traceback said no more."""
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [*AIONODE, *arguments],
+            env=env,
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+
+    assert done.stderr == (
+        "stdout cannot be written to: No space left on device; the answer is incomplete\n"
+    )
+    assert done.returncode == 1
+
+
+@pytest.mark.parametrize(
+    ("shell", "status", "printed"),
+    [
+        (">&-", 0, ""),
+        (">&- 2>&-", 0, ""),
+        ("<&- >&- 2>&-", 0, ""),
+        ("2>&-", 0, "0\n"),
+        ("2>/dev/full", 0, "0\n"),
+    ],
+)
+def test_streams_that_are_not_there_are_no_error(
+    shell: str, status: int, printed: str, env: dict[str, str]
+) -> None:
+    """As where a service manager starts a command with its standard streams closed."""
+    done = subprocess.run(
+        ["bash", "-c", f"'{sys.executable}' -m aionode topic list -c {shell}"],
+        env=env,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+
+    assert (done.returncode, done.stdout, done.stderr) == (status, printed, "")
+
+
+@pytest.mark.parametrize("shell", ["2>&-", "2>/dev/full", ">&- 2>/dev/full"])
+def test_an_error_that_cannot_be_told_is_a_status(shell: str, env: dict[str, str]) -> None:
+    """There is no other place for it."""
+    done = subprocess.run(
+        ["bash", "-c", f"'{sys.executable}' -m aionode topic info /nope {shell}"],
+        env=env,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+
+    assert (done.returncode, done.stdout, done.stderr) == (1, "", "")
+
+
+def test_what_a_terminal_cannot_show_is_shown_as_numbers(env: dict[str, str]) -> None:
+    """A stream of ASCII is no reason to end."""
+    done = subprocess.run(
+        [*AIONODE, "topic", "pub", "-1", "-w", "0", "/a", "std_msgs/msg/String", "data: \u00e9"],
+        env=env | {"PYTHONIOENCODING": "ascii"},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+
+    assert "publishing #1: std_msgs.msg.String(data='\\xe9')" in done.stdout
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+THREADED = """
+import threading
+from aionode import Node
+
+class Threaded(Node):
+    def __init__(self):
+        super().__init__("threaded")
+        self.create_timer(0.01, self.destroy_node)
+        threading.Thread(target=self.finish).start()
+
+    def finish(self):
+        threading.Event().wait(0.5)
+        print("finished")
+"""
+
+
+def test_threads_of_a_node_that_was_run_are_waited_for(env: dict[str, str], tmp_path: Path) -> None:
+    """They are the user's, as in any program of Python."""
+    (tmp_path / "threaded.py").write_text(THREADED)
+
+    done = subprocess.run(
+        [*AIONODE, "run", "threaded.py:Threaded"],
+        env=env | {"PYTHONPATH": str(ROOT)},
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+
+    assert (done.returncode, done.stdout, done.stderr) == (0, "finished\n", "")
+
+
+HANGING_LOOP = """
+import threading
+from aionode.transport.zenoh.link import Entity
+Entity.undeclare = lambda _: threading.Event().wait()
+"""
+HANGING_THREAD = """
+import threading
+from aionode.transport.zenoh import transport
+async def close_session(session):
+    threading.Thread(target=threading.Event().wait).start()
+transport.close_session = close_session
+"""
+
+
+@pytest.mark.parametrize("hanging", [HANGING_LOOP, HANGING_THREAD])
+@pytest.mark.parametrize(
+    ("arguments", "status", "stdout", "stderr"),
+    [
+        ("'topic', 'list', '-c'", 0, "0\n", ""),
+        (
+            "'param', 'get', '/nope', 'name', '--timeout', '0.01'",
+            1,
+            "",
+            "Node not found: '/nope'. `aionode node list` shows those there are\n",
+        ),
+    ],
+)
+def test_a_command_that_has_answered_ends(
+    hanging: str, arguments: str, status: int, stdout: str, stderr: str, env: dict[str, str]
+) -> None:
+    """Closing waits for Zenoh, and Zenoh may wait for a peer that is frozen or overloaded."""
+    program = f"{hanging}\nimport sys\nfrom aionode.cli import main\n"
+    program += f"sys.argv = ['aionode', {arguments}]\nsys.exit(main())"
+
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        env=env,
+        capture_output=True,
+        text=True,
+        timeout=ENDS_S,
+        check=False,
+    )
+
+    assert (done.returncode, done.stdout, done.stderr) == (status, stdout, stderr)

@@ -1,0 +1,54 @@
+"""Completion as the shells themselves do it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+
+pexpect = pytest.importorskip("pexpect", reason="pseudo-terminals are of Unix")
+
+BIN = Path(sys.executable).parent
+PATIENCE_S = 30.0
+
+SHELLS = {
+    "bash": ["bash", "--norc", "--noprofile", "-i"],
+    "zsh": ["zsh", "-f", "-i"],
+    "fish": ["fish", "--no-config", "--interactive"],
+}
+BEFORE = {
+    "bash": 'PS1="ready> "; eval "$(aionode completion bash)"',
+    "zsh": 'PS1="ready> "; autoload -U compinit; compinit -D -u; eval "$(aionode completion zsh)"',
+    "fish": "function fish_prompt; echo 'ready> '; end; aionode completion fish | source",
+}
+
+pytestmark = [
+    pytest.mark.filterwarnings("ignore:This process .* is multi-threaded"),
+    pytest.mark.skipif(not (BIN / "aionode").exists(), reason="aionode is not installed here"),
+]
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_a_type_is_completed_in_two_steps(shell: str, tmp_path: Path) -> None:
+    """First its package, with nothing behind the slash, then its name: one word for the command."""
+    if shutil.which(shell) is None:
+        pytest.skip(f"{shell} is not installed")
+    program, *arguments = SHELLS[shell]
+    env = {**os.environ, "HOME": str(tmp_path), "TERM": "dumb"}
+    env["PATH"] = f"{BIN}{os.pathsep}{env['PATH']}"
+    child = pexpect.spawn(program, arguments, env=env, encoding="utf-8", timeout=PATIENCE_S)
+    try:
+        child.sendline(BEFORE[shell])
+        child.sendline("echo set up | tr a-z A-Z")
+        child.expect("SET UP")
+        child.send("aionode interface show std_sr\t")
+        child.expect("std_srvs/")
+        child.send("srv/Tri\t")
+        child.expect("srv/Trigger")
+        child.send("\r")
+        child.expect("bool success")
+    finally:
+        child.close(force=True)
