@@ -319,10 +319,11 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         """Return the outcome of `work` as a future. For goal handles."""
         return self._futures.begin(work)
 
-    def start(self, tasks: asyncio.TaskGroup) -> None:
+    def start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:
         """Begin with the goals that were sent before the node ran."""
-        super().start(tasks)
+        task = super().start(tasks)
         self._futures.start(tasks)
+        return task
 
     async def _send(
         self, goal: GoalT, feedback_callback: Callable[[Any], Any] | None, goal_uuid: Any

@@ -314,10 +314,11 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         self.refuse_if_destroyed("called")
         return self._futures.begin(self.call(request))
 
-    def start(self, tasks: asyncio.TaskGroup) -> None:
+    def start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:
         """Begin the calls that were made before the node ran."""
-        super().start(tasks)
+        task = super().start(tasks)
         self._futures.start(tasks)
+        return task
 
     async def _exchange(self, request: RequestT) -> Any:
         """Send through every transport and return the first answer."""
