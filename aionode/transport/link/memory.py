@@ -45,6 +45,9 @@ STEPS: Final = 8
 Payloads whose size varies a little, as of compressed images, then fit where another one was.
 """
 
+MAX_MAPPINGS: Final = 400
+"""How many pieces of memory one sender may give; it lends fewer, and keeps a few."""
+
 F_SEAL_FUTURE_WRITE: Final = 0x0010
 """Linux 5.1: nobody can make another writable mapping. Python does not name it."""
 
@@ -213,6 +216,9 @@ class Mappings:
             FrameError: the memory is not known, not sealed, or smaller than `size`.
         """
         if fd is not None:
+            if len(self._maps) >= MAX_MAPPINGS:
+                os.close(fd)
+                raise FrameError(f"more than {MAX_MAPPINGS} pieces of memory")
             self._maps[number] = sealed_map(fd, size)
         found = self._maps.get(number)
         if found is None:
