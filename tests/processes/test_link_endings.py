@@ -30,7 +30,7 @@ def publishing_process(count: int, end: str) -> Iterator[subprocess.Popen[bytes]
     """Run the process that publishes `count` numbers when it is told to."""
     root = Path(__file__).parents[2]
     environ = {**os.environ, "PYTHONPATH": str(root)}
-    command = [sys.executable, ENDER, str(count), end]
+    command = [sys.executable, str(ENDER), str(count), end]
     with subprocess.Popen(
         command, stdin=subprocess.PIPE, stderr=subprocess.PIPE, cwd=root, env=environ
     ) as process:
