@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from aionode.arguments import Arguments
 from aionode.clock import MachineTime
 from aionode.endpoints.mismatch import MismatchReport
-from aionode.errors import ConfigurationError, EntityDestroyedError
+from aionode.errors import ConfigurationError, EntityDestroyedError, brief
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from aionode.message import type_name
 from aionode.transport.base import Transport
@@ -150,7 +150,9 @@ class Context:
                 self.participant, self.network.domain_id, zenoh, zenoh.neighbours
             )
             return (LocalTransport(), linked)
-        raise ValueError(f'Context: transport={transport!r} is unknown; use "zenoh" or "local"')
+        raise ValueError(
+            f'Context: transport={brief(transport)} is unknown; use "zenoh" or "local"'
+        )
 
     # Lifetime
 
