@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import ctypes
 import dataclasses
 import os
 import secrets
+import weakref
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from aionode.arguments import Arguments
 from aionode.clock import MachineTime
 from aionode.endpoints.mismatch import MismatchReport
-from aionode.errors import ConfigurationError, EntityDestroyedError, brief
+from aionode.errors import ConfigurationError, EntityDestroyedError, ForkedProcessError, brief
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from aionode.message import type_name
 from aionode.transport.base import Transport
@@ -89,6 +91,10 @@ class Context:
     """
 
     _default: ClassVar[Context | None] = None
+    # For children that are forked from this process, and in them.
+    _all: ClassVar[weakref.WeakSet[Context]] = weakref.WeakSet()
+    _has_connected: ClassVar[bool] = False
+    _parent_has_connected: ClassVar[bool] = False
 
     def __init__(
         self,
@@ -123,6 +129,8 @@ class Context:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._turn = asyncio.Lock()  # to open or to close, one after the other
         self._closed = asyncio.Event()
+        self._inherited = False
+        Context._all.add(self)
 
     def __repr__(self) -> str:
         state = "shut down" if self._shut_down else "open" if self._users else "closed"
@@ -163,8 +171,11 @@ class Context:
 
     @classmethod
     def default(cls) -> Context:
-        """Return the context of nodes that are made without one; made at the first use."""
-        if cls._default is None or not cls._default.ok():
+        """Return the context of nodes that are made without one; made at the first use.
+
+        A forked process gets one of its own.
+        """
+        if cls._default is None or not cls._default.ok() or cls._default._inherited:  # noqa: SLF001
             cls._default = cls()
         return cls._default
 
@@ -214,7 +225,9 @@ class Context:
 
         Raises:
             RuntimeError: the context is open in another event loop.
+            ForkedProcessError: it is the parent's, or the parent's network is (a RuntimeError).
         """
+        self._refuse_if_inherited()
         self._enter_loop()
         async with self._turn:
             if not self._open and not self._shut_down:
@@ -241,6 +254,10 @@ class Context:
 
     async def _open_transports(self) -> None:
         opened: list[Transport] = []
+        if any(not isinstance(transport, LocalTransport) for transport in self._transports):
+            if Context._parent_has_connected:
+                raise ForkedProcessError(repr(self))
+            Context._has_connected = True
         try:
             for transport in self._transports:
                 opened.append(transport)
@@ -252,6 +269,8 @@ class Context:
 
     async def release(self) -> None:
         """Hold the context open no longer: the last holder closes it. For nodes."""
+        if self._inherited:
+            return
         self._users -= 1
         async with self._turn:
             if self._users == 0 and self._open:  # else somebody goes on with what is open
@@ -271,6 +290,31 @@ class Context:
         if self._shut_down:
             raise EntityDestroyedError("context")
 
+    # In forked processes
+
+    def _refuse_if_inherited(self) -> None:
+        if self._inherited:
+            raise ForkedProcessError(repr(self))
+
+    def _abandon(self) -> None:
+        """Do nothing with this context any more: it belongs to the process that forked this one.
+
+        Nothing in it may be closed, nor collected, since both would act on what the parent uses.
+        """
+        self._inherited = True
+        for node in self._nodes:
+            node.abandon()
+        for transport in self._transports:
+            transport.abandon()
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(self))  # for ever, the interpreter's end too
+
+    @classmethod
+    def after_fork(cls) -> None:
+        """Leave all contexts to the parent. Called in each forked child, before anything else."""
+        for context in list(cls._all):
+            context._abandon()  # noqa: SLF001  # its own class
+        cls._parent_has_connected = cls._has_connected
+
     # What nodes need
 
     def add_node(self, node: Node) -> None:
@@ -278,8 +322,10 @@ class Context:
 
         Raises:
             EntityDestroyedError: the context was shut down.
+            ForkedProcessError: it belongs to the process that this one was forked from.
         """
         self._refuse_if_shut_down()
+        self._refuse_if_inherited()
         self._nodes[node] = None
 
     def remove_node(self, node: Node) -> None:
@@ -316,3 +362,7 @@ class Context:
         )
         gid = gid_of(endpoint_token(self.network.domain_id, endpoint))
         return dataclasses.replace(endpoint, gid=gid)
+
+
+if hasattr(os, "register_at_fork"):  # Windows does not fork
+    os.register_at_fork(after_in_child=Context.after_fork)

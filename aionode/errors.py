@@ -13,6 +13,7 @@ name; new ones end in `Error`. They carry plain values, never live objects.
     ├── ConfigurationError (ValueError)
     ├── DecodeError (ValueError)
     ├── EntityDestroyedError (RuntimeError)
+    ├── ForkedProcessError (RuntimeError)
     ├── GoalError (RuntimeError)
     │   ├── GoalAbortedError
     │   ├── GoalCanceledError
@@ -62,6 +63,7 @@ __all__ = [
     "ConfigurationError",
     "DecodeError",
     "EntityDestroyedError",
+    "ForkedProcessError",
     "FrameError",
     "GoalAbortedError",
     "GoalCanceledError",
@@ -173,6 +175,25 @@ class EntityDestroyedError(AionodeError, RuntimeError):
     def __init__(self, subject: str, action: str = "used") -> None:
         self.subject = subject
         super().__init__(f"{subject}: destroyed, and cannot be {action} any more; make a new one")
+
+
+class ForkedProcessError(AionodeError, RuntimeError):
+    """A forked process wants to use what belongs to the process that it was forked from.
+
+    The threads of the network are not in the child, and its sockets and shared memory are the
+    parent's: using them would stop or kill the parent.
+
+    Attributes:
+        subject: What was to be used.
+    """
+
+    def __init__(self, subject: str) -> None:
+        self.subject = subject
+        super().__init__(
+            f"{subject}: this process was forked from one whose context is open, and cannot use "
+            'it; start processes with multiprocessing.get_context("spawn"), or fork before the '
+            "first node runs"
+        )
 
 
 class MessageError(AionodeError, ValueError):

@@ -253,6 +253,15 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         self.context.graph.remove_node(self._info)
         self.context.remove_node(self)
 
+    def abandon(self) -> None:
+        """Leave everything to the process that this one was forked from. Called by the context."""
+        self._home.move_out()
+        self._destroyed = asyncio.Event()  # without those who wait for it in the parent
+        self._destroyed.set()
+        self._tasks = None
+        for entity in self._entities:
+            entity.destroyed = True
+
     def call_in_loop(self, action: Callable[[], None]) -> None:
         """Do `action` in the thread of the node's loop: at once if this is it, or none runs."""
         self._home.call(action)

@@ -463,6 +463,12 @@ class Connection:
 
     # The end
 
+    def abandon(self) -> None:
+        """Close this process's descriptor of the socket, which another process goes on with."""
+        sock, self._sock = self._sock, None
+        if sock is not None:
+            sock.close()
+
     def close(self, reason: Exception | None = None) -> None:
         """Close the socket, whatever waits; twice is the same as once."""
         sock, self._sock = self._sock, None

@@ -169,6 +169,17 @@ class Hub:
         self.pool.close()
         self._graph = None
 
+    def abandon(self) -> None:
+        """Let go of the sockets, in a forked child.
+
+        The parent's links would not end with the parent while the child has them. Nothing is said
+        on them, and the name of the parent's socket stays.
+        """
+        if self._meeting is not None:
+            self._meeting.listener.close()
+        for connection in [*self._links.values(), *self._opening]:
+            connection.abandon()
+
     async def flush(self) -> None:
         """Wait until what was written was handed to the system.
 

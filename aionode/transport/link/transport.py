@@ -93,6 +93,11 @@ class LinkTransport(Transport):
             self._neighbours.beacon = None
             await self.zenoh.close()
 
+    def abandon(self) -> None:
+        """Leave the links to the process that this one was forked from."""
+        self.hub.abandon()
+        self.zenoh.abandon()
+
     def create_node(self, node: NodeInfo) -> Announcement:
         """Announce a node."""
         return self.zenoh.create_node(node)
