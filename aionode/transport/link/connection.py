@@ -72,18 +72,15 @@ FORGET: Final = int(Kind.FORGET)
 
 
 class Queue(Protocol):
-    """What waits, elsewhere, for the socket to take more.
-
-    Attributes:
-        name: What it belongs to, for people.
-        waiting: How many messages wait.
-    """
+    """What waits, elsewhere, for the socket to take more."""
 
     @property
-    def name(self) -> str: ...  # noqa: D102  # see above
+    def name(self) -> str:
+        """What it belongs to, for people."""
 
     @property
-    def waiting(self) -> int: ...  # noqa: D102  # see above
+    def waiting(self) -> int:
+        """How many messages wait."""
 
     def go_on(self) -> None:
         """Write until `Connection.write` refuses; then come again with `when_writable`."""
