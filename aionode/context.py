@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import ctypes
 import dataclasses
 import os
 import secrets
 import threading
+import weakref
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from aionode.arguments import Arguments, Usage
 from aionode.clock import MachineTime
 from aionode.endpoints.mismatch import MismatchReport
-from aionode.errors import ConfigurationError, EntityDestroyedError
+from aionode.errors import ConfigurationError, EntityDestroyedError, ForkedProcessError, brief
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from aionode.message import type_name
 from aionode.settle import to_the_end
@@ -91,6 +93,10 @@ class Context:
 
     _default: ClassVar[Context | None] = None
     _command_line: ClassVar[Usage] = Usage(Arguments())
+    # For children that are forked from this process, and in them.
+    _all: ClassVar[weakref.WeakSet[Context]] = weakref.WeakSet()
+    _has_connected: ClassVar[bool] = False
+    _parent_has_connected: ClassVar[bool] = False
 
     def __init__(
         self,
@@ -126,6 +132,8 @@ class Context:
         self._entrance = threading.Lock()
         self._turn = asyncio.Lock()  # to open or to close, one after the other
         self._closed = asyncio.Event()
+        self._inherited = False
+        Context._all.add(self)
 
     def __repr__(self) -> str:
         state = "shut down" if self._shut_down else "open" if self._users else "closed"
@@ -153,7 +161,9 @@ class Context:
                 self.participant, self.network.domain_id, zenoh, zenoh.neighbours
             )
             return (LocalTransport(), linked)
-        raise ValueError(f'Context: transport={transport!r} is unknown; use "zenoh" or "local"')
+        raise ValueError(
+            f'Context: transport={brief(transport)} is unknown; use "zenoh" or "local"'
+        )
 
     # Lifetime
 
@@ -164,8 +174,11 @@ class Context:
 
     @classmethod
     def default(cls) -> Context:
-        """Return the context of nodes that are made without one; made at the first use."""
-        if cls._default is None or not cls._default.ok():
+        """Return the context of nodes that are made without one; made at the first use.
+
+        A forked process gets one of its own.
+        """
+        if cls._default is None or not cls._default.ok() or cls._default._inherited:  # noqa: SLF001
             cls._default = cls()
         return cls._default
 
@@ -234,7 +247,9 @@ class Context:
 
         Raises:
             RuntimeError: the context is open in another event loop.
+            ForkedProcessError: it is the parent's, or the parent's network is (a RuntimeError).
         """
+        self._refuse_if_inherited()
         with self._entrance:  # loops may be in different threads
             self._enter_loop()
             self._users += 1  # before it is open, so that another loop sees it in use
@@ -266,6 +281,10 @@ class Context:
 
     async def _open_transports(self) -> None:
         opened: list[Transport] = []
+        if any(not isinstance(transport, LocalTransport) for transport in self._transports):
+            if Context._parent_has_connected:
+                raise ForkedProcessError(repr(self))
+            Context._has_connected = True
         try:
             for transport in self._transports:
                 opened.append(transport)
@@ -280,6 +299,8 @@ class Context:
 
         It is not to be cancelled: see `to_the_end`.
         """
+        if self._inherited:
+            return
         self._users -= 1
         async with self._turn:
             if self._users == 0 and self._open:  # else somebody goes on with what is open
@@ -299,6 +320,31 @@ class Context:
         if self._shut_down:
             raise EntityDestroyedError("context")
 
+    # In forked processes
+
+    def _refuse_if_inherited(self) -> None:
+        if self._inherited:
+            raise ForkedProcessError(repr(self))
+
+    def _abandon(self) -> None:
+        """Do nothing with this context any more: it belongs to the process that forked this one.
+
+        Nothing in it may be closed, nor collected, since both would act on what the parent uses.
+        """
+        self._inherited = True
+        for node in self._nodes:
+            node.abandon()
+        for transport in self._transports:
+            transport.abandon()
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(self))  # for ever, the interpreter's end too
+
+    @classmethod
+    def after_fork(cls) -> None:
+        """Leave all contexts to the parent. Called in each forked child, before anything else."""
+        for context in list(cls._all):
+            context._abandon()  # noqa: SLF001  # its own class
+        cls._parent_has_connected = cls._has_connected
+
     # What nodes need
 
     def add_node(self, node: Node) -> None:
@@ -306,8 +352,10 @@ class Context:
 
         Raises:
             EntityDestroyedError: the context was shut down.
+            ForkedProcessError: it belongs to the process that this one was forked from.
         """
         self._refuse_if_shut_down()
+        self._refuse_if_inherited()
         self._nodes[node] = None
 
     def remove_node(self, node: Node) -> None:
@@ -349,3 +397,7 @@ class Context:
         )
         gid = gid_of(endpoint_token(self.network.domain_id, endpoint))
         return dataclasses.replace(endpoint, gid=gid)
+
+
+if hasattr(os, "register_at_fork"):  # Windows does not fork
+    os.register_at_fork(after_in_child=Context.after_fork)

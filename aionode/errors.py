@@ -15,6 +15,7 @@ name; new ones end in `Error`. They carry plain values, never live objects.
     ├── DecodeError (ValueError)
     ├── EntityDestroyedError (RuntimeError)
     ├── EntityInactiveError (RuntimeError)
+    ├── ForkedProcessError (RuntimeError)
     ├── GoalError (RuntimeError)
     │   ├── GoalAbortedError
     │   ├── GoalCanceledError
@@ -68,6 +69,7 @@ __all__ = [
     "DecodeError",
     "EntityDestroyedError",
     "EntityInactiveError",
+    "ForkedProcessError",
     "FrameError",
     "GoalAbortedError",
     "GoalCanceledError",
@@ -110,8 +112,42 @@ __all__ = [
 ]
 
 
+MAX_TEXT = 2_000
+"""How long the text of an error becomes, in characters; values are given that are far longer."""
+
+MAX_NAME = 160
+"""How much is shown of a name that breaks the rules, in characters."""
+
+
 class AionodeError(Exception):
-    """Base of all errors that aionode raises on purpose."""
+    """Base of all errors that aionode raises on purpose.
+
+    A text of more than 2000 characters is shortened in its middle, since beginning and end say what
+    happened and what to do. The attributes hold what was given as it was.
+    """
+
+    def __init__(self, *args: object) -> None:
+        super().__init__(*(shortened(arg) if isinstance(arg, str) else arg for arg in args))
+
+
+def shortened(text: str, limit: int = MAX_TEXT) -> str:
+    """Return `text` without its middle if it is longer than `limit` characters."""
+    if len(text) <= limit:
+        return text
+    half = limit // 2
+    return f"{text[:half]} […{len(text) - 2 * half} characters…] {text[-half:]}"
+
+
+def brief(value: object) -> str:
+    """Return how `value` is shown in the text of an error: as Python writes it, but not at length.
+
+    Of numbers with thousands of digits Python writes only how many there are.
+    """
+    try:
+        text = repr(value)
+    except ValueError as error:
+        text = f"a {type(value).__name__} that cannot be written ({error})"
+    return shortened(text, MAX_NAME)
 
 
 class DecodeError(AionodeError, ValueError):
@@ -174,6 +210,25 @@ class TransitionError(AionodeError, RuntimeError):
     def __init__(self, node: str, transition: str, state: str, reason: str) -> None:
         self.node, self.transition, self.state, self.reason = node, transition, state, reason
         super().__init__(f"{node}: cannot {transition}: {reason}; the node is {state}")
+
+
+class ForkedProcessError(AionodeError, RuntimeError):
+    """A forked process wants to use what belongs to the process that it was forked from.
+
+    The threads of the network are not in the child, and its sockets and shared memory are the
+    parent's: using them would stop or kill the parent.
+
+    Attributes:
+        subject: What was to be used.
+    """
+
+    def __init__(self, subject: str) -> None:
+        self.subject = subject
+        super().__init__(
+            f"{subject}: this process was forked from one whose context is open, and cannot use "
+            'it; start processes with multiprocessing.get_context("spawn"), or fork before the '
+            "first node runs"
+        )
 
 
 class MessageError(AionodeError, ValueError):
@@ -481,8 +536,13 @@ class NameValidationException(AionodeError, ValueError):
         self.name = name
         self.error_msg = error_msg
         self.invalid_index = invalid_index
-        caret = " " * invalid_index + "^"
-        super().__init__(f"Invalid {name_type}: {error_msg}:\n  '{name}'\n   {caret}")
+        # Of a long name what is around the mistake.
+        begin = max(0, min(invalid_index, len(name)) - MAX_NAME // 2)
+        before = "…" if begin else ""
+        after = "…" if begin + MAX_NAME < len(name) else ""
+        shown = f"{before}{name[begin : begin + MAX_NAME]}{after}"
+        caret = " " * (invalid_index - begin + len(before)) + "^"
+        super().__init__(f"Invalid {name_type}: {error_msg}:\n  '{shown}'\n   {caret}")
 
 
 class InvalidTopicNameException(NameValidationException):

@@ -24,6 +24,7 @@ from aionode.errors import (
     InvalidRemapRuleError,
     InvalidServiceNameException,
     InvalidTopicNameException,
+    brief,
 )
 
 if TYPE_CHECKING:
@@ -122,7 +123,7 @@ def validate_node_name(node_name: str) -> Literal[True]:
 def expect_text(name: object, what: str) -> None:
     """Raise TypeError unless `name` is a str."""
     if not isinstance(name, str):
-        raise TypeError(f"{what}: got {name!r} ({type(name).__name__}); a str is needed")
+        raise TypeError(f"{what}: got {brief(name)} ({type(name).__name__}); a str is needed")
 
 
 def topic_name_problem(name: str) -> Problem | None:

@@ -20,7 +20,7 @@ from aionode.endpoints.rate import Rate
 from aionode.endpoints.service import Client, Service
 from aionode.endpoints.timer import Timer, to_period_ns
 from aionode.endpoints.topic import Publisher, Subscription
-from aionode.errors import EntityDestroyedError
+from aionode.errors import EntityDestroyedError, brief, shortened
 from aionode.graph import EndpointKind
 from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.logging import get_logger
@@ -323,6 +323,15 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         self.context.remove_node(self)
         if not self._running:
             self._end_record.note(NodeEnd("destroyed"))
+
+    def abandon(self) -> None:
+        """Leave everything to the process that this one was forked from. Called by the context."""
+        self._home.move_out()
+        self._destroyed = asyncio.Event()  # without those who wait for it in the parent
+        self._destroyed.set()
+        self._tasks = None
+        for entity in self._entities:
+            entity.destroyed = True
 
     def call_in_loop(self, action: Callable[[], None]) -> None:
         """Do `action` in the thread of the node's loop: at once if this is it, or none runs."""
@@ -787,7 +796,7 @@ def expect_message_type(msg_type: object, subject: str) -> None:
     """Raise TypeError unless `msg_type` is a message class."""
     if not (isinstance(msg_type, type) and issubclass(msg_type, Message)):
         raise TypeError(
-            f"{subject}: {msg_type!r} is no message class; use one such as "
+            f"{shortened(subject)}: {brief(msg_type)} is no message class; use one such as "
             "aionode.interfaces.std_msgs.msg.String, or derive from aionode.message.Message"
         )
 
@@ -796,7 +805,7 @@ def expect_service_type(srv_type: object, subject: str) -> None:
     """Raise TypeError unless `srv_type` is a service class."""
     if not (isinstance(srv_type, type) and issubclass(srv_type, ServiceType)):
         raise TypeError(
-            f"{subject}: {srv_type!r} is no service class; use one such as "
+            f"{shortened(subject)}: {brief(srv_type)} is no service class; use one such as "
             "aionode.interfaces.example_interfaces.srv.AddTwoInts, or derive from "
             "aionode.message.ServiceType"
         )

@@ -1,15 +1,16 @@
 """Fixtures for tests of nodes; pytest finds them as soon as aionode is installed.
 
-The fixtures are async and need pytest-asyncio.
+Two of them are async, and need pytest-asyncio, in either of its modes, or the plugin of anyio,
+which runs tests marked with ``@pytest.mark.anyio``. pytest starts without either.
 """
 
 from __future__ import annotations
 
 import asyncio
+from types import FunctionType, ModuleType
 from typing import TYPE_CHECKING, Any
 
 import pytest
-import pytest_asyncio
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from aionode.node import Node
     from aionode.testing import ManualClock
 
-__all__ = ["aionode_context", "manual_clock", "node_factory"]
+__all__ = ["aionode_context", "manual_clock", "node_factory", "pytest_configure"]
 
 
 @pytest.fixture
@@ -29,12 +30,62 @@ def manual_clock() -> ManualClock:
     return ManualClock()
 
 
-@pytest_asyncio.fixture
-async def aionode_context(request: pytest.FixtureRequest) -> AsyncIterator[Context]:
+@pytest.fixture
+def aionode_context(request: pytest.FixtureRequest) -> Context:
     """An open context without network; its time is `manual_clock` if the test asks for that.
 
     During the test it is the default context, so that nodes made without one are in it too.
     """
+    context: Context = async_fixture(request, "context")
+    return context
+
+
+@pytest.fixture
+def node_factory(request: pytest.FixtureRequest) -> Callable[..., Node]:
+    """Make nodes in `aionode_context` that run until the test ends.
+
+    ``node_factory("talker")`` makes a plain node and takes what `Node` takes;
+    ``node_factory(Talker)`` makes one of your own, with the arguments that follow. A callback that
+    failed makes the test fail at its end.
+    """
+    make: Callable[..., Node] = async_fixture(request, "factory")
+    return make
+
+
+# The async halves. They exist once for each plugin that can run them, and the test decides which.
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Give the async fixtures to the plugins that can run them."""
+    makers: dict[str, Callable[..., Any]] = {"anyio": pytest.fixture}
+    if config.pluginmanager.hasplugin("asyncio"):
+        import pytest_asyncio
+
+        makers["asyncio"] = pytest_asyncio.fixture
+    fixtures = ModuleType("aionode_async_fixtures")
+    for plugin, fixture in makers.items():
+        for what, function in (("context", open_context), ("factory", open_factory)):
+            name = f"aionode_{plugin}_{what}"
+            # A copy: pytest-asyncio marks the function itself.
+            own = FunctionType(function.__code__, function.__globals__, function.__name__)
+            setattr(fixtures, name, fixture(name=name)(own))
+    config.pluginmanager.register(fixtures, "aionode-async-fixtures")
+
+
+def async_fixture(request: pytest.FixtureRequest, name: str) -> Any:
+    """Return the value of an async fixture, from the plugin that runs the test."""
+    if "anyio_backend" in request.fixturenames:
+        return request.getfixturevalue(f"aionode_anyio_{name}")
+    if request.config.pluginmanager.hasplugin("asyncio"):
+        return request.getfixturevalue(f"aionode_asyncio_{name}")
+    raise pytest.UsageError(
+        f"{request.fixturename}: nothing here runs async fixtures; pip install pytest-asyncio, or "
+        "mark the test with @pytest.mark.anyio"
+    )
+
+
+async def open_context(request: pytest.FixtureRequest) -> AsyncIterator[Context]:
+    """Do what `aionode_context` says."""
     from aionode.context import Context  # as above
     from aionode.testing import local_context
 
@@ -46,14 +97,8 @@ async def aionode_context(request: pytest.FixtureRequest) -> AsyncIterator[Conte
             yield context
 
 
-@pytest_asyncio.fixture
-async def node_factory(aionode_context: Context) -> AsyncIterator[Callable[..., Node]]:
-    """Make nodes in `aionode_context` that run until the test ends.
-
-    ``node_factory("talker")`` makes a plain node and takes what `Node` takes;
-    ``node_factory(Talker)`` makes one of your own, with the arguments that follow. A callback that
-    failed makes the test fail at its end.
-    """
+async def open_factory(aionode_context: Context) -> AsyncIterator[Callable[..., Node]]:
+    """Do what `node_factory` says."""
     from aionode.node import Node  # as above
 
     nodes: list[Node] = []

@@ -16,7 +16,7 @@ from enum import Enum, IntEnum
 from typing import TYPE_CHECKING, Any, NamedTuple, Self, TypeVar
 
 from aionode.clock import CONST_INFINITE_NS, Duration
-from aionode.errors import InvalidQoSProfileException
+from aionode.errors import InvalidQoSProfileException, brief
 
 __all__ = [
     "DEFAULT_DEPTH",
@@ -175,7 +175,7 @@ def policy(name: str, kind: type[PolicyT]) -> Callable[[object], PolicyT]:
             except ValueError:
                 problem = f"{name}={value} is unknown; {kind.__name__} has {fits}"
                 raise InvalidQoSProfileException(problem) from None
-        message = f"{name} must be a {kind.__name__} ({fits}), not {value!r}"
+        message = f"{name} must be a {kind.__name__} ({fits}), not {brief(value)}"
         raise TypeError(message)
 
     return check
@@ -186,7 +186,9 @@ def duration(name: str) -> Callable[[object], Duration]:
 
     def check(value: object) -> Duration:
         if not isinstance(value, Duration):
-            message = f"{name} must be a Duration, such as Duration(seconds=0.1), not {value!r}"
+            message = (
+                f"{name} must be a Duration, such as Duration(seconds=0.1), not {brief(value)}"
+            )
             raise TypeError(message)
         if value.nanoseconds < 0:
             problem = f"{name}={value} is negative; a duration of zero means not limited"
@@ -199,7 +201,7 @@ def duration(name: str) -> Callable[[object], Duration]:
 def check_depth(value: object) -> int:
     """Check the field `depth`."""
     if not isinstance(value, int) or isinstance(value, bool):
-        message = f"depth must be an int, the number of messages kept, not {value!r}"
+        message = f"depth must be an int, the number of messages kept, not {brief(value)}"
         raise TypeError(message)
     if value < 0:
         problem = f"depth={value} is negative; a queue holds one message or more"
@@ -210,7 +212,7 @@ def check_depth(value: object) -> int:
 def check_flag(value: object) -> bool:
     """Check the field `avoid_ros_namespace_conventions`."""
     if not isinstance(value, bool):
-        message = f"avoid_ros_namespace_conventions must be True or False, not {value!r}"
+        message = f"avoid_ros_namespace_conventions must be True or False, not {brief(value)}"
         raise TypeError(message)
     return value
 
@@ -306,7 +308,7 @@ class QoSProfile:
         def __setattr__(self, name: str, value: object) -> None:
             check = CHECKS.get(name)
             if check is None:
-                message = f"QoSProfile has no {name!r}; it has {', '.join(CHECKS)}"
+                message = f"QoSProfile has no {brief(name)}; it has {', '.join(CHECKS)}"
                 raise AttributeError(message)
             checked = check(value)
             if (
@@ -422,7 +424,7 @@ def as_profile(qos: object) -> QoSProfile:
             message = f"history depth must be greater than or equal to zero, not {qos}"
             raise ValueError(message)
         return QoSProfile(depth=qos)
-    message = f"Expected QoSProfile or int (the depth), but received {qos!r}"
+    message = f"Expected QoSProfile or int (the depth), but received {brief(qos)}"
     raise TypeError(message)
 
 

@@ -78,6 +78,8 @@ OVER_LINK: Final = "aionode over a link"
 CALL_ZENOH: Final = "service over Zenoh"
 CALL_LINK: Final = "service over a link"
 RCLPY: Final = "rclpy, events executor"
+RCLPY_S: Final = 600.0
+"""Longer than a measurement takes, which has a limit of its own."""
 OWN: Final = "own"
 ONE: Final = "one"
 CORES: Final = {OWN: "own cores", ONE: "one core", "any": "any core"}
@@ -692,7 +694,7 @@ def rclpy_process(part: str) -> None:
     from rclpy.task import Future  # type: ignore[import-not-found]
 
     rclpy.init()
-    node = rclpy.create_node(part)
+    node = rclpy.create_node(part.replace("-", "_"))
     executor = EventsExecutor()
     executor.add_node(node)
     message = std_msgs.msg.String(data=TEXT)
@@ -701,7 +703,8 @@ def rclpy_process(part: str) -> None:
         node.create_subscription(std_msgs.msg.String, "rclpy_ping", pongs.publish, 10)
         print('"ready"', flush=True)
         threading.Thread(target=lambda: (sys.stdin.read(), os._exit(0)), daemon=True).start()
-        executor.spin()
+        # Without a limit it takes a core and calls nothing.
+        executor.spin_until_future_complete(Future(), timeout_sec=RCLPY_S)
         return
     pings = node.create_publisher(std_msgs.msg.String, "rclpy_ping", 10)
     times: list[int] = []
@@ -725,7 +728,7 @@ def rclpy_process(part: str) -> None:
         nonlocal left, done
         left, done = count, Future()
         throw()
-        executor.spin_until_future_complete(done)
+        executor.spin_until_future_complete(done, timeout_sec=RCLPY_S)
 
     node.create_subscription(std_msgs.msg.String, "rclpy_pong", back, 10)
     while not (pings.get_subscription_count() and node.count_publishers("rclpy_pong")):

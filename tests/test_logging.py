@@ -539,6 +539,32 @@ def test_an_application_that_configures_logging_keeps_its_own_format() -> None:
     assert err == "mine: m\n"
 
 
+@pytest.mark.parametrize("before", [True, False])
+def test_a_line_comes_once_after_basic_config(before: bool) -> None:
+    """The application's handler writes it, in its own format, whoever was there first."""
+    config = "logging.basicConfig(format='mine: %(message)s')\n"
+    first = "aionode.logging.get_logger('talker').info('first')\n"
+    log = "aionode.logging.get_logger('talker').info('m')\n"
+    err = run_alone(config + log if before else first + config + log)
+
+    assert [line for line in err.splitlines() if "first" not in line] == ["mine: m"]
+
+
+@pytest.mark.parametrize(
+    "handler", ["logging.FileHandler('/dev/null')", "logging.NullHandler()", "high"]
+)
+def test_a_handler_that_shows_nothing_leaves_the_console_to_this_package(handler: str) -> None:
+    """Whoever logs to a file, or only errors, still sees what nodes say."""
+    make = "logging.StreamHandler(); h.setLevel(40)" if handler == "high" else handler
+    err = run_alone(
+        f"h = {make}\nlogging.getLogger().addHandler(h)\n"
+        "aionode.logging.get_logger('talker').info('m')\n"
+    )
+
+    assert len(err.splitlines()) == 1
+    assert err.endswith("[talker]: m\n")
+
+
 # Sinks
 
 

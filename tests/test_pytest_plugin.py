@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING, Any
+
+import pytest
 
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
@@ -10,8 +13,6 @@ from aionode.testing import settle
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-    import pytest
 
     from aionode.context import Context
 
@@ -66,3 +67,83 @@ def test_a_failing_callback_fails_the_test_at_its_end(pytester: pytest.Pytester)
     result = pytester.runpytest_subprocess("-p", "no:cacheprovider")
     result.assert_outcomes(passed=1, errors=1)
     result.stdout.fnmatch_lines(["*ZeroDivisionError*"])
+
+
+TEST_OF_A_NODE = """
+import pytest
+from aionode.node import Node
+
+{mark}
+async def test_a_timer(node_factory, manual_clock, aionode_context):
+    ticks = []
+    node_factory("node").create_timer(1.0, lambda: ticks.append(1))
+    await manual_clock.advance(3.0)
+    assert len(ticks) == 3
+    assert Node("other").context is aionode_context
+
+def test_something_else():
+    pass
+"""
+
+
+def without(
+    *missing: str, pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, plugins: str = ""
+) -> pytest.RunResult:
+    """Run pytest where packages are missing, with aionode's plugin and a few others."""
+    for name in missing:
+        pytester.makepyfile(**{name: f"raise ImportError('{name} is not installed')"})
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
+    monkeypatch.setenv("PYTHONPATH", str(pytester.path), prepend=os.pathsep)
+    words = [word for name in (*plugins.split(), "aionode.pytest_plugin") for word in ("-p", name)]
+    return pytester.runpytest_subprocess(*words, "-p", "no:cacheprovider")
+
+
+def test_pytest_starts_where_no_plugin_for_async_tests_is(
+    pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whoever installs aionode may have only tests that are not async."""
+    pytester.makepyfile("def test_one():\n    assert True\n")
+    result = without("pytest_asyncio", "anyio", pytester=pytester, monkeypatch=monkeypatch)
+    result.assert_outcomes(passed=1)
+
+
+def test_an_async_fixture_says_what_it_needs(
+    pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Instead of a fixture that is a generator."""
+    pytester.makepyfile("def test_one(node_factory):\n    node_factory()\n")
+    result = without("pytest_asyncio", "anyio", pytester=pytester, monkeypatch=monkeypatch)
+    result.assert_outcomes(errors=1)
+    result.stdout.fnmatch_lines(["*pip install pytest-asyncio*"])
+
+
+def test_the_fixtures_work_with_anyio_alone(
+    pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Projects around Starlette and FastAPI have its plugin, and often no other."""
+    pytester.makeconftest(
+        "import pytest\n@pytest.fixture\ndef anyio_backend():\n    return 'asyncio'\n"
+    )
+    pytester.makepyfile(TEST_OF_A_NODE.format(mark="@pytest.mark.anyio"))
+    result = without(
+        "pytest_asyncio", pytester=pytester, monkeypatch=monkeypatch, plugins="anyio.pytest_plugin"
+    )
+    result.assert_outcomes(passed=2)
+
+
+@pytest.mark.parametrize(
+    ("mode", "mark"),
+    [("strict", "@pytest.mark.asyncio"), ("auto", ""), ("strict", "@pytest.mark.anyio")],
+)
+def test_the_fixtures_work_in_each_mode_of_pytest_asyncio_and_beside_it(
+    mode: str, mark: str, pytester: pytest.Pytester
+) -> None:
+    """Also where anyio's plugin runs the test although pytest-asyncio is there."""
+    pytester.makeini(
+        f"[pytest]\nasyncio_mode = {mode}\nasyncio_default_fixture_loop_scope = function\n"
+    )
+    pytester.makeconftest(
+        "import pytest\n@pytest.fixture\ndef anyio_backend():\n    return 'asyncio'\n"
+    )
+    pytester.makepyfile(TEST_OF_A_NODE.format(mark=mark))
+    pytester.runpytest_subprocess("-p", "no:cacheprovider").assert_outcomes(passed=2)

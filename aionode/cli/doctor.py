@@ -14,6 +14,7 @@ from aionode.cli.diagnosis import Finding, diagnose
 from aionode.cli.options import json_option, ros2_options
 from aionode.cli.session import run_verb
 from aionode.cli.ways import ask_for_links, link_findings, pairs_of
+from aionode.clock import perf_ns
 from aionode.graph import EndpointKind
 from aionode.transport.zenoh_config import DiscoveryRange
 
@@ -29,6 +30,11 @@ __all__ = ["doctor", "doctor_command", "network_findings"]
 
 PROBE_S = 0.2
 """How long a router on this machine may take to accept a connection; it takes 0.1 ms."""
+
+DOMAINS_S = 1.0
+"""How long nodes of other domains are looked for if there are none of this one."""
+
+DOMAINS_AGAIN_S = 0.02
 
 ZENOH = "rmw_zenoh_cpp"
 
@@ -46,9 +52,9 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
     """
     network = node.context.network
     has_router = await answers(network.router_port)
-    domains = other_domains(node)
     nodes, endpoints = chosen(node, names)
     links = await ask_for_links(node)
+    domains = await other_domains(node, patient=not nodes)
     wanted = full_names(names)
     pairs = [
         pair
@@ -141,12 +147,22 @@ def full_names(names: Sequence[str]) -> set[str]:
     return {name if name.startswith("/") else f"/{name}" for name in names}
 
 
-def other_domains(node: Node) -> list[int]:
-    """Return the domains of nodes that can be reached but not heard, as far as is known."""
-    found: set[int] = set()
-    for transport in node.context.transports:
-        found |= set(getattr(transport, "other_domains", ()))
-    return sorted(found)
+async def other_domains(node: Node, *, patient: bool) -> list[int]:
+    """Return the domains of nodes that can be reached but not heard, as far as is known.
+
+    Args:
+        node: The command's node.
+        patient: Whether to look for a second: where nothing else is seen, they are the news, and
+            on a busy machine it takes time.
+    """
+    ends_ns = perf_ns() + int(DOMAINS_S * 1e9)
+    while True:
+        found: set[int] = set()
+        for transport in node.context.transports:
+            found |= set(getattr(transport, "other_domains", ()))
+        if found or not patient or perf_ns() >= ends_ns:
+            return sorted(found)
+        await node.get_clock().sleep(DOMAINS_AGAIN_S)
 
 
 async def answers(port: int) -> bool:

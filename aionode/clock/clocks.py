@@ -9,7 +9,7 @@ from aionode.clock.agenda import Agenda
 from aionode.clock.base import Alarm, MachineTime, TimeBase
 from aionode.clock.jumps import ClockChange, JumpHandle, Jumps, JumpThreshold, TimeJump
 from aionode.clock.values import S_TO_NS, ClockType, Time, expect_clock_type, time_at
-from aionode.errors import EntityDestroyedError, TimeSourceChangedError
+from aionode.errors import EntityDestroyedError, TimeSourceChangedError, brief
 from aionode.settle import one_turn
 
 if TYPE_CHECKING:
@@ -204,7 +204,7 @@ class Clock:
         """
         self._expect_ros_time()
         if not isinstance(time, Time):
-            raise TypeError(f"set_ros_time_override: got {time!r}; a Time is needed")
+            raise TypeError(f"set_ros_time_override: got {brief(time)}; a Time is needed")
         if not self._active:
             self._override_ns = time.nanoseconds
             return

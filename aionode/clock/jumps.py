@@ -6,6 +6,7 @@ from enum import IntEnum
 from typing import TYPE_CHECKING
 
 from aionode.clock.values import Duration
+from aionode.errors import brief
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -104,7 +105,7 @@ class JumpHandle:
             raise ValueError("jump callback: one of pre_callback and post_callback must be given")
         for name, callback in (("pre_callback", pre_callback), ("post_callback", post_callback)):
             if callback is not None and not callable(callback):
-                raise ValueError(f"jump callback: {name} is {callback!r}; it must be callable")
+                raise ValueError(f"jump callback: {name} is {brief(callback)}; it must be callable")
         self._jumps = jumps
         self.threshold = threshold
         self.pre_callback = pre_callback

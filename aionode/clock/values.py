@@ -6,6 +6,8 @@ import math
 from enum import IntEnum
 from typing import TYPE_CHECKING, overload
 
+from aionode.errors import brief
+
 if TYPE_CHECKING:
     from aionode.interfaces.builtin_interfaces import msg as builtin_msg
 
@@ -18,7 +20,7 @@ CONST_INFINITE_NS = 2**63 - 1  # what ROS counts as "for ever": the largest int6
 def expect_clock_type(value: object, subject: str) -> None:
     """Raise `TypeError` unless `value` is a `ClockType`."""
     if not isinstance(value, ClockType):
-        raise TypeError(f"{subject}: clock_type is {value!r}; it must be a ClockType")
+        raise TypeError(f"{subject}: clock_type is {brief(value)}; it must be a ClockType")
 
 
 def total_ns(seconds: float, nanoseconds: float) -> int:

@@ -25,7 +25,7 @@ from aionode.endpoints.entity import Entity
 from aionode.endpoints.inbox import Inbox
 from aionode.endpoints.server_goal import ServerGoalHandle
 from aionode.endpoints.stats import CallbackStats
-from aionode.errors import CallbackCancelledError, QueueFullError
+from aionode.errors import CallbackCancelledError, QueueFullError, brief
 from aionode.goal import (
     CancelCode,
     CancelResponse,
@@ -328,7 +328,9 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             return True
         answer = await awaited(self._goal_callback(goal))
         if not isinstance(answer, GoalResponse):
-            self.warn(f"goal_callback returned {answer!r}, no GoalResponse; the goal is rejected")
+            self.warn(
+                f"goal_callback returned {brief(answer)}, no GoalResponse; the goal is rejected"
+            )
         return answer is GoalResponse.ACCEPT
 
     def _accept(
@@ -475,7 +477,8 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         answer = await awaited(self._cancel_callback(goal))
         if not isinstance(answer, CancelResponse):
             self.warn(
-                f"cancel_callback returned {answer!r}, no CancelResponse; the request is rejected"
+                f"cancel_callback returned {brief(answer)}, no CancelResponse; "
+                "the request is rejected"
             )
         return answer is CancelResponse.ACCEPT
 

@@ -7,6 +7,7 @@ import math
 from collections.abc import Awaitable
 from typing import TYPE_CHECKING, Any
 
+from aionode.errors import brief, shortened
 from aionode.message import ActionType
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ def expect_action_type(action_type: object, subject: str) -> None:
     """Raise TypeError unless `action_type` is an action class."""
     if not (isinstance(action_type, type) and issubclass(action_type, ActionType)):
         raise TypeError(
-            f"{subject}: {action_type!r} is no action class; use one such as "
+            f"{shortened(subject)}: {brief(action_type)} is no action class; use one such as "
             "aionode.interfaces.example_interfaces.action.Fibonacci, or derive from "
             "aionode.message.ActionType"
         )
@@ -73,7 +74,7 @@ def seconds_to_ns(seconds: float, subject: str) -> int:
         ValueError: it is negative, or not finite.
     """
     if not isinstance(seconds, int | float):
-        raise TypeError(f"{subject}={seconds!r}; a number of seconds is needed")
+        raise TypeError(f"{subject}={brief(seconds)}; a number of seconds is needed")
     if not (math.isfinite(seconds) and seconds >= 0):
         raise ValueError(f"{subject}={seconds}; it must be finite, and 0 or more seconds")
     return round(seconds * 1e9)

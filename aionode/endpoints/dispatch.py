@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from aionode.clock import perf_ns
-from aionode.errors import CallbackCancelledError, CallbackSignatureError
+from aionode.errors import CallbackCancelledError, CallbackSignatureError, brief
 from aionode.settle import off_loop, one_turn
 
 if TYPE_CHECKING:
@@ -99,12 +99,12 @@ class Dispatch:
         if isinstance(on_error, str):
             if on_error not in ("raise", "log"):
                 raise ValueError(
-                    f"{context.subject}: on_error={on_error!r} is unknown; "
+                    f"{context.subject}: on_error={brief(on_error)} is unknown; "
                     'use "raise", "log" or a function (exception, context)'
                 )
         elif not callable(on_error):
             raise TypeError(
-                f"{context.subject}: on_error is {on_error!r}; "
+                f"{context.subject}: on_error is {brief(on_error)}; "
                 'use "raise", "log" or a function (exception, context)'
             )
         if offload and inspect.iscoroutinefunction(callback):
@@ -477,7 +477,7 @@ def accepts(callback: Callable[..., Any], *counts: int, subject: str, wanted: st
         CallbackSignatureError: it takes another number of arguments; `wanted` says what fits.
     """
     if not callable(callback):
-        raise TypeError(f"{subject}: {callback!r} cannot be called; give a function {wanted}")
+        raise TypeError(f"{subject}: {brief(callback)} cannot be called; give a function {wanted}")
     try:
         signature = inspect.signature(callback)
     except ValueError:  # a builtin that does not tell
@@ -503,8 +503,8 @@ def checked_concurrency(concurrent: bool | int, subject: str) -> bool | int:  # 
         return concurrent
     if not isinstance(concurrent, int):
         raise TypeError(
-            f"{subject}: concurrent={concurrent!r}; use False (one at a time), True (any number) "
-            "or a number (at most so many at once)"
+            f"{subject}: concurrent={brief(concurrent)}; use False (one at a time), True (any "
+            "number) or a number (at most so many at once)"
         )
     if concurrent < 1:
         raise ValueError(

@@ -9,6 +9,7 @@ from aionode.clock import S_TO_NS
 from aionode.endpoints.dispatch import give_way
 from aionode.endpoints.entity import EndStage, Entity
 from aionode.endpoints.ticker import Ticker
+from aionode.errors import brief
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
@@ -89,7 +90,7 @@ class Rate(Entity):
 def to_rate_period_ns(frequency: float) -> int:
     """Return the nanoseconds from one turn to the next."""
     if not isinstance(frequency, int | float):
-        raise TypeError(f"rate: got {frequency!r}; a number of turns per second is needed")
+        raise TypeError(f"rate: got {brief(frequency)}; a number of turns per second is needed")
     if not 0 < frequency < float("inf"):
         raise ValueError(f"rate: got {frequency} Hz; it must be finite, and more than 0")
     return max(1, round(S_TO_NS / frequency))

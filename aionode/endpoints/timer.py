@@ -11,6 +11,7 @@ from aionode.endpoints.entity import Entity
 from aionode.endpoints.shortcut import AtOnce
 from aionode.endpoints.stats import CallbackStats
 from aionode.endpoints.ticker import Ticker
+from aionode.errors import brief
 
 if TYPE_CHECKING:
     from aionode.clock import Clock, ClockType
@@ -221,7 +222,7 @@ def to_period_ns(seconds: float) -> int:
         ValueError: It is negative, or not finite.
     """
     if not isinstance(seconds, int | float):
-        raise TypeError(f"period: got {seconds!r}; a number of seconds is needed")
+        raise TypeError(f"period: got {brief(seconds)}; a number of seconds is needed")
     if not 0 <= seconds < 2**63 / S_TO_NS:
         raise ValueError(f"period: got {seconds} s; it must be finite, and 0 or more")
     return round(seconds * S_TO_NS)

@@ -182,8 +182,35 @@ def flag(variable: str, environ: Mapping[str, str]) -> bool | None:
     return None if value == "" else value == "1"
 
 
+def is_shown_elsewhere(record: logging.LogRecord) -> bool:
+    """Return whether the application's own handler writes the record to the console.
+
+    That is one of the root logger, as `logging.basicConfig` makes it, which gets the record after
+    this package's handlers.
+    """
+    root = logging.getLogger()
+    top = logging.getLogger(record.name.partition(".")[0])
+    if not record.name or not top.propagate:
+        return False
+    consoles = (sys.stdout, sys.stderr, sys.__stdout__, sys.__stderr__)
+    for handler in root.handlers:
+        console = getattr(handler, "console", None)  # of rich
+        stream = getattr(handler, "stream", getattr(console, "file", None))
+        if (
+            not isinstance(handler, ConsoleHandler)
+            and stream is not None
+            and any(stream is one for one in consoles)
+            and record.levelno >= handler.level
+        ):
+            return True
+    return False
+
+
 class ConsoleHandler(logging.Handler):
-    """Writes each record once to the stream that is sys.stderr (or sys.stdout) at that time."""
+    """Writes each record once to the stream that is sys.stderr (or sys.stdout) at that time.
+
+    Where the application writes it there itself, with a handler of the root logger, it is left out.
+    """
 
     def __init__(self, settings: ConsoleSettings) -> None:
         super().__init__()
@@ -200,6 +227,8 @@ class ConsoleHandler(logging.Handler):
         if record.__dict__.get("aionode_shown"):
             return  # it came by two ways: the logger's own handler and the root's
         record.aionode_shown = True
+        if is_shown_elsewhere(record):
+            return
         stream, settings = self.stream, self.settings
         try:
             line = self.format(record)

@@ -11,6 +11,7 @@ from types import CodeType, FrameType
 from typing import TypedDict
 
 from aionode.clock import S_TO_NS, Clock
+from aionode.errors import brief
 
 __all__ = ["CallSite", "CallSites", "LogOptions"]
 
@@ -111,11 +112,13 @@ def checked(options: LogOptions) -> LogOptions:
     """
     for option in options:
         if option not in FILTERS:
-            message = f"parameter {option!r} is not one of the recognized logging options {FILTERS}"
+            message = (
+                f"parameter {brief(option)} is not one of the recognized logging options {FILTERS}"
+            )
             raise TypeError(message)
     clock: object = options.get("throttle_time_source_type")
     if clock is not None and not isinstance(clock, Clock):
-        message = f"Received throttle_time_source_type of {clock!r} is not a clock instance"
+        message = f"Received throttle_time_source_type of {brief(clock)} is not a clock instance"
         raise ValueError(message)
     if clock is not None and "throttle_duration_sec" not in options:
         message = "required parameter 'throttle_duration_sec' not specified but is required for "

@@ -12,6 +12,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, get_args, get_origin
 
+from aionode.errors import brief
+
 if TYPE_CHECKING:
     from aionode.message.base import Message
 
@@ -188,7 +190,7 @@ def checked_size(one: FieldType, size: object) -> int:
     if get_origin(size) is Literal:
         (size,) = get_args(size)
     if not isinstance(size, int) or size < 1:
-        msg = f"{one}: a size or bound of {size!r}; it has to be an int of at least 1"
+        msg = f"{one}: a size or bound of {brief(size)}; it has to be an int of at least 1"
         raise TypeError(msg)
     return size
 

@@ -48,6 +48,10 @@ def fit_element(type_: FieldType, value: object, path: str) -> Any:
     return ELEMENTS[type_.kind](type_, value, path)
 
 
+HUGE = "a huge number"
+HUGE_BITS = 14_000
+
+
 def given(value: object) -> str:
     """Return a value and its type for the text of an error."""
     return f"{short(value)} ({type(value).__name__})"
@@ -55,10 +59,13 @@ def given(value: object) -> str:
 
 def short(value: object) -> str:
     """Return a value, shortened, for the text of an error."""
+    # Python writes no int of more than 4300 digits, and says so in other words from 3.14 on.
+    if isinstance(value, int) and value.bit_length() > HUGE_BITS:
+        return HUGE
     try:
         return reprlib.repr(value)
-    except ValueError:  # Python prints no int of more than 4300 digits
-        return "a huge number"
+    except ValueError:  # there is one in a list
+        return HUGE
 
 
 def fit_int(type_: FieldType, value: object, path: str) -> int:

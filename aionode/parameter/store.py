@@ -26,6 +26,7 @@ from aionode.errors import (
     ParameterImmutableException,
     ParameterNotDeclaredException,
     ParameterUninitializedException,
+    brief,
 )
 from aionode.interfaces.rcl_interfaces.msg import (
     ListParametersResult,
@@ -595,7 +596,7 @@ def expect_names(names: Iterable[str]) -> list[str]:
     """
     result = list(names)
     if not all(isinstance(name, str) for name in result):
-        message = f"All names must be instances of type str, unlike in {result!r}"
+        message = f"All names must be instances of type str, unlike in {brief(result)}"
         raise TypeError(message)
     return result
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from aionode.arguments import parse_value, read_parameter_file
-from aionode.errors import ParameterFileError
+from aionode.errors import ParameterFileError, brief
 from aionode.interfaces.rcl_interfaces import msg as rcl_msg
 
 __all__ = [
@@ -130,7 +130,7 @@ def in_range(value: object) -> bool:
 def expect(value: object, kind: type | tuple[type, ...], what: str) -> None:
     """Raise a TypeError that names `what` if `value` is not of this kind."""
     if not isinstance(value, kind):
-        message = f"{what} must be instance of type '{kind!r}', not {value!r}"
+        message = f"{what} must be instance of type '{brief(kind)}', not {brief(value)}"
         raise TypeError(message)
 
 

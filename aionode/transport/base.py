@@ -261,6 +261,12 @@ class Transport(ABC):
         """
         return True
 
+    def abandon(self) -> None:  # noqa: B027  # most have nothing to let go of
+        """Let go of what a forked child has of its parent's, without a sign to anybody.
+
+        Called in the child, which never uses this transport again.
+        """
+
     async def links(self) -> Linkage:
         """Return who of the others can be linked, and who is. For tools: everybody is asked."""
         return Linkage(set(), set())

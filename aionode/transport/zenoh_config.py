@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from aionode.errors import ConfigurationError
+from aionode.errors import ConfigurationError, brief
 
 __all__ = [
     "MEETING_PORTS",
@@ -150,7 +150,7 @@ def choose_domain_id(environ: Mapping[str, str], domain_id: int | None) -> int:
     fits = f"a whole number from 0 to {MAX_DOMAIN_ID} fits"
     if domain_id is not None:
         if isinstance(domain_id, bool) or not isinstance(domain_id, int):
-            raise TypeError(f"domain_id: {domain_id!r} given; {fits}")
+            raise TypeError(f"domain_id: {brief(domain_id)} given; {fits}")
         if not 0 <= domain_id <= MAX_DOMAIN_ID:
             raise ConfigurationError("domain_id", str(domain_id), fits)
         return domain_id

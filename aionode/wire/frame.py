@@ -170,13 +170,15 @@ class FrameParser:
 
     Attributes:
         missing: How many bytes the frame that has begun needs at least; 1 or more.
+        held: How many bytes are here of a frame that has begun and not come to its end.
     """
 
-    __slots__ = ("_pieces", "missing")
+    __slots__ = ("_pieces", "held", "missing")
 
     def __init__(self) -> None:
         self._pieces: list[bytes] = []
         self.missing = HEADER_SIZE
+        self.held = 0
 
     def feed(self, data: bytes) -> list[Frame]:
         """Return the frames that `data` completes.
@@ -188,6 +190,7 @@ class FrameParser:
             self._pieces.append(data)
             if len(data) < self.missing:
                 self.missing -= len(data)
+                self.held += len(data)
                 return []  # pieces of a large payload are joined once, at its end
             data = b"".join(self._pieces)
             self._pieces.clear()
@@ -214,5 +217,6 @@ class FrameParser:
             frames.append(one)
         if offset < end:
             self._pieces.append(data[offset:] if offset else data)
+        self.held = end - offset
         self.missing = need - (end - offset)
         return frames

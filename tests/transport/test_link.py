@@ -7,14 +7,10 @@ import gc
 import logging
 import os
 import resource
-import shutil
 import socket
-import tempfile
 import threading
-from collections.abc import AsyncIterator, Iterator
-from contextlib import asynccontextmanager
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pytest
@@ -26,106 +22,28 @@ from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.sensor_msgs.msg import Image
 from aionode.interfaces.std_msgs.msg import Int32
-from aionode.node import Node
 from aionode.qos import QoSProfile, ReliabilityPolicy
 from aionode.settle import one_turn
-from aionode.transport.link import hub, meeting, subscriptions
-from aionode.transport.link.connection import Connection
-from aionode.transport.link.publishers import LinkWriter
+from aionode.transport.link import meeting, subscriptions
 from aionode.transport.link.subscriptions import Tap
 from aionode.transport.link.transport import LinkTransport
 from aionode.wire import cdr
 from aionode.wire.keyexpr import data_key
 from aionode.wire.typehash import type_hash
+from tests.links import (
+    Counting,
+    Two,
+    folder,
+    hub_of,
+    link_of,
+    two_nodes,
+    writer_of,
+)
 from tests.peers import DOMAIN_ID, KEEP_ALL, Collector, quiet_node, raw_session
 
+__all__ = ["folder"]  # a fixture
+
 NUMBERS = data_key(DOMAIN_ID, "/n", "std_msgs/msg/Int32", type_hash(Int32))
-
-
-@pytest.fixture(autouse=True)
-def folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """Sockets of a test lie in a folder of its own, with a path short enough for a socket."""
-    root = Path(tempfile.mkdtemp(prefix="aio"))
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(root))
-    monkeypatch.setattr(hub, "AGAIN_S", 0.01)
-    yield root / "aionode"
-    shutil.rmtree(root)
-
-
-class Two(NamedTuple):
-    """Two nodes in two contexts."""
-
-    a: Node
-    b: Node
-
-
-def transport_of(node: Node) -> LinkTransport:
-    """Return the transport under test."""
-    transport = node.context.transports[1]
-    assert isinstance(transport, LinkTransport)
-    return transport
-
-
-def hub_of(node: Node) -> hub.Hub:
-    """Return the links of a node's context."""
-    return transport_of(node).hub
-
-
-def link_of(node: Node) -> Connection:
-    """Return the only link of a node's context."""
-    (participant,) = hub_of(node).links
-    connection = hub_of(node).linked(participant)
-    assert connection is not None
-    return connection
-
-
-def writer_of(publisher: Any) -> LinkWriter:
-    """Return the publisher's end of both ways."""
-    writer = publisher._writers[1]
-    assert isinstance(writer, LinkWriter)
-    return writer
-
-
-@asynccontextmanager
-async def two_nodes(*, links: tuple[bool, bool] = (True, True)) -> AsyncIterator[Two]:
-    """Two nodes that may be linked, or not."""
-    async with (
-        asyncio.timeout(30),
-        Context(link=links[0]) as first,
-        Context(link=links[1]) as second,
-        quiet_node("a", first) as a,
-        quiet_node("b", second) as b,
-    ):
-        yield Two(a, b)
-
-
-class Counting:
-    """A publisher of rising numbers and a subscription that expects them."""
-
-    def __init__(self, nodes: Two, profile: Any = 1000, topic: str = "n") -> None:
-        self.publisher = nodes.a.create_publisher(Int32, topic, profile)
-        self.subscription = nodes.b.create_subscription(Int32, topic, None, profile)
-        self.next = 0
-
-    def publish(self, count: int = 1) -> None:
-        """Publish the next numbers."""
-        for _ in range(count):
-            self.publisher.publish(Int32(data=self.next))
-            self.next += 1
-
-    async def go(self, count: int = 1) -> None:
-        """Publish and receive so many, and expect the very next ones."""
-        first = self.next
-        self.publish(count)
-        assert [(await self.subscription.receive()).data for _ in range(count)] == list(
-            range(first, self.next)
-        )
-
-    async def until_linked(self, linked: int = 1) -> None:
-        """Go on until so many readers take the link only."""
-        await self.publisher.wait_for_subscribers()
-        while writer_of(self.publisher).linked != linked:
-            await self.go()
 
 
 def number_of(sample: Any) -> int:

@@ -11,8 +11,7 @@ from aionode.testing import FaultyTransport
 from aionode.transport.base import Linkage
 from aionode.transport.local import LocalTransport
 from aionode.transport.zenoh.transport import ZenohTransport
-from tests.peers import DOMAIN_ID, kept, known, raw_session
-from tests.transport.test_link import (
+from tests.links import (
     Counting,
     folder,
     hub_of,
@@ -21,6 +20,7 @@ from tests.transport.test_link import (
     two_nodes,
     writer_of,
 )
+from tests.peers import DOMAIN_ID, kept, known, raw_session
 
 __all__ = ["folder"]  # a fixture
 

@@ -13,6 +13,8 @@ import pytest
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
+# The types of numpy that is installed are read as its own Python does: 2.5 needs 3.12.
+PYTHON = f"{sys.version_info.major}.{sys.version_info.minor}"
 ACCEPTED, REJECTED = HERE / "accepted.py", HERE / "rejected.py"
 
 
@@ -25,6 +27,7 @@ def marked(file: Path) -> set[int]:
 def mypy(file: Path) -> set[int]:
     """Return the lines of a file in which mypy finds mistakes."""
     options = ["--strict", "--follow-imports=silent", "--no-error-summary"]
+    options += ["--python-version", PYTHON]
     done = subprocess.run(
         [sys.executable, "-m", "mypy", *options, str(file)],
         check=False,
@@ -38,7 +41,7 @@ def mypy(file: Path) -> set[int]:
 
 def pyright(file: Path, folder: Path) -> set[int]:
     """Return the lines of a file in which pyright finds mistakes."""
-    settings = {"typeCheckingMode": "strict", "extraPaths": [str(ROOT)], "pythonVersion": "3.11"}
+    settings = {"typeCheckingMode": "strict", "extraPaths": [str(ROOT)], "pythonVersion": PYTHON}
     (folder / "pyrightconfig.json").write_text(json.dumps(settings))
     command = [sys.executable, "-m", "basedpyright", "--outputjson", "--project", str(folder)]
     done = subprocess.run(

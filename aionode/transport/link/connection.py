@@ -33,8 +33,27 @@ READ_BYTES: Final = 1 << 15
 """How much is read before the rest of the loop has its turn: some hundred small messages."""
 
 READ_MAX: Final = 1 << 20
+LAST_READS: Final = 10_000
+"""More than a socket holds; a peer that writes on and on does not keep the loop here."""
+
 BATCH_BYTES: Final = 1 << 16
+
+LENT_BYTES: Final = 1 << 29
+LENT_PIECES: Final = 256
+"""How much memory one process may have from this one, in bytes and in pieces, of which each takes
+a descriptor or two. A process that is frozen gives none back, and a stopped one has hundreds of
+places waiting in its socket; what is more goes through the stream, which a full socket stops.
+"""
+
+URGENT_BYTES: Final = 1 << 28
+"""How much may wait for a process that asks on and on but reads no answer, in bytes."""
+
+MAX_HELD: Final = 1 << 20
+"""A frame that has not come to its end is reported to `on_held` from this size on, in bytes."""
 DESCRIPTORS: Final = 16
+MAX_DESCRIPTORS: Final = 64
+"""How many may wait for the rest of their frames: each comes with the first byte of its own."""
+
 BURST_NS: Final = 20_000
 """What is sent within this time after the last is collected until the loop's next turn.
 
@@ -42,6 +61,7 @@ A system call costs more than the rest of a small message's way.
 """
 
 NOBODY: Final = bytes(frame.GID_SIZE)
+NO_DESCRIPTOR: Final = "a descriptor could not be taken: too many files are open"
 
 # As plain numbers: those of an enumeration take their time.
 MSG_CMSG_CLOEXEC: Final = int(getattr(socket, "MSG_CMSG_CLOEXEC", 0))
@@ -53,6 +73,14 @@ FORGET: Final = int(Kind.FORGET)
 
 class Queue(Protocol):
     """What waits, elsewhere, for the socket to take more."""
+
+    @property
+    def name(self) -> str:
+        """What it belongs to, for people."""
+
+    @property
+    def waiting(self) -> int:
+        """How many messages wait."""
 
     def go_on(self) -> None:
         """Write until `Connection.write` refuses; then come again with `when_writable`."""
@@ -67,6 +95,7 @@ class Connection:
         pool: Where memory that was sent comes from.
         handle: Called with each frame, its payload, and until when callbacks may run at once.
         on_closed: Called once when the socket is closed from either end.
+        on_held: Called when much of a frame is here that has not come to its end.
 
     Attributes:
         participant: Who is at the other end; empty before it has said so.
@@ -81,6 +110,7 @@ class Connection:
         pool: Pool,
         handle: Callable[[Connection, Frame, Data, int], None],
         on_closed: Callable[[Connection], None],
+        on_held: Callable[[Connection], None] = lambda _: None,
     ) -> None:
         self.participant = ""
         self.takers: dict[bytes, Callable[[Data, Frame, int], None]] = {}
@@ -90,7 +120,9 @@ class Connection:
         self.pool = pool
         self._handle = handle
         self._on_closed = on_closed
+        self._on_held = on_held
         self._parser = FrameParser()
+        self._max_held = frame.HEADER_SIZE - 1  # a greeting is a header
         self._descriptors: deque[int] = deque()
         self._ancillary = socket.CMSG_SPACE(DESCRIPTORS * array.array("i").itemsize)
         # Frames of a burst, which go out together.
@@ -100,12 +132,15 @@ class Connection:
         self._sent_ns = 0
         # The socket took no more: what is left of the last frames, and what has to wait.
         self._full = False
+        self._failed = False
         self._rest = memoryview(b"")
         self._urgent: deque[tuple[bytes, Memory | None]] = deque()
+        self._urgent_bytes = 0
         self._queues: dict[Queue, None] = {}
         # Memory: the numbers that the other process knows, what it has now, and what came from it.
         self._known: set[int] = set()
         self._lent: dict[int, Memory] = {}
+        self._lent_bytes = 0
         self._mappings = Mappings()
         self._waiters: list[asyncio.Future[None]] = []
         pool.listeners.add(self._on_memory_closed)
@@ -146,8 +181,8 @@ class Connection:
         except (BlockingIOError, InterruptedError):
             sent = 0
         except OSError as error:
-            self.close(error)
-            return True
+            self._send_failed(error)
+            return False
         if sent < len(data):
             self._rest = memoryview(data)[sent:]
             self._note_full()
@@ -186,6 +221,9 @@ class Connection:
             return
         if not self.closed:
             self._urgent.append((data, memory))
+            self._urgent_bytes += len(data)
+            if self._urgent_bytes > URGENT_BYTES and not self._failed:
+                self._send_failed(TimeoutError("it reads none of its answers"))
         elif memory is not None:
             self.pool.release(memory)
 
@@ -213,11 +251,26 @@ class Connection:
         except (BlockingIOError, InterruptedError):
             sent = 0
         except OSError as error:
-            self.close(error)
+            self._send_failed(error)
             return
         if sent < len(data):
             self._rest = memoryview(data)[sent:]
             self._note_full()
+
+    def _send_failed(self, error: OSError) -> None:
+        """Send no more, read what the other process has left in the socket, and then close it.
+
+        It has gone, perhaps right after its last messages: nobody but this socket has them. Not
+        read here, because this may be called while a frame is being handled.
+        """
+        if not self._failed:
+            self._failed = self._full = True  # what is to be sent waits, until it is known unsent
+            self._batch.clear()
+            self._loop.call_soon(self._read_out_and_close, error)
+
+    def _read_out_and_close(self, error: OSError) -> None:
+        self.read_out()
+        self.close(error)
 
     def _note_full(self) -> None:
         if not self._full:
@@ -225,8 +278,14 @@ class Connection:
             self._loop.add_writer(self._fd, self._on_writable)
 
     def _write_with(self, sock: socket.socket, data: bytes, memory: Memory) -> bool:
+        much = self._lent_bytes >= LENT_BYTES or len(self._lent) >= LENT_PIECES
+        if much and memory.size <= frame.MAX_INLINE:
+            if not self.write(whole(data, memory)):
+                return False
+            self.pool.release(memory)  # the other process knows nothing of it
+            return True
         if memory.number in self._known:
-            if not self.write(data) or self.closed:
+            if not self.write(data):
                 return False
         else:
             self._flush()
@@ -239,13 +298,14 @@ class Connection:
                 self._note_full()
                 return False
             except OSError as error:
-                self.close(error)
+                self._send_failed(error)
                 return False
             self._known.add(memory.number)
             if sent < len(data):
                 self._rest = memoryview(data)[sent:]
                 self._note_full()
         self._lent[memory.number] = memory
+        self._lent_bytes += memory.size
         return True
 
     def _on_memory_closed(self, number: int) -> None:
@@ -255,29 +315,35 @@ class Connection:
 
     def _on_writable(self) -> None:
         """Send what has waited: the rest of a frame, what is urgent, then the queues in turn."""
+        if self._failed:
+            return
         rest, self._rest = self._rest, memoryview(b"")
         if self._sock is not None and rest:
             self._send(self._sock, rest)
-            if self._rest:
+            if self._rest or self._failed:
                 return
         self._full = False
         self._loop.remove_writer(self._fd)
         while self._urgent and self.write(*self._urgent[0]):
-            self._urgent.popleft()
+            self._urgent_bytes -= len(self._urgent.popleft()[0])
         queues, self._queues = self._queues, {}
         for queue in queues:
             queue.go_on()
         self._flush()
-        if self.idle:
-            self.wake()
+        self.wake()
 
     @property
     def idle(self) -> bool:
         """Whether everything was handed to the system."""
         return not (self._batch or self._full)
 
+    @property
+    def queues(self) -> list[Queue]:
+        """Those that wait for the socket to take more."""
+        return list(self._queues)
+
     def progress(self) -> asyncio.Future[None]:
-        """Return what is done when everything was sent, credit comes, or the socket closes."""
+        """Return what is done when the socket took something, credit comes, or it closes."""
         waiter: asyncio.Future[None] = self._loop.create_future()
         if self._sock is None:
             waiter.set_result(None)
@@ -300,8 +366,9 @@ class Connection:
 
         uvloop may not: of a socket whose other end was closed with data unread, it tells once.
         """
-        while self._on_readable():
-            pass
+        for _ in range(LAST_READS):
+            if not self._on_readable():
+                return
 
     def _on_readable(self) -> bool:
         """Read once; return whether there was something, so that there may be more."""
@@ -320,35 +387,47 @@ class Connection:
         except OSError as error:
             self.close(error)
             return False
-        if ancillary:
-            self._take_descriptors(ancillary)
-        if flags & MSG_CTRUNC or not data:
-            lost = FrameError("a descriptor could not be taken: too many files are open")
-            self.close(lost if flags & MSG_CTRUNC else None)
+        if not data:
+            self.close()
+            return True
+        try:
+            if ancillary:
+                self._take_descriptors(ancillary)
+            self._take_frames(self._parser.feed(data))
+        except FrameError as error:
+            self.close(error if not flags & MSG_CTRUNC else FrameError(NO_DESCRIPTOR))
         else:
-            try:
-                frames = self._parser.feed(data)
-                until_ns = perf_ns() + SLICE_NS
-                takers = self.takers
-                for one in frames:
-                    payload: Data = self._map(one) if one.elsewhere else one.payload
-                    if one.kind == DATA:
-                        take = takers.get(one.gid)
-                        if take is not None:  # else it was closed meanwhile
-                            take(payload, one, until_ns)
-                    else:
-                        self._take_other(one, payload, until_ns)
-            except FrameError as error:
-                self.close(error)
+            if flags & MSG_CTRUNC:  # what came before the frame that lacks it was whole
+                self.close(FrameError(NO_DESCRIPTOR))
+            elif self._parser.held > self._max_held:
+                self._on_held(self)
         return True
 
-    def _take_other(self, one: Frame, payload: Data, until_ns: int) -> None:
-        if one.kind == RELEASE:
-            self._on_release(one.sequence)
-        elif one.kind == FORGET:
-            self._mappings.forget(one.sequence)
-        else:
-            self._handle(self, one, payload, until_ns)
+    def _take_frames(self, frames: list[Frame]) -> None:
+        until_ns = perf_ns() + SLICE_NS
+        takers = self.takers
+        for one in frames:
+            payload: Data = self._map(one) if one.elsewhere else one.payload
+            if one.kind == DATA:
+                take = takers.get(one.gid)
+                if take is not None:  # else it was closed meanwhile
+                    take(payload, one, until_ns)
+            elif one.kind == RELEASE:
+                self._on_release(one.sequence)
+            elif one.kind == FORGET:
+                self._mappings.forget(one.sequence)
+            else:
+                self._handle(self, one, payload, until_ns)
+
+    @property
+    def held(self) -> int:
+        """How much is here of a frame that has not come to its end, in bytes."""
+        return self._parser.held
+
+    def know(self, participant: str) -> None:
+        """Note who is at the other end, which may send more than a greeting from now on."""
+        self.participant = participant
+        self._max_held = MAX_HELD
 
     def _take_descriptors(self, ancillary: list[tuple[int, int, bytes]]) -> None:
         for level, kind, data in ancillary:
@@ -356,6 +435,8 @@ class Connection:
                 found = array.array("i")
                 found.frombytes(data[: len(data) - len(data) % found.itemsize])
                 self._descriptors.extend(found)
+        if len(self._descriptors) > MAX_DESCRIPTORS:
+            raise FrameError(f"{len(self._descriptors)} descriptors without a frame")
 
     def _map(self, one: Frame) -> memoryview:
         number, size = Place.unpack(one.payload)
@@ -374,9 +455,16 @@ class Connection:
     def _on_release(self, number: int) -> None:
         memory = self._lent.pop(number, None)
         if memory is not None:
+            self._lent_bytes -= memory.size
             self.pool.release(memory)
 
     # The end
+
+    def abandon(self) -> None:
+        """Close this process's descriptor of the socket, which another process goes on with."""
+        sock, self._sock = self._sock, None
+        if sock is not None:
+            sock.close()
 
     def close(self, reason: Exception | None = None) -> None:
         """Close the socket, whatever waits; twice is the same as once."""
@@ -406,7 +494,15 @@ class Connection:
             memory.spoiled = True  # the other process may look at it as long as it likes
             self.pool.release(memory)
         self._lent.clear()
+        self._lent_bytes = self._urgent_bytes = 0
         self.pool.listeners.discard(self._on_memory_closed)
         self._mappings.close()
         self.wake()
         self._on_closed(self)
+
+
+def whole(data: bytes, memory: Memory) -> bytes:
+    """Return a frame that has its payload in itself instead of elsewhere."""
+    (one,) = FrameParser().feed(data)
+    payload = memory.read(Place.unpack(one.payload).size)
+    return frame.pack(one.kind, one.sequence, one.source_ns, one.gid, payload)

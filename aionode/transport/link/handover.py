@@ -20,7 +20,7 @@ brings it, also a new link, and holds what is further ahead.
 from __future__ import annotations
 
 import enum
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -29,11 +29,15 @@ if TYPE_CHECKING:
 
 __all__ = ["Handover", "Way"]
 
-MAX_HELD = 2_000
+MAX_HELD: Final = 2_000
 """How many messages are held at most; with one more the reader waits for Zenoh no longer.
 
 More than the window of a KEEP_ALL reader, which therefore always waits.
 """
+
+
+MAX_MENDING: Final = 50_000
+"""How many are held at most while what a broken link left unsaid is awaited."""
 
 
 class Way(enum.Enum):
@@ -168,6 +172,8 @@ class Handover:
         self.steady = False
         if self.way is Way.LINK and len(self._held) > MAX_HELD:
             del self._held[next(iter(self._held))]  # a copy: it comes over the link, or by post
+        elif len(self._held) > MAX_MENDING:
+            self.finish()
 
     def _mend(self) -> None:
         if self.way is not Way.MENDING:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from aionode.graph import EndpointInfo, Graph
     from aionode.transport.link.meeting import Beacon, Meeting
-    from aionode.transport.link.publishers import LinkWriter
+    from aionode.transport.link.publishers import LinkWriter, Route
     from aionode.transport.link.services import LinkCall, LinkServer
     from aionode.transport.link.subscriptions import Inlet, LinkReader
     from aionode.wire.cdr import Data
@@ -32,7 +32,27 @@ __all__ = ["Hub", "Neighbours"]
 logger = logging.getLogger("aionode.transport.link")
 
 AGAIN_S: Final = 1.0
-"""How long after a link has ended, or no descriptor was left, it is tried again."""
+"""How long after a link has ended, or no descriptor was left, it is tried again.
+
+Twice as long after each try that has failed, up to `LAST_AGAIN_S`.
+"""
+
+LAST_AGAIN_S: Final = 30.0
+
+HELLO_S: Final = 5.0
+"""How long the other end of a socket may take to say who it is."""
+
+MAX_OPENING: Final = 64
+"""How many may be silent at once; with one more the oldest is refused."""
+
+MAX_HELD: Final = 1 << 27
+"""How much of frames that have not come to their end is held for all links together, in bytes."""
+
+MAX_ENDING: Final = 1_000
+"""How many publishers that have gone are remembered until their readers have confirmed."""
+
+STALLED_S: Final = 1.0
+"""How long, at the end, a process may take nothing of what waits for it."""
 
 WISHES: Final = frozenset(map(int, (Kind.OPEN, Kind.SWITCHED, Kind.CLOSE, Kind.CREDIT)))
 
@@ -106,8 +126,13 @@ class Hub:
         self._near: set[str] = set()
         self._links: dict[str, Connection] = {}
         self._inlets: dict[tuple[Connection, bytes], list[Inlet]] = {}
-        self._opening: set[Connection] = set()
+        # Those that have not said who they are, the oldest first, and whom they should be.
+        self._opening: dict[Connection, str | None] = {}
+        # Whom not to dial now, and how often that has failed.
         self._barred: set[str] = set()
+        self._failures: dict[str, int] = {}
+        # What publishers that have gone left to be sent or confirmed.
+        self._ending: dict[tuple[Connection, bytes], Route] = {}
         self._timers: set[asyncio.TimerHandle] = set()
         self._link_changes = 0
 
@@ -133,18 +158,43 @@ class Hub:
         for timer in self._timers:
             timer.cancel()
         self._timers.clear()
+        for route in self._ending.values():  # given up, as `flush` has said
+            route.drop()
+        self._ending.clear()
         for connection in [*self._links.values(), *self._opening]:
             connection.close()
         self._near.clear()
         self._barred.clear()
+        self._failures.clear()
         self.pool.close()
         self._graph = None
 
+    def abandon(self) -> None:
+        """Let go of the sockets, in a forked child.
+
+        The parent's links would not end with the parent while the child has them. Nothing is said
+        on them, and the name of the parent's socket stays.
+        """
+        if self._meeting is not None:
+            self._meeting.listener.close()
+        for connection in [*self._links.values(), *self._opening]:
+            connection.abandon()
+
     async def flush(self) -> None:
-        """Wait until what was written was handed to the system."""
-        for connection in list(self._links.values()):
-            while not connection.idle:
-                await connection.progress()
+        """Wait until what was written was handed to the system.
+
+        A process that takes nothing for `STALLED_S` is given up, and a warning says what was.
+        """
+        async with asyncio.TaskGroup() as tasks:  # so that the frozen do not add up
+            for connection in list(self._links.values()):
+                tasks.create_task(flush(connection))
+
+    def keep(self, gid: bytes, route: Route) -> None:
+        """Remember what a publisher that has gone left to be sent, or to be confirmed."""
+        if not route.settled:
+            self._ending[route.connection, gid] = route
+        while len(self._ending) > MAX_ENDING:
+            self._ending.pop(next(iter(self._ending))).drop()
 
     def later(self, delay_s: float, call: Callable[[], None]) -> None:
         """Call `call` in a while, unless closed before."""
@@ -194,6 +244,7 @@ class Hub:
         if not present:
             self._near.discard(beacon.participant)
             self._barred.discard(beacon.participant)
+            self._failures.pop(beacon.participant, None)
             self._read_out(beacon.participant)
             return
         self._near.add(beacon.participant)
@@ -270,14 +321,26 @@ class Hub:
     # Links come and go
 
     def _dial(self, participant: str) -> None:
-        self._barred.add(participant)  # until it answers, or for good if it cannot be reached
+        self._barred.add(participant)  # until it answers, or it is time to try again
         try:
             sock = None if self._meeting is None else self._meeting.dial(participant)
         except TransportError as error:
-            logger.warning("%s; Zenoh is used instead", error)
-            return
-        if sock is not None:
-            self._begin(sock)
+            logger.warning("%s; Zenoh is used instead for now", error)
+            sock = None
+        if sock is None:
+            self._try_later(participant)
+        else:
+            self._begin(sock, participant)
+
+    def _try_later(self, participant: str) -> None:
+        """Dial again in a while, which grows: the other may be busy, or restarting."""
+        self._barred.add(participant)
+        failures = self._failures.get(participant, 0)
+        self._failures[participant] = failures + 1
+        self.later(
+            min(AGAIN_S * 2 ** min(failures, 10), LAST_AGAIN_S),
+            lambda: self._try_again(participant),
+        )
 
     def _accept(self) -> None:
         if self._meeting is None or self._loop is None:
@@ -296,11 +359,29 @@ class Hub:
         if self._meeting is not None and self._loop is not None:
             self._loop.add_reader(self._meeting.listener.fileno(), self._accept)
 
-    def _begin(self, sock: socket.socket) -> None:
+    def _begin(self, sock: socket.socket, participant: str | None = None) -> None:
         assert self._loop is not None  # noqa: S101  # set before anything is dialled or accepted
-        connection = Connection(self._loop, sock, self.pool, self._on_frame, self._on_closed)
-        self._opening.add(connection)
+        connection = Connection(
+            self._loop, sock, self.pool, self._on_frame, self._on_closed, self._on_held
+        )
+        self._opening[connection] = participant
+        while len(self._opening) > MAX_OPENING:
+            next(iter(self._opening)).close()
+        self.later(HELLO_S, lambda: self._refuse_if_silent(connection))
         connection.write(self._hello)
+
+    def _refuse_if_silent(self, connection: Connection) -> None:
+        if connection in self._opening:
+            connection.close()
+
+    def _on_held(self, connection: Connection) -> None:
+        """Hold no more than so much: end the link that has most."""
+        if not connection.participant:
+            connection.close(FrameError("something else in place of the greeting"))
+        connections = [*self._links.values(), *self._opening]
+        if sum(connection.held for connection in connections) > MAX_HELD:
+            largest = max(connections, key=lambda connection: connection.held)
+            largest.close(FrameError(f"more than {MAX_HELD} bytes in frames without an end"))
 
     def _on_hello(self, connection: Connection, one: Frame) -> None:
         if one.kind != Kind.HELLO:
@@ -310,9 +391,10 @@ class Hub:
             raise FrameError(f"a greeting of version {one.sequence}, domain {one.source_ns}")
         if participant in self._links or participant == self.participant:
             raise FrameError(f"a second link to {participant}")
-        connection.participant = participant
-        self._opening.discard(connection)
+        connection.know(participant)
+        self._opening.pop(connection, None)
         self._barred.discard(participant)
+        self._failures.pop(participant, None)
         self._links[participant] = connection
         self._link_changes += 1
         logger.debug("linked to %s", participant)
@@ -322,7 +404,9 @@ class Hub:
         self._meet(connection)
 
     def _on_closed(self, connection: Connection) -> None:
-        self._opening.discard(connection)
+        dialled = self._opening.pop(connection, None)
+        if dialled is not None:
+            self._try_later(dialled)
         participant = connection.participant
         if self._links.get(participant) is not connection:
             return
@@ -348,6 +432,8 @@ class Hub:
         unsaid = [
             data for writer in list(self.writers.values()) for data in writer.broken(connection)
         ]
+        for key in [key for key in self._ending if key[0] is connection]:
+            unsaid += self._ending.pop(key).unsaid()
         unsaid.append(frame.pack(Kind.CAUGHT_UP, 0, 0, self.gid))
         letter = [self._hello]
         size = 0
@@ -429,6 +515,11 @@ class Hub:
     def _on_wish(self, connection: Connection, one: Frame) -> None:
         writer = self.writers.get(one.gid)
         if writer is None:  # it has gone, and GONE is on its way
+            ending = self._ending.get((connection, one.gid))
+            if ending is not None and one.kind == Kind.CREDIT:
+                ending.credit(one.payload, one.sequence, one.source_ns)
+                if ending.settled:
+                    del self._ending[connection, one.gid]
             return
         if one.kind == Kind.OPEN:
             writer.open(connection, one.payload, one.sequence, confirms=bool(one.source_ns))
@@ -463,6 +554,25 @@ class Hub:
             call.failed(payload)
         else:
             call.ended(connection)
+
+
+async def flush(connection: Connection) -> None:
+    """Wait until everything was handed to the system, or the other end takes nothing any more."""
+    try:
+        while not (connection.idle or connection.closed):
+            async with asyncio.timeout(STALLED_S):
+                await connection.progress()
+    except TimeoutError:
+        for queue in connection.queues:
+            if queue.waiting:
+                logger.warning(
+                    "%s: the last %d messages to the process %s were given up: it has read nothing "
+                    "for %g s",
+                    queue.name,
+                    queue.waiting,
+                    connection.participant,
+                    STALLED_S,
+                )
 
 
 def participant_of(one: Frame) -> str:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import xxhash
 
+from aionode.clock import S_TO_NS, MachineTime
 from aionode.errors import TransportError
 from aionode.wire.frame import VERSION
 
@@ -24,6 +25,9 @@ __all__ = ["Beacon", "Meeting", "available", "host_id", "is_own_user", "meeting_
 
 BACKLOG: Final = 64
 CREDENTIALS: Final = struct.Struct("3i")
+NEW_S: Final = 10
+"""After this time, in seconds, a socket that is still being made has lost its process."""
+
 BOOT_ID: Final = Path("/proc/sys/kernel/random/boot_id")
 
 
@@ -171,6 +175,12 @@ class Meeting:
 
     def _remove_dead(self) -> None:
         """Remove the sockets of processes that were killed."""
+        for path in self._folder.glob("*.new"):
+            with suppress(OSError):  # somebody else was faster
+                # A socket has this name until it listens, which takes no time at all.
+                age_ns = MachineTime().system_ns() - path.lstat().st_mtime_ns
+                if age_ns > NEW_S * S_TO_NS:
+                    path.unlink()
         for path in self._folder.glob("*.sock"):
             probe = new_socket()
             try:

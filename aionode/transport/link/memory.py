@@ -9,15 +9,18 @@ the last array that looks at a payload is gone, the receiver gives the memory ba
 
 from __future__ import annotations
 
-import fcntl
 import mmap
 import os
 import weakref
+from contextlib import suppress
 from itertools import count
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import FrameError
+
+with suppress(ImportError):  # of Windows, where nobody links, but this is imported all the same
+    import fcntl
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -45,10 +48,15 @@ STEPS: Final = 8
 Payloads whose size varies a little, as of compressed images, then fit where another one was.
 """
 
+MAX_MAPPINGS: Final = 400
+"""How many pieces of memory one sender may give; it lends fewer, and keeps a few."""
+
 F_SEAL_FUTURE_WRITE: Final = 0x0010
 """Linux 5.1: nobody can make another writable mapping. Python does not name it."""
 
-SEALS: Final = fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_GROW if hasattr(fcntl, "F_SEAL_SHRINK") else 0
+SEALS: Final = 0x0002 | 0x0004
+"""F_SEAL_SHRINK and F_SEAL_GROW of Linux, which other systems do not name."""
+
 PAGE: Final = mmap.PAGESIZE
 
 
@@ -213,6 +221,9 @@ class Mappings:
             FrameError: the memory is not known, not sealed, or smaller than `size`.
         """
         if fd is not None:
+            if len(self._maps) >= MAX_MAPPINGS:
+                os.close(fd)
+                raise FrameError(f"more than {MAX_MAPPINGS} pieces of memory")
             self._maps[number] = sealed_map(fd, size)
         found = self._maps.get(number)
         if found is None:

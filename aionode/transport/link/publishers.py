@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections import deque
 from typing import TYPE_CHECKING, Any, Final
 
+from aionode.errors import FrameError
 from aionode.graph import EndpointKind
 from aionode.qos import DurabilityPolicy, HistoryPolicy, ReliabilityPolicy
 from aionode.transport.base import Writer
+from aionode.transport.link.connection import whole
 from aionode.transport.link.memory import SHARED_FROM
 from aionode.wire import cdr, frame
 from aionode.wire.frame import Kind, Place
@@ -27,6 +29,13 @@ if TYPE_CHECKING:
 __all__ = ["LinkWriter", "can_link", "depth_of", "keeps_all"]
 
 KEEP_ALL_DEPTH: Final = 10_000
+
+MAX_READERS: Final = 1_000
+"""How many subscriptions to one topic a process may have."""
+
+MAX_UNCONFIRMED: Final = 20_000
+"""How many messages are kept until they are confirmed; more than any reader has that confirms."""
+
 DATA: Final = int(Kind.DATA)
 
 
@@ -74,6 +83,7 @@ class Route:
     the oldest is dropped if that may be. What was sent is kept until it is confirmed.
 
     Attributes:
+        name: The topic.
         connection: The link.
         readers: The subscriptions, by gid.
         dropped: How many messages were dropped because others waited.
@@ -89,10 +99,12 @@ class Route:
         "confirmed",
         "connection",
         "dropped",
+        "name",
         "readers",
     )
 
-    def __init__(self, connection: Connection, depth: int, *, keep_all: bool) -> None:
+    def __init__(self, name: str, connection: Connection, depth: int, *, keep_all: bool) -> None:
+        self.name = name
         self.connection = connection
         self.readers: dict[bytes, RemoteReader] = {}
         self.dropped = 0
@@ -108,7 +120,13 @@ class Route:
     # Who listens
 
     def add(self, gid: bytes, reader: RemoteReader) -> None:
-        """Send to a reader from now on."""
+        """Send to a reader from now on.
+
+        Raises:
+            FrameError: there are more of them than can be.
+        """
+        if len(self.readers) >= MAX_READERS:
+            raise FrameError(f"more than {MAX_READERS} subscriptions of one process to {self.name}")
         reader.used = self._sent
         self.readers[gid] = reader
         self._note_readers()
@@ -155,6 +173,8 @@ class Route:
                 self._unconfirmed.append((sequence, data, None))
             if self.connection.write(data):
                 self._sent += 1
+                if len(self._unconfirmed) > MAX_UNCONFIRMED:
+                    self._let_go(self._unconfirmed.popleft()[2])
                 return
             if self.confirmed:
                 self._unconfirmed.pop()
@@ -188,6 +208,8 @@ class Route:
                 self._let_go(memory)
             return False
         self._sent += 1
+        if len(self._unconfirmed) > MAX_UNCONFIRMED:
+            self._let_go(self._unconfirmed.popleft()[2])
         return True
 
     def _let_go(self, memory: Memory | None) -> None:
@@ -221,6 +243,24 @@ class Route:
         self._limited = False
         self._keep_all = True
         self.send(0, last)
+        self.go_on()  # nothing else would: a window may have been waited for, and no credit comes
+
+    @property
+    def waiting(self) -> int:
+        """How many messages wait."""
+        return sum(sequence > 0 for sequence, _, _ in self._waiting)
+
+    @property
+    def settled(self) -> bool:
+        """Whether nothing waits, and nothing has to be sent again if the link breaks."""
+        return not (self._waiting or self._unconfirmed)
+
+    def drop(self) -> None:
+        """Give up what is not known to have arrived."""
+        for entries in (self._unconfirmed, self._waiting):
+            for _, _, memory in entries:
+                self._let_go(memory)
+            entries.clear()
 
     def unsaid(self) -> Iterator[bytes]:
         """Yield, as frames with everything in them, what is not known to have arrived."""
@@ -229,13 +269,6 @@ class Route:
                 yield data if memory is None else whole(data, memory)
                 self._let_go(memory)
             entries.clear()
-
-
-def whole(data: bytes, memory: Memory) -> bytes:
-    """Return a frame that has its payload in itself instead of elsewhere."""
-    (one,) = frame.FrameParser().feed(data)
-    payload = memory.read(Place.unpack(one.payload).size)
-    return frame.pack(one.kind, one.sequence, one.source_ns, one.gid, payload)
 
 
 class LinkWriter(Writer):
@@ -354,6 +387,7 @@ class LinkWriter(Writer):
         gone = frame.pack(Kind.GONE, 0, 0, self._gid)
         for route in self._routes.values():
             route.end(gone)
+            self._hub.keep(self._gid, route)
         self._routes.clear()
 
     # What readers at the other end of a link want
@@ -362,7 +396,12 @@ class LinkWriter(Writer):
         """Send to `reader` from the next message on."""
         route = self._routes.get(connection)
         if route is None:
-            route = Route(connection, depth_of(self.endpoint.qos), keep_all=self.bounded)
+            route = Route(
+                self.endpoint.name,
+                connection,
+                depth_of(self.endpoint.qos),
+                keep_all=self.bounded,
+            )
             self._routes[connection] = route
         route.add(
             reader,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from typing import TYPE_CHECKING, Any, Final
 
-from aionode.errors import DecodeError
+from aionode.errors import DecodeError, FrameError
 from aionode.message import fields
 from aionode.qos import ReliabilityPolicy
 from aionode.transport.base import Announcement, Origin
@@ -28,6 +28,9 @@ __all__ = ["Inlet", "LinkReader", "Tap", "may_be_large"]
 
 WINDOW: Final = 1_000
 """How many messages a KEEP_ALL reader lets a publisher send ahead of what it has used."""
+
+MAX_FULL: Final = 50_000
+"""How many messages wait here for room: those ahead, and what a publisher sends when it ends."""
 
 CONFIRM_MESSAGES: Final = 64
 CONFIRM_BYTES: Final = 1 << 16
@@ -152,6 +155,9 @@ class Inlet:
                 handover.last = one.sequence
                 self._deliver(msg, origin, until_ns)
         else:
+            if len(self.full) >= MAX_FULL:
+                name = self.reader.endpoint.name
+                raise FrameError(f"{name}: {MAX_FULL} messages ahead of what was allowed")
             before = handover.way
             # It may be held for a while, and it is now that it has arrived.
             origin = Origin(one.gid, one.sequence, one.source_ns, True, self._hub.now_ns())
@@ -228,6 +234,7 @@ class Inlet:
         """Wait for nothing more: the publisher has said its last."""
         self.handover.switch()
         self.handover.finish()
+        self._confirm()  # or the publisher's process keeps it until the link ends
 
     def broken(self) -> None:
         """Take Zenoh again."""

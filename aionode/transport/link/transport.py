@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import asyncio
 import logging
 import os
-from contextlib import suppress
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 from aionode.errors import TransportError
 from aionode.transport.base import Transport
@@ -24,9 +22,6 @@ if TYPE_CHECKING:
 __all__ = ["LinkTransport"]
 
 logger = logging.getLogger("aionode.transport.link")
-
-FLUSH_S: Final = 0.15
-"""How long `close` waits for what is still to be sent."""
 
 
 class LinkTransport(Transport):
@@ -90,13 +85,22 @@ class LinkTransport(Transport):
         return await self.zenoh.links()
 
     async def close(self) -> None:
-        """Withdraw everything and disconnect, within a second."""
-        with suppress(TimeoutError):
-            async with asyncio.timeout(FLUSH_S):
-                await self.hub.flush()
-        self.hub.close()
-        self._neighbours.beacon = None
-        await self.zenoh.close()
+        """Withdraw everything and disconnect.
+
+        Linked processes get what waits for them as long as they read; one that reads nothing for a
+        second is given up, and a warning says what was lost. The rest takes a second at most.
+        """
+        try:
+            await self.hub.flush()
+        finally:
+            self.hub.close()
+            self._neighbours.beacon = None
+            await self.zenoh.close()
+
+    def abandon(self) -> None:
+        """Leave the links to the process that this one was forked from."""
+        self.hub.abandon()
+        self.zenoh.abandon()
 
     def create_node(self, node: NodeInfo) -> Announcement:
         """Announce a node."""

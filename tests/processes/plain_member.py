@@ -1,0 +1,65 @@
+"""One of two processes that talk over Zenoh, or both ends in one; its argument says which."""
+
+from __future__ import annotations
+
+import asyncio
+import importlib
+import pkgutil
+import sys
+
+import aionode
+from aionode import Context, Node
+from aionode.interfaces.std_msgs.msg import String
+from aionode.interfaces.std_srvs.srv import Trigger
+
+
+def tell(*words: object) -> None:
+    """Print a line at once."""
+    print(*words, flush=True)  # noqa: T201  # read by the test
+
+
+class Talker(Node):
+    """Says the same all the time, and serves."""
+
+    def __init__(self, **options: object) -> None:
+        super().__init__("talker", **options)  # type: ignore[arg-type]
+        publisher = self.create_publisher(String, "/chatter", 10)
+        self.create_timer(0.02, lambda: publisher.publish(String(data="hello")))
+        self.create_service(Trigger, "/ask", self.answer)
+
+    def answer(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """Say yes."""
+        del request
+        response.success = True
+        return response
+
+
+async def listen(context: Context) -> None:
+    """Hear something, ask something."""
+    async with asyncio.timeout(20), Node("listener", context=context) as node:
+        subscription = node.create_subscription(String, "/chatter", None, 10)
+        for _ in range(3):
+            tell("heard", (await subscription.receive()).data)
+        client = node.create_client(Trigger, "/ask")
+        await client.wait_for_service()
+        tell("answer", (await client.call(Trigger.Request())).success)
+
+
+async def both() -> None:
+    """Talk within one process."""
+    async with Context(transport="local") as context, Talker(context=context):
+        await listen(context)
+
+
+if __name__ == "__main__":
+    if sys.argv[1] == "import":
+        for module in pkgutil.walk_packages(aionode.__path__, "aionode."):
+            if not module.name.endswith("__main__"):
+                importlib.import_module(module.name)
+        tell("imported")
+    elif sys.argv[1] == "both":
+        asyncio.run(both())
+    elif sys.argv[1] == "listen":
+        asyncio.run(listen(Context()))
+    else:
+        aionode.run(Talker)

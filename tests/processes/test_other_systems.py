@@ -1,0 +1,64 @@
+"""What Windows and macOS lack is not needed; simulated, by taking it away from Python."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.peers import isolated_environment
+from tests.processes.process import ROOT, Process
+
+OTHER_SYSTEM = str(Path(__file__).with_name("other_system.py"))
+MEMBER = str(Path(__file__).with_name("plain_member.py"))
+
+both_systems = pytest.mark.parametrize("system", ["windows", "macos"])
+
+
+@pytest.fixture(autouse=True)
+def isolated(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The processes of a test hear each other, and nothing else that runs on the machine."""
+    for name, value in isolated_environment().items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.delenv("AIONODE_LINK", raising=False)
+
+
+def output_of(system: str, *arguments: str) -> str:
+    """Return what a program prints there."""
+    done = subprocess.run(
+        [sys.executable, OTHER_SYSTEM, system, *arguments],
+        capture_output=True,
+        text=True,
+        timeout=40,
+        cwd=ROOT,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@both_systems
+def test_every_module_is_imported(system: str) -> None:
+    """Also those that are of no use there, such as those of links."""
+    assert output_of(system, MEMBER, "import") == "imported\n"
+
+
+@both_systems
+def test_two_nodes_of_one_process_talk(system: str) -> None:
+    """With topics, timers and services."""
+    assert output_of(system, MEMBER, "both").splitlines() == ["heard hello"] * 3 + ["answer True"]
+
+
+@both_systems
+def test_two_processes_and_the_command_line_talk_over_zenoh(system: str) -> None:
+    """There are no links there, and nobody has to say so; Ctrl-C ends a program as everywhere."""
+    with Process(OTHER_SYSTEM, system, MEMBER, "talk") as talker:
+        assert "answer True" in output_of(system, MEMBER, "listen")
+        assert "/chatter" in output_of(system, "aionode", "topic", "list")
+        assert "hello" in output_of(system, "aionode", "topic", "echo", "--once", "/chatter")
+        assert talker.stop(signal.SIGINT)[1] == 0
