@@ -306,6 +306,7 @@ def router_settings(listen: Iterable[str] = (f"tcp/[::]:{ROUTER_PORT}",)) -> dic
         "transport/link/tx/lease": 60_000,
         "transport/link/tx/keep_alive": 2,
         "transport/shared_memory/enabled": False,
-        # For contexts that must know who listens behind it.
-        "adminspace/enabled": True,
+        # Whoever lists what it has in its routing table could lock that for good: zenoh's pull
+        # request 2619.
+        "adminspace/enabled": False,
     }

@@ -57,9 +57,6 @@ class Neighbours(Protocol):
     on_strangers: Callable[[bool], None]
     on_post: Callable[[bytes], None]
 
-    def watch(self, on: bool) -> None:
-        """Look out for strangers that nothing tells of, or no longer."""
-
     def post(self, participant: str, data: bytes) -> None:
         """Send bytes to one other context, in order."""
 
@@ -316,7 +313,6 @@ class Hub:
         self._link_changes += 1
         logger.debug("linked to %s", participant)
         self._near.add(participant)
-        self._neighbours.watch(True)
         self._neighbours.announce_link(participant, True)
         self._meet(connection)
 
@@ -328,8 +324,6 @@ class Hub:
         del self._links[participant]
         self._link_changes += 1
         self._neighbours.announce_link(participant, False)
-        if not self._links:
-            self._neighbours.watch(False)
         for key in [key for key in self._inlets if key[0] is connection]:
             for inlet in self._inlets.pop(key):
                 inlet.broken()
