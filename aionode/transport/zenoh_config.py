@@ -23,6 +23,8 @@ __all__ = [
     "ROUTER_PORT",
     "DiscoveryRange",
     "Network",
+    "introducers",
+    "look_settings",
     "network_from",
     "probed_ports",
     "router_settings",
@@ -237,6 +239,28 @@ def probed_ports(network: Network) -> tuple[int, ...]:
     if network.discovery_range is DiscoveryRange.SYSTEM_DEFAULT:
         return (network.router_port,)
     return (*network.meeting_ports, network.router_port)
+
+
+def introducers(network: Network) -> tuple[str, ...]:
+    """Return the endpoints that a session dials again and again, as far as aionode knows."""
+    if network.config_file is not None or network.discovery_range is DiscoveryRange.OFF:
+        return ()
+    return (*(f"tcp/{LOOPBACK}:{p}" for p in probed_ports(network)), *network.static_peers)
+
+
+def look_settings(endpoint: str) -> dict[str, Any]:
+    """Return the settings of a session that looks what is to be seen at one endpoint."""
+    return {
+        "mode": "client",
+        "connect/endpoints": [endpoint],
+        "connect/timeout_ms": 700,
+        "connect/exit_on_failure": True,
+        "listen/endpoints": [],
+        "scouting/multicast/enabled": False,
+        "scouting/gossip/enabled": False,
+        "transport/unicast/open_timeout": 700,
+        "transport/shared_memory/enabled": False,
+    }
 
 
 def session_settings(network: Network, answering: Iterable[int]) -> dict[str, Any]:

@@ -10,6 +10,7 @@ import zenoh
 
 from aionode.transport.base import Linkage
 from aionode.transport.zenoh.handlers import direct, reason, translated
+from aionode.transport.zenoh.recovery import is_look
 from aionode.wire.liveliness import PREFIX as ROS_PREFIX
 
 if TYPE_CHECKING:
@@ -222,7 +223,7 @@ class Neighbours:
             if zid not in self._connected:
                 del self._known[zid]
         # A router announces nothing, and stays unknown.
-        unknown = {zid for zid in self._connected if zid not in self._known}
+        unknown = {zid for zid in self._connected if zid not in self._known and not is_look(zid)}
         # Everybody reaches the clients of this session, but nobody else sees them.
         self._warn(needed=bool(unknown & self._of_kind(zenoh.WhatAmI.CLIENT)))
         strangers = bool(unknown or self._hosts)

@@ -10,6 +10,7 @@ import select
 import socket
 import threading
 from contextlib import closing, contextmanager, suppress
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import zenoh
@@ -26,7 +27,7 @@ from aionode.transport.zenoh_config import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from aionode.transport.wakeup import Lane
     from aionode.transport.zenoh_config import Network
@@ -147,9 +148,18 @@ def one_at_a_time(port: int | None) -> Iterator[None]:
 
 
 def load_config(
-    network: Network, settings: dict[str, Any], participant: str | None = None
+    network: Network,
+    settings: dict[str, Any],
+    participant: str | None = None,
+    last: Mapping[str, Any] = MappingProxyType({}),
 ) -> zenoh.Config:
     """Return Zenoh's own form of a configuration.
+
+    Args:
+        network: The file and the overrides.
+        settings: What takes the place of Zenoh's defaults.
+        participant: The id of the session.
+        last: What takes the place of everything else.
 
     Raises:
         ConfigurationError: the file or an override cannot be used; the text says why.
@@ -170,6 +180,8 @@ def load_config(
         except zenoh.ZError as error:
             fits = f"key paths and values of Zenoh's configuration fit: {reason(error)}"
             raise ConfigurationError(network.override_source, f"{key}={text}", fits) from error
+    for key, value in last.items():
+        config.insert_json5(key, json.dumps(value))
     if participant is not None:
         config.insert_json5("id", json.dumps(participant))
     return config

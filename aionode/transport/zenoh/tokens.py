@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import zenoh
 
@@ -20,6 +20,10 @@ if TYPE_CHECKING:
 __all__ = ["NodeEntity", "Watcher"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
+
+
+CHECK_S: Final = 2.0
+"""How long the tokens may take to come; it takes a millisecond."""
 
 
 class NodeEntity(Entity):
@@ -40,11 +44,27 @@ def ignore(_: zenoh.Reply) -> None:
     """Do nothing with an answer."""
 
 
+class Check:
+    """What is there now, to be compared with what is known.
+
+    Attributes:
+        found: The tokens that were found.
+        changed: Those that have come or gone meanwhile, of which the answers may be older.
+        failed: Whether there may be more.
+    """
+
+    def __init__(self) -> None:
+        self.found: set[str] = set()
+        self.changed: set[str] = set()
+        self.failed = False
+
+
 class Watcher:
     """Keeps the graph as the tokens of others say."""
 
     def __init__(self, link: Link) -> None:
         self._link = link
+        self._check: Check | None = None
         self._known: dict[str, NodeInfo | EndpointInfo] = {}
         self._domains: set[int] = set()
         self._opening = True
@@ -65,6 +85,7 @@ class Watcher:
             self._subscriber.undeclare()
             self._subscriber = None
         self._lane.clear()
+        self._check = None
         self._known.clear()
         self._domains.clear()
         self._opening = True
@@ -84,14 +105,52 @@ class Watcher:
             timeout=10,
         )
 
-    def _take(self, item: zenoh.Sample | asyncio.Future[None]) -> None:
-        if not isinstance(item, zenoh.Sample):
-            if not item.done():
-                item.set_result(None)
-        elif item.kind == zenoh.SampleKind.PUT:
-            self._add(str(item.key_expr))
-        else:
-            self._remove(str(item.key_expr))
+    def check(self) -> None:
+        """Compare the graph with the tokens that are there, and mend it.
+
+        While connections break and are made anew Zenoh may tell in the wrong order that one token
+        has gone over the one and has come over the other.
+        """
+        session = self._link.session
+        if session is None or self._check is not None:
+            return
+        check = self._check = Check()
+        session.liveliness().get(
+            f"{PREFIX}/{self._link.domain_id}/**",
+            direct(self._lane.put, lambda: self._lane.put(check)),
+            timeout=CHECK_S,
+        )
+
+    def _take(self, item: zenoh.Sample | zenoh.Reply | Check | asyncio.Future[None]) -> None:
+        if isinstance(item, zenoh.Sample):
+            key = str(item.key_expr)
+            if self._check is not None:
+                self._check.changed.add(key)
+            if item.kind == zenoh.SampleKind.PUT:
+                self._add(key)
+            else:
+                self._remove(key)
+        elif isinstance(item, zenoh.Reply):
+            if self._check is None:
+                return
+            if item.ok is None:
+                self._check.failed = True
+            else:
+                self._check.found.add(str(item.ok.key_expr))
+        elif isinstance(item, Check):
+            self._end_check(item)
+        elif not item.done():
+            item.set_result(None)
+
+    def _end_check(self, check: Check) -> None:
+        if check is not self._check:
+            return
+        self._check = None
+        for key in check.found - check.changed:
+            self._add(key)
+        if not check.failed:
+            for key in self._known.keys() - check.found - check.changed:
+                self._remove(key)
 
     def _add(self, key: str) -> None:
         if key in self._known or key.split("/", 3)[2:3] == [self._link.participant]:

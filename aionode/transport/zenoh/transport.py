@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from aionode.transport.base import Transport
 from aionode.transport.zenoh.link import Link
 from aionode.transport.zenoh.neighbours import Neighbours
+from aionode.transport.zenoh.recovery import Recovery
 from aionode.transport.zenoh.services import ZenohRequester, ZenohServer
 from aionode.transport.zenoh.session import Links, close_session, open_session
 from aionode.transport.zenoh.tokens import NodeEntity, Watcher
@@ -46,6 +47,7 @@ class ZenohTransport(Transport):
         self._link = Link(participant, network.domain_id)
         self._watcher = Watcher(self._link)
         self.neighbours = Neighbours(self._link)
+        self._recovery = Recovery(self._link, network, self._watcher.check)
 
     def __repr__(self) -> str:
         state = "closed" if self._link.session is None else "open"
@@ -79,6 +81,7 @@ class ZenohTransport(Transport):
         try:
             self._watcher.start(session)
             self.neighbours.start(session)
+            self._recovery.start(session)
             await links.settle(neighbours)
             answered: asyncio.Future[None] = asyncio.get_running_loop().create_future()
             self._watcher.ask(session, answered)
@@ -95,6 +98,7 @@ class ZenohTransport(Transport):
         with suppress(TimeoutError):
             async with asyncio.timeout(FLUSH_S):
                 await link.flush()
+        self._recovery.stop()
         self.neighbours.stop()
         self._watcher.stop()
         session = link.disconnect()
