@@ -107,6 +107,7 @@ class Hub:
         self._barred: set[str] = set()
         self._timers: set[asyncio.TimerHandle] = set()
         self._link_changes = 0
+        self._junk = 0  # what came by post and is not understood
 
     # The whole
 
@@ -357,7 +358,13 @@ class Hub:
         try:
             frames = FrameParser().feed(data)
         except FrameError as error:
-            logger.warning("something came by post that is not understood: %s", error)
+            self._junk += 1
+            if self._junk == 1:
+                logger.warning(
+                    "something came by post that is not understood: %s; it was left out, and more "
+                    "of it is only counted",
+                    error,
+                )
             return
         sender = participant_of(frames[0]) if frames else ""
         self._read_out(sender)

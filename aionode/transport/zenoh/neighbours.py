@@ -202,6 +202,12 @@ class Neighbours:
             self._known.setdefault(zid, set()).add(key)
         elif zid in self._known:
             self._known[zid].discard(key)
+            self._forget(zid)
+
+    def _forget(self, zid: str) -> None:
+        """Forget a session that announces nothing and is not connected."""
+        if zid not in self._connected and not self._known.get(zid, True):
+            del self._known[zid]
 
     def _take_change(self, event: zenoh.TransportEvent) -> None:
         # `transports()` may still have one whose end is being told.
@@ -210,6 +216,7 @@ class Neighbours:
             self._connected[zid] = event.transport.whatami
         else:
             self._connected.pop(zid, None)
+            self._forget(zid)
         self._update()
 
     def _of_kind(self, kind: zenoh.WhatAmI) -> set[str]:
@@ -219,9 +226,6 @@ class Neighbours:
         """Find out whether there are strangers, and tell."""
         if self._session is None:
             return
-        for zid in [zid for zid, tokens in self._known.items() if not tokens]:
-            if zid not in self._connected:
-                del self._known[zid]
         # A router announces nothing, and stays unknown.
         unknown = {zid for zid in self._connected if zid not in self._known and not is_look(zid)}
         # Everybody reaches the clients of this session, but nobody else sees them.

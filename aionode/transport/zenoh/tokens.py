@@ -25,6 +25,15 @@ logger = logging.getLogger("aionode.transport.zenoh")
 CHECK_S: Final = 2.0
 """How long the tokens may take to come; it takes a millisecond."""
 
+NAMED: Final = 5
+"""How many other domains are named in the log."""
+
+MAX_FOREIGN: Final = 100
+"""How many other domains are remembered, and how many tokens of each."""
+
+SHOWN: Final = 200
+"""How many characters of something unknown are shown."""
+
 
 class NodeEntity(Entity):
     """A node: nothing but its token."""
@@ -66,7 +75,10 @@ class Watcher:
         self._link = link
         self._check: Check | None = None
         self._known: dict[str, NodeInfo | EndpointInfo] = {}
-        self._domains: set[int] = set()
+        # The tokens of nodes in other domains, as far as they are of interest.
+        self._foreign: dict[int, set[str]] = {}
+        self._tell_from = 1
+        self._warned = False
         self._opening = True
         self._subscriber: zenoh.Subscriber[None] | None = None
         self._lane = link.lane(self._take)
@@ -87,13 +99,15 @@ class Watcher:
         self._lane.clear()
         self._check = None
         self._known.clear()
-        self._domains.clear()
+        self._foreign.clear()
+        self._tell_from = 1
+        self._warned = False
         self._opening = True
 
     @property
     def other_domains(self) -> frozenset[int]:
-        """The domains of nodes that were seen and are not heard."""
-        return frozenset(self._domains)
+        """The domains of nodes that are there and are not heard; a hundred at most."""
+        return frozenset(self._foreign)
 
     def ask(self, session: zenoh.Session, answered: asyncio.Future[None]) -> None:
         """Resolve `answered` when the tokens of everyone connected now are in the graph."""
@@ -157,9 +171,9 @@ class Watcher:
             return
         token = parse_token(key)
         if token is None:
-            self._link.note_garbage(f"{PREFIX}/**", f"the liveliness token {key}")
+            self._link.note_garbage(f"{PREFIX}/**", f"the liveliness token {key[:SHOWN]}")
         elif token.domain_id != self._link.domain_id:
-            self._note_domain(token.domain_id)
+            self._note_domain(token.domain_id, key)
         elif self._link.graph is not None:
             info = self._known[key] = token.info
             if isinstance(info, NodeInfo):
@@ -170,7 +184,10 @@ class Watcher:
 
     def _remove(self, key: str) -> None:
         info = self._known.pop(key, None)
-        if info is None or self._link.graph is None:
+        if info is None:
+            self._forget_domain(key)
+            return
+        if self._link.graph is None:
             return
         if isinstance(info, NodeInfo):
             self._link.graph.remove_node(info)
@@ -178,30 +195,49 @@ class Watcher:
             self._link.graph.remove_endpoint(info)
             self._tell_writers(info)
 
+    def _forget_domain(self, key: str) -> None:
+        for domain_id, keys in list(self._foreign.items()):
+            keys.discard(key)
+            if not keys:
+                del self._foreign[domain_id]
+
     def _tell_writers(self, info: EndpointInfo) -> None:
         if info.kind is EndpointKind.SUBSCRIPTION:
             for update in self._link.on_reader.get(info.name, ()):
                 update()
 
     def note_domains(self) -> None:
-        """Say whether there are nodes of other domains, now and when more come.
+        """Say whether there are nodes of other domains, and from now on when more come."""
+        self._opening = False
+        self._tell_domains()
+
+    def _note_domain(self, domain_id: int, key: str) -> None:
+        keys = self._foreign.get(domain_id)
+        if keys is not None:
+            if len(keys) < MAX_FOREIGN:
+                keys.add(key)
+        elif len(self._foreign) < MAX_FOREIGN:
+            self._foreign[domain_id] = {key}
+            if not self._opening:
+                self._tell_domains()
+
+    def _tell_domains(self) -> None:
+        """Name a few of the other domains, and then only each time that there are many more.
 
         A warning if there is nobody else: then the domain is likely to be a mistake.
         """
-        domains, self._domains = self._domains, set()
-        self._opening = False
-        for domain_id in sorted(domains):
-            self._note_domain(domain_id)
-
-    def _note_domain(self, domain_id: int) -> None:
-        if domain_id in self._domains:
+        count = len(self._foreign)
+        alone = not self._known
+        if count < self._tell_from and not (alone and count and not self._warned):
             return
-        self._domains.add(domain_id)
-        if not self._opening:
-            logger.log(
-                logging.INFO if self._known else logging.WARNING,
-                "nodes of domain %d can be reached, but this is domain %d: they do not hear each "
-                "other; ROS_DOMAIN_ID or Context(domain_id=...) changes it",
-                domain_id,
-                self._link.domain_id,
-            )
+        self._tell_from = 10 * max(count, 1)
+        self._warned = self._warned or alone
+        named = sorted(self._foreign)[:NAMED]
+        logger.log(
+            logging.WARNING if alone else logging.DEBUG,
+            "nodes of domain %s%s can be reached, but this is domain %d: they do not hear each "
+            "other; ROS_DOMAIN_ID or Context(domain_id=...) changes it",
+            ", ".join(map(str, named)),
+            f" and {count - len(named)} more" if count > len(named) else "",
+            self._link.domain_id,
+        )
