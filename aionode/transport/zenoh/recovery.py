@@ -64,6 +64,10 @@ ATTEMPTS: Final = 4
 """How often somebody is introduced again; some can be seen, but not be reached from here."""
 
 
+CHECKS: Final = 3
+"""How often the graph is compared after connections have come or gone."""
+
+
 def is_look(zid: str) -> bool:
     """Whether a session is one of ours that is open for a moment, and subscribes to nothing."""
     return zid.startswith(LOOK_IDS) and len(zid) == 32
@@ -85,14 +89,14 @@ class Recovery:
     Args:
         link: The connection of the context.
         network: Whom it dials.
-        on_change: Called a while after connections have come or gone.
+        on_change: Called some times after connections have come or gone.
     """
 
     def __init__(self, link: Link, network: Network, on_change: Callable[[], None]) -> None:
         self._link = link
         self._network = network
         self._on_change = on_change
-        self._changed = False
+        self._checks = 0
         self._changes = link.lane(self._take_change)
         self._looks = link.lane(self._take_look)
         self._listener: zenoh.TransportEventsListener[None] | None = None
@@ -131,7 +135,7 @@ class Recovery:
     def _take_change(self, event: zenoh.TransportEvent) -> None:
         if event.transport.whatami == zenoh.WhatAmI.CLIENT:
             return  # it dials by itself
-        self._changed = True
+        self._checks = CHECKS
         now_s = asyncio.get_running_loop().time()
         if event.kind == zenoh.SampleKind.DELETE:
             self._until_s = now_s + WATCH_S
@@ -191,8 +195,8 @@ class Recovery:
                 "processes %s live, but were not connected any more: connected anew",
                 ", ".join(sorted(missing)[:5]),
             )
-        if self._changed:
-            self._changed = False
+        if self._checks:
+            self._checks -= 1
             self._on_change()
         if self._timer is None and asyncio.get_running_loop().time() < self._until_s:
             self._look_in(FIRST_S if missing else AGAIN_S)

@@ -74,6 +74,7 @@ class Watcher:
     def __init__(self, link: Link) -> None:
         self._link = link
         self._check: Check | None = None
+        self._missing: set[str] = set()
         self._known: dict[str, NodeInfo | EndpointInfo] = {}
         # The tokens of nodes in other domains, as far as they are of interest.
         self._foreign: dict[int, set[str]] = {}
@@ -98,6 +99,7 @@ class Watcher:
             self._subscriber = None
         self._lane.clear()
         self._check = None
+        self._missing = set()
         self._known.clear()
         self._foreign.clear()
         self._tell_from = 1
@@ -123,7 +125,8 @@ class Watcher:
         """Compare the graph with the tokens that are there, and mend it.
 
         While connections break and are made anew Zenoh may tell in the wrong order that one token
-        has gone over the one and has come over the other.
+        has gone over the one and has come over the other. At the same time it may answer without
+        some that are there: one has gone if it is missing twice, and whose it is not connected.
         """
         session = self._link.session
         if session is None or self._check is not None:
@@ -162,9 +165,15 @@ class Watcher:
         self._check = None
         for key in check.found - check.changed:
             self._add(key)
-        if not check.failed:
-            for key in self._known.keys() - check.found - check.changed:
+        session = self._link.session
+        if check.failed or session is None:
+            return
+        missing = self._known.keys() - check.found - check.changed
+        connected = {str(transport.zid) for transport in session.info.transports()}
+        for key in missing & self._missing:
+            if key.split("/", 3)[2] not in connected:
                 self._remove(key)
+        self._missing = missing
 
     def _add(self, key: str) -> None:
         if key in self._known or key.split("/", 3)[2:3] == [self._link.participant]:
