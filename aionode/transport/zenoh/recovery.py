@@ -9,6 +9,10 @@ So after a connection was lost we compare what we see with what whoever introduc
 asked for the tokens of the domain, by a second session that is open for some milliseconds. If it
 sees somebody whom we do not, or does not see us, the connection to it is cut, and Zenoh makes it
 anew at once.
+
+When both sides dial each other anew at the same moment, Zenoh may also make a connection on which
+one of them drops all that comes, since its numbers are behind those of an earlier one. So each
+process that is connected anew is asked in the same way whether it sees us.
 """
 
 from __future__ import annotations
@@ -20,7 +24,8 @@ import secrets
 import socket
 import threading
 from contextlib import closing, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -78,12 +83,25 @@ def is_look(zid: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """A connection that we have dialled, and Zenoh dials again when it is lost."""
+    """A connection; if we have dialled it, its endpoint is where the other side listens."""
 
     zid: str
     source: tuple[str, int]
     target: tuple[str, int]
     endpoint: str
+
+
+@dataclass(slots=True)
+class Look:
+    """What was found.
+
+    Attributes:
+        missing: Those who were not connected, or not on both sides, and to whom ways were cut.
+        sound: Those who were connected anew, and see us.
+    """
+
+    missing: set[str]
+    sound: set[str]
 
 
 class Recovery:
@@ -107,6 +125,8 @@ class Recovery:
         self._timer: asyncio.TimerHandle | None = None
         self._looking = False
         self._until_s = 0.0
+        # Who was connected after somebody was lost, and has not been asked yet whether it sees us.
+        self._made: set[str] = set()
         # How often those who are missing were introduced again.
         self._attempts: dict[str, int] = {}
 
@@ -135,16 +155,21 @@ class Recovery:
         self._looking = False
         self._until_s = 0.0
         self._attempts.clear()
+        self._made.clear()
 
     def _take_change(self, event: zenoh.TransportEvent) -> None:
         if event.transport.whatami == zenoh.WhatAmI.CLIENT:
             return  # it dials by itself
         self._checks = CHECKS
         now_s = asyncio.get_running_loop().time()
+        zid = str(event.transport.zid)
         if event.kind == zenoh.SampleKind.DELETE:
             self._until_s = now_s + WATCH_S
+            self._made.discard(zid)
         elif now_s >= self._until_s:
             return
+        elif event.transport.whatami == zenoh.WhatAmI.PEER:
+            self._made.add(zid)
         self._look_in(FIRST_S)
 
     def _look_in(self, delay_s: float) -> None:
@@ -160,37 +185,69 @@ class Recovery:
         if session is None or self._looking:
             return
         self._looking = True
-        threading.Thread(target=self._look_in_thread, args=(session,), name="aionode-zenoh").start()
+        threading.Thread(
+            target=self._look_in_thread, args=(session, set(self._made)), name="aionode-zenoh"
+        ).start()
 
-    def _look_in_thread(self, session: zenoh.Session) -> None:
-        missing: set[str] = set()
+    def _look_in_thread(self, session: zenoh.Session, made: set[str]) -> None:
+        look = Look(set(), set())
         with suppress(zenoh.ZError, ConfigurationError):
             way = way_to_introducer(session, self._network)
             if way is not None:
-                missing = self._missing(session, way)
-                if missing:
-                    threading.Event().wait(SURE_S)
-                    missing &= self._missing(session, way)
-                missing = {zid for zid in missing if self._attempts.get(zid, 0) < ATTEMPTS}
-                if missing:
+                look.missing = self._surely(partial(self._missing, session, way))
+                if look.missing:
                     cut(way)
-        self._looks.put(missing)
+        for zid in made:
+            if self._session is not session:
+                break
+            ways = ways_to(session, zid)
+            # Of those that it has dialled, the other end listens to nobody.
+            deaf = any(self._surely(partial(self._deaf, session, way)) for way in ways)
+            if deaf:
+                look.missing.add(zid)
+                for way in ways:
+                    cut(way)
+            elif ways:
+                look.sound.add(zid)
+        self._looks.put(look)
+
+    def _surely(self, ask: Callable[[], set[str]]) -> set[str]:
+        """Return what is answered twice, apart from those for whom enough was tried."""
+        found = ask()
+        if found:
+            threading.Event().wait(SURE_S)
+            found &= ask()
+        return {zid for zid in found if self._attempts.get(zid, 0) < ATTEMPTS}
 
     def _missing(self, session: zenoh.Session, way: Way) -> set[str]:
         """Return who is seen at the other end of a way and not here, or the other way round we."""
-        own = self._link.participant
-        settings = look_settings(way.endpoint)
-        look_id = LOOK_IDS + secrets.token_hex(12)
-        config = load_config(self._network, {}, look_id, settings)
-        with closing(zenoh.open(config)) as look:
-            there = participants(look, self._link.domain_id)
+        there = self._seen_at(way)
         here = participants(session, self._link.domain_id)
-        return (there - here) | ({own} & here - there)
+        return (there - here) | ({self._link.participant} & here - there)
 
-    def _take_look(self, missing: set[str]) -> None:
+    def _deaf(self, session: zenoh.Session, way: Way) -> set[str]:
+        """Return who is at the other end of a way, if that does not see us."""
+        own = self._link.participant
+        try:
+            there = self._seen_at(way)
+        except zenoh.ZError:  # nobody listens there
+            return set()
+        here = participants(session, self._link.domain_id)
+        return {way.zid} if own in here and own not in there and way.zid in there else set()
+
+    def _seen_at(self, way: Way) -> set[str]:
+        """Return the participants that are seen at the other end of a way."""
+        look_id = LOOK_IDS + secrets.token_hex(12)
+        config = load_config(self._network, {}, look_id, look_settings(way.endpoint))
+        with closing(zenoh.open(config)) as look:
+            return participants(look, self._link.domain_id)
+
+    def _take_look(self, look: Look) -> None:
         self._looking = False
         if self._session is None:
             return
+        missing = look.missing
+        self._made -= look.sound
         self._attempts = {zid: self._attempts.get(zid, 0) + 1 for zid in missing} | {
             zid: count for zid, count in self._attempts.items() if count >= ATTEMPTS
         }
@@ -219,16 +276,26 @@ def participants(session: zenoh.Session, domain_id: int) -> set[str]:
 def way_to_introducer(session: zenoh.Session, network: Network) -> Way | None:
     """Return a connection to somebody who introduces others, a router if there is one."""
     routers = {str(zid) for zid in session.info.routers_zid()}
-    ways = []
     dialled = {
         address: endpoint for endpoint in introducers(network) for address in addresses_of(endpoint)
     }
+    ways = [
+        replace(way, endpoint=dialled[way.target])
+        for way in ways_to(session)
+        if way.target in dialled
+    ]
+    return min(ways, key=lambda way: way.zid not in routers, default=None)
+
+
+def ways_to(session: zenoh.Session, zid: str | None = None) -> list[Way]:
+    """Return the connections to one other session, or to all."""
+    ways = []
     for each in session.info.links():
         source, target = address_in(str(each.src)), address_in(str(each.dst))
-        if source is not None and target in dialled:
-            ways.append(Way(str(each.zid), source, target, dialled[target]))
-    ways.sort(key=lambda way: way.zid not in routers)
-    return ways[0] if ways else None
+        if source is not None and target is not None and zid in (None, str(each.zid)):
+            endpoint = str(each.dst).partition("?")[0].partition("#")[0]
+            ways.append(Way(str(each.zid), source, target, endpoint))
+    return ways
 
 
 def address_in(locator: str) -> tuple[str, int] | None:
