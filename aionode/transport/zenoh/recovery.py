@@ -7,12 +7,8 @@ that others are lost as well. Those are named too early, and never again.
 
 So after a connection was lost we compare what we see with what whoever introduces sees: it is
 asked for the tokens of the domain, by a second session that is open for some milliseconds. If it
-sees somebody whom we do not, or does not see us, the connection to it is cut, and Zenoh makes it
-anew at once.
-
-When both sides dial each other anew at the same moment, Zenoh may also make a connection on which
-one of them drops all that comes, since its numbers are behind those of an earlier one. So each
-process that is connected anew is asked in the same way whether it sees us.
+sees somebody whom we do not, or to whom we have lost the connection, or does not see us, the
+connection to it is cut, and Zenoh makes it anew at once.
 """
 
 from __future__ import annotations
@@ -24,8 +20,7 @@ import secrets
 import socket
 import threading
 from contextlib import closing, suppress
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -83,25 +78,12 @@ def is_look(zid: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """A connection; if we have dialled it, its endpoint is where the other side listens."""
+    """A connection that we have dialled, and Zenoh dials again when it is lost."""
 
     zid: str
     source: tuple[str, int]
     target: tuple[str, int]
     endpoint: str
-
-
-@dataclass(slots=True)
-class Look:
-    """What was found.
-
-    Attributes:
-        missing: Those who were not connected, or not on both sides, and to whom ways were cut.
-        sound: Those who were connected anew, and see us.
-    """
-
-    missing: set[str]
-    sound: set[str]
 
 
 class Recovery:
@@ -125,8 +107,9 @@ class Recovery:
         self._timer: asyncio.TimerHandle | None = None
         self._looking = False
         self._until_s = 0.0
-        # Who was connected after somebody was lost, and has not been asked yet whether it sees us.
-        self._made: set[str] = set()
+        # Whose connection was lost, and not made anew. A router may bring what they send meanwhile,
+        # but not always what we send.
+        self._lost: set[str] = set()
         # How often those who are missing were introduced again.
         self._attempts: dict[str, int] = {}
 
@@ -155,7 +138,7 @@ class Recovery:
         self._looking = False
         self._until_s = 0.0
         self._attempts.clear()
-        self._made.clear()
+        self._lost.clear()
 
     def _take_change(self, event: zenoh.TransportEvent) -> None:
         if event.transport.whatami == zenoh.WhatAmI.CLIENT:
@@ -164,12 +147,14 @@ class Recovery:
         now_s = asyncio.get_running_loop().time()
         zid = str(event.transport.zid)
         if event.kind == zenoh.SampleKind.DELETE:
+            if now_s >= self._until_s:
+                self._lost.clear()  # nobody looks for those any more
             self._until_s = now_s + WATCH_S
-            self._made.discard(zid)
-        elif now_s >= self._until_s:
-            return
-        elif event.transport.whatami == zenoh.WhatAmI.PEER:
-            self._made.add(zid)
+            self._lost.add(zid)
+        else:
+            self._lost.discard(zid)
+            if now_s >= self._until_s:
+                return
         self._look_in(FIRST_S)
 
     def _look_in(self, delay_s: float) -> None:
@@ -186,54 +171,30 @@ class Recovery:
             return
         self._looking = True
         threading.Thread(
-            target=self._look_in_thread, args=(session, set(self._made)), name="aionode-zenoh"
+            target=self._look_in_thread, args=(session, set(self._lost)), name="aionode-zenoh"
         ).start()
 
-    def _look_in_thread(self, session: zenoh.Session, made: set[str]) -> None:
-        look = Look(set(), set())
+    def _look_in_thread(self, session: zenoh.Session, lost: set[str]) -> None:
+        missing: set[str] = set()
         with suppress(zenoh.ZError, ConfigurationError):
             way = way_to_introducer(session, self._network)
             if way is not None:
-                look.missing = self._surely(partial(self._missing, session, way))
-                if look.missing:
+                missing = self._missing(session, way, lost)
+                if missing:
+                    threading.Event().wait(SURE_S)
+                    missing &= self._missing(session, way, lost)
+                missing = {zid for zid in missing if self._attempts.get(zid, 0) < ATTEMPTS}
+                if missing:
                     cut(way)
-        for zid in made:
-            if self._session is not session:
-                break
-            ways = ways_to(session, zid)
-            # Of those that it has dialled, the other end listens to nobody.
-            deaf = any(self._surely(partial(self._deaf, session, way)) for way in ways)
-            if deaf:
-                look.missing.add(zid)
-                for way in ways:
-                    cut(way)
-            elif ways:
-                look.sound.add(zid)
-        self._looks.put(look)
+        self._looks.put(missing)
 
-    def _surely(self, ask: Callable[[], set[str]]) -> set[str]:
-        """Return what is answered twice, apart from those for whom enough was tried."""
-        found = ask()
-        if found:
-            threading.Event().wait(SURE_S)
-            found &= ask()
-        return {zid for zid in found if self._attempts.get(zid, 0) < ATTEMPTS}
-
-    def _missing(self, session: zenoh.Session, way: Way) -> set[str]:
+    def _missing(self, session: zenoh.Session, way: Way, lost: set[str]) -> set[str]:
         """Return who is seen at the other end of a way and not here, or the other way round we."""
         there = self._seen_at(way)
         here = participants(session, self._link.domain_id)
-        return (there - here) | ({self._link.participant} & here - there)
-
-    def _deaf(self, session: zenoh.Session, way: Way) -> set[str]:
-        """Return who is at the other end of a way, if that does not see us."""
-        own = self._link.participant
-        try:
-            there = self._seen_at(way)
-        except zenoh.ZError:  # nobody listens there
-            return set()
-        here = participants(session, self._link.domain_id)
-        return {way.zid} if own in here and own not in there and way.zid in there else set()
+        connected = {str(transport.zid) for transport in session.info.transports()}
+        unseen = {self._link.participant} & here - there
+        return (there - here) | (there & lost - connected) | unseen
 
     def _seen_at(self, way: Way) -> set[str]:
         """Return the participants that are seen at the other end of a way."""
@@ -242,12 +203,10 @@ class Recovery:
         with closing(zenoh.open(config)) as look:
             return participants(look, self._link.domain_id)
 
-    def _take_look(self, look: Look) -> None:
+    def _take_look(self, missing: set[str]) -> None:
         self._looking = False
         if self._session is None:
             return
-        missing = look.missing
-        self._made -= look.sound
         self._attempts = {zid: self._attempts.get(zid, 0) + 1 for zid in missing} | {
             zid: count for zid, count in self._attempts.items() if count >= ATTEMPTS
         }
@@ -276,26 +235,16 @@ def participants(session: zenoh.Session, domain_id: int) -> set[str]:
 def way_to_introducer(session: zenoh.Session, network: Network) -> Way | None:
     """Return a connection to somebody who introduces others, a router if there is one."""
     routers = {str(zid) for zid in session.info.routers_zid()}
+    ways = []
     dialled = {
         address: endpoint for endpoint in introducers(network) for address in addresses_of(endpoint)
     }
-    ways = [
-        replace(way, endpoint=dialled[way.target])
-        for way in ways_to(session)
-        if way.target in dialled
-    ]
-    return min(ways, key=lambda way: way.zid not in routers, default=None)
-
-
-def ways_to(session: zenoh.Session, zid: str | None = None) -> list[Way]:
-    """Return the connections to one other session, or to all."""
-    ways = []
     for each in session.info.links():
         source, target = address_in(str(each.src)), address_in(str(each.dst))
-        if source is not None and target is not None and zid in (None, str(each.zid)):
-            endpoint = str(each.dst).partition("?")[0].partition("#")[0]
-            ways.append(Way(str(each.zid), source, target, endpoint))
-    return ways
+        if source is not None and target in dialled:
+            ways.append(Way(str(each.zid), source, target, dialled[target]))
+    ways.sort(key=lambda way: way.zid not in routers)
+    return ways[0] if ways else None
 
 
 def address_in(locator: str) -> tuple[str, int] | None:
