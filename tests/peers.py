@@ -189,12 +189,8 @@ def ros_session() -> zenoh.Session:
     )
 
 
-def ros_router(*, readable: bool = True) -> zenoh.Session:
-    """Return a router with the settings of `rmw_zenohd`, but for its port and on loopback only.
-
-    Args:
-        readable: Whether it tells who is connected to it, as by default.
-    """
+def ros_router() -> zenoh.Session:
+    """Return a router with the settings of `rmw_zenohd`, but for its port and on loopback only."""
     return zenoh.open(
         zenoh_config(
             {
@@ -211,7 +207,7 @@ def ros_router(*, readable: bool = True) -> zenoh.Session:
                 "transport/link/tx/lease": 60_000,
                 "transport/link/tx/keep_alive": 2,
                 "transport/shared_memory/enabled": False,
-                "adminspace/enabled": readable,
+                "adminspace/enabled": True,
             }
         )
     )

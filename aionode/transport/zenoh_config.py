@@ -4,7 +4,8 @@ Pure functions; nothing is connected here, and zenoh is not imported.
 
 Without configuration the processes of one machine find each other over loopback: each tries to
 listen on one of three meeting ports, and dials the others and the port of a ROS 2 router. Whoever
-knows somebody introduces them to the rest, after which all are linked directly.
+knows somebody introduces them to the rest, after which all are linked directly. If programs that
+do not speak Zenoh have all three, there are three more.
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ __all__ = [
     "ROUTER_PORT",
     "DiscoveryRange",
     "Network",
+    "introducers",
+    "look_settings",
     "network_from",
     "probed_ports",
     "router_settings",
@@ -31,6 +34,9 @@ __all__ = [
 
 MEETING_PORTS: Final = (17449, 17450, 17451)
 """Where processes of one machine meet: below the ephemeral ports, and not a ROS router's."""
+
+SPARE_PORTS: Final = (17452, 17453, 17454)
+"""Where they meet if other programs have taken all of those."""
 
 ROUTER_PORT: Final = 7447
 """Where `rmw_zenohd` and `aionode router` listen."""
@@ -70,6 +76,7 @@ class Network:
         overrides: Settings that win over all others: key path and JSON5 text.
         override_source: Where the overrides come from, for error texts.
         meeting_ports: Ports on which processes of one machine meet.
+        spare_ports: Further ones, for when other programs have taken all of those.
         router_port: Port of a router on this machine.
     """
 
@@ -81,6 +88,7 @@ class Network:
     overrides: tuple[tuple[str, str], ...] = ()
     override_source: str = "config"
     meeting_ports: tuple[int, ...] = MEETING_PORTS
+    spare_ports: tuple[int, ...] = SPARE_PORTS
     router_port: int = ROUTER_PORT
 
 
@@ -106,7 +114,7 @@ def network_from(
     Raises:
         ConfigurationError: one of them does not fit; the text names it.
     """
-    ports = meeting_ports(environ)
+    ports, spare_ports = meeting_ports(environ)
     router_port = port(
         environ.get("AIONODE_ROUTER_PORT") or str(ROUTER_PORT), "AIONODE_ROUTER_PORT"
     )
@@ -141,6 +149,7 @@ def network_from(
         overrides=overrides,
         override_source=override_source,
         meeting_ports=ports,
+        spare_ports=spare_ports,
         router_port=router_port,
     )
 
@@ -222,12 +231,16 @@ def port(text: str, source: str) -> int:
     return int(text)
 
 
-def meeting_ports(environ: Mapping[str, str]) -> tuple[int, ...]:
-    """Return the ports to meet on. Tests set others, so as not to hear what else runs."""
+def meeting_ports(environ: Mapping[str, str]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Return the ports to meet on, and spare ones.
+
+    Tests set others, so as not to hear what else runs.
+    """
     text = environ.get(MEETING_PORTS_VARIABLE, "")
     if not text:
-        return MEETING_PORTS
-    return tuple(port(p.strip(), MEETING_PORTS_VARIABLE) for p in text.split(","))
+        return MEETING_PORTS, SPARE_PORTS
+    ports = tuple(port(p.strip(), MEETING_PORTS_VARIABLE) for p in text.split(","))
+    return ports[: len(MEETING_PORTS)], ports[len(MEETING_PORTS) :]
 
 
 def probed_ports(network: Network) -> tuple[int, ...]:
@@ -239,16 +252,39 @@ def probed_ports(network: Network) -> tuple[int, ...]:
     return (*network.meeting_ports, network.router_port)
 
 
-def session_settings(network: Network, answering: Iterable[int]) -> dict[str, Any]:
+def introducers(network: Network) -> tuple[str, ...]:
+    """Return the endpoints that a session dials again and again, as far as aionode knows."""
+    if network.config_file is not None or network.discovery_range is DiscoveryRange.OFF:
+        return ()
+    ports = (*probed_ports(network), *network.spare_ports)
+    return (*(f"tcp/{LOOPBACK}:{p}" for p in ports), *network.static_peers)
+
+
+def look_settings(endpoint: str) -> dict[str, Any]:
+    """Return the settings of a session that looks what is to be seen at one endpoint."""
+    return {
+        "mode": "client",
+        "connect/endpoints": [endpoint],
+        "connect/timeout_ms": 700,
+        "connect/exit_on_failure": True,
+        "listen/endpoints": [],
+        "scouting/multicast/enabled": False,
+        "scouting/gossip/enabled": False,
+        "transport/unicast/open_timeout": 700,
+        "transport/shared_memory/enabled": False,
+    }
+
+
+def session_settings(network: Network, taken: Iterable[int]) -> dict[str, Any]:
     """Return the settings of a session, by key path, without those of `network.overrides`.
 
     Args:
         network: What the context was told.
-        answering: Those of `probed_ports` where somebody listens.
+        taken: Those of its meeting ports on which it cannot listen.
     """
     if network.config_file is not None:
         return {}
-    taken = set(answering)
+    taken = set(taken)
     mine = next((p for p in network.meeting_ports if p not in taken), None)
     near = network.discovery_range in (DiscoveryRange.LOCALHOST, DiscoveryRange.SUBNET)
     off = network.discovery_range is DiscoveryRange.OFF
@@ -306,6 +342,7 @@ def router_settings(listen: Iterable[str] = (f"tcp/[::]:{ROUTER_PORT}",)) -> dic
         "transport/link/tx/lease": 60_000,
         "transport/link/tx/keep_alive": 2,
         "transport/shared_memory/enabled": False,
-        # For contexts that must know who listens behind it.
-        "adminspace/enabled": True,
+        # Whoever lists what it has in its routing table could lock that for good: zenoh's pull
+        # request 2619.
+        "adminspace/enabled": False,
     }

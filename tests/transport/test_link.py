@@ -208,6 +208,18 @@ async def test_garbage_ends_the_link_and_not_the_stream(
     assert len(garbage) < 40 or "no frame" in caplog.text
 
 
+async def test_junk_by_post_is_said_once_and_counted(
+    folder: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Anybody on the network may send any amount of it."""
+    async with quiet_node("one") as node:
+        for _ in range(500):
+            hub_of(node)._on_post(b"no frame at all" * 10)
+
+        assert hub_of(node)._junk == 500
+    assert sum("came by post" in text for text in caplog.messages) == 1
+
+
 async def test_strangers_at_the_socket_get_nothing_and_stop_nothing(folder: Path) -> None:
     """Silence, garbage, or a frame before the greeting: none of it becomes a link."""
     async with two_nodes() as nodes:

@@ -114,6 +114,14 @@ def test_a_peer_is_a_host_a_port_or_an_endpoint(peer: str, endpoints: list[str])
     assert list(network_from({"ROS_STATIC_PEERS": f"; {peer};"}).static_peers) == endpoints
 
 
+def test_meeting_ports_beyond_three_are_spare() -> None:
+    """They are used if other programs have all three."""
+    network = network_from({"AIONODE_MEETING_PORTS": "1,2,3,4,5"})
+
+    assert network.meeting_ports == (1, 2, 3)
+    assert network.spare_ports == (4, 5)
+
+
 def settings(network: Network, *answering: int) -> dict[str, Any]:
     """Return the settings when somebody listens on these ports."""
     return session_settings(network, answering)

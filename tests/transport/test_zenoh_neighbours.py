@@ -12,7 +12,6 @@ import zenoh  # noqa: TID251  # plays the other participants, without aionode
 
 from aionode.graph import Graph
 from aionode.settle import one_turn
-from aionode.transport.zenoh.routers import listeners_in, seen_in
 from aionode.transport.zenoh.session import close_session, open_router
 from aionode.transport.zenoh.transport import ZenohTransport
 from aionode.transport.zenoh_config import network_from
@@ -40,31 +39,11 @@ class Heard:
             self._changed.clear()
             await self._changed.wait()
 
-    def asks(self) -> bool:
-        """Return whether the routers will be asked again."""
-        return self.neighbours._routers._timer is not None
-
     async def past(self) -> None:
         """Wait until there were strangers, and are none now; both may have been told before."""
         while not self.told or self.neighbours.strangers:
             self._changed.clear()
             await self._changed.wait()
-
-    async def look(self) -> bool:
-        """Ask the routers now, wait for the end of their answers, and return what is told."""
-        routers = self.neighbours._routers
-        done = asyncio.Event()
-        on_answer, routers._on_answer = routers._on_answer, done.set
-        try:
-            while routers._look is not None:  # one that may have begun too early
-                await done.wait()
-                done.clear()
-            routers.ask()
-            await done.wait()
-        finally:
-            routers._on_answer = on_answer
-        on_answer()
-        return self.neighbours.strangers
 
 
 @asynccontextmanager
@@ -90,9 +69,9 @@ async def heard() -> AsyncIterator[Heard]:
 
 
 @asynccontextmanager
-async def router(*, readable: bool = True) -> AsyncIterator[zenoh.Session]:
+async def router() -> AsyncIterator[zenoh.Session]:
     """A router of ROS."""
-    session = await asyncio.to_thread(lambda: ros_router(readable=readable))
+    session = await asyncio.to_thread(ros_router)
     try:
         yield session
     finally:
@@ -159,14 +138,14 @@ async def test_strangers_are_told_with_the_connection(
     seen: list[bool] = []
     there = asyncio.Event()
 
-    note = heard.neighbours._on_connected
+    note = heard.neighbours._update
 
     def on_connected() -> None:
         note()
         seen.append(heard.neighbours.strangers)
         there.set()
 
-    monkeypatch.setattr(heard.neighbours, "_on_connected", on_connected)
+    monkeypatch.setattr(heard.neighbours, "_update", on_connected)
     with raw_session():
         await there.wait()
 
@@ -207,107 +186,27 @@ async def test_a_context_is_no_stranger(heard: Heard, domain_id: int) -> None:
         await heard.until(False)
 
 
-async def test_a_router_that_nobody_strange_listens_behind_is_no_stranger(heard: Heard) -> None:
-    """There is one in every system of ROS."""
-    heard.neighbours.watch(True)
-    async with router(), context("b2"):
-        await heard.past()
-        await heard.look()
+async def test_a_router_is_a_stranger(heard: Heard) -> None:
+    """Nothing tells who listens behind it, also if everybody that can be seen is known."""
+    async with context("b2"):
+        async with router():
+            await heard.until(True)
         await heard.until(False)
 
 
-async def test_our_own_router_tells_who_is_behind_it(heard: Heard) -> None:
-    """As that of ROS does."""
-    heard.neighbours.watch(True)
+async def test_our_own_router_answers_no_question_of_its_admin_space() -> None:
+    """Whoever lists what it has in its routing table could lock that for good."""
     session = await open_router([f"tcp/127.0.0.1:{router_port()}"])
     try:
-        await heard.past()
+        with client(router_port()) as asking:
+            remote = zenoh.Locality.REMOTE  # a session answers for itself
+            replies = await asyncio.to_thread(
+                lambda: list(asking.get("@/**", timeout=1, allowed_destination=remote))
+            )
     finally:
         await close_session(session)
 
-
-async def test_a_router_is_a_stranger_while_nobody_watches(heard: Heard) -> None:
-    """Then it is not asked, which would cost an idle context a wake-up each second."""
-    async with router():
-        await heard.until(True)
-        assert not heard.asks()
-        heard.neighbours.watch(True)
-        await heard.until(False)
-        assert heard.asks()
-        heard.neighbours.watch(False)
-
-        assert heard.neighbours.strangers
-        assert not heard.asks()
-
-
-async def test_a_router_that_cannot_be_read_is_a_stranger(heard: Heard) -> None:
-    """Nobody knows who is behind it."""
-    heard.neighbours.watch(True)
-    async with router(readable=False):
-        await heard.until(True)
-        assert await heard.look()
-    await heard.until(False)
-
-
-@pytest.mark.parametrize("key", ["**", f"{DOMAIN_ID}/chatter/**", "*/chatter/*/*"])
-async def test_who_subscribes_behind_a_router_is_a_stranger(heard: Heard, key: str) -> None:
-    """From the next question on, and until it no longer does."""
-    heard.neighbours.watch(True)
-    async with router():
-        await heard.past()
-        with client(router_port()) as session:
-            subscriber = session.declare_subscriber(key, nobody)
-            assert await heard.look()
-            subscriber.undeclare()
-            assert not await heard.look()
-
-
-async def test_routers_are_asked_again(heard: Heard) -> None:
-    """Nothing else tells of a new subscription behind one."""
-    heard.neighbours.watch(True)
-    async with router():
-        await heard.past()
-        with client(router_port()) as session:
-            _subscriber = session.declare_subscriber("**", nobody)
-            await heard.until(True)
-
-
-async def test_who_hears_nothing_of_ours_behind_a_router_is_no_stranger(heard: Heard) -> None:
-    """It may ask, answer, publish, watch tokens, and subscribe in another domain."""
-    heard.neighbours.watch(True)
-    async with router():
-        await heard.past()
-        with client(router_port()) as session:
-            _declared = [
-                session.declare_queryable(f"{DOMAIN_ID}/**", nobody),
-                session.declare_publisher(f"{DOMAIN_ID}/chatter"),
-                session.liveliness().declare_subscriber("**", nobody),
-                session.declare_subscriber(f"{DOMAIN_ID + 1}/**", nobody),
-            ]
-            assert not await heard.look()
-
-
-async def test_a_ros_node_behind_a_router_is_no_stranger(heard: Heard) -> None:
-    """Whatever it subscribes to."""
-    heard.neighbours.watch(True)
-    async with router():
-        await heard.past()
-        with client(router_port()) as session:
-            _subscriber = session.declare_subscriber("**", nobody)
-            assert await heard.look()
-            _token = announce_node(session, DOMAIN_ID + 1)
-            await heard.until(False)
-
-
-async def test_a_router_that_subscribes_itself_is_a_stranger() -> None:
-    """A plugin of a router, such as a storage, has no session."""
-    async with router() as session:
-        _subscriber = session.declare_subscriber("**", nobody)
-        async with context("a1") as transport:
-            heard = Heard(transport)
-            heard.neighbours.watch(True)
-
-            assert await heard.look()
+    assert replies == []
 
 
 async def test_a_client_of_one_context_is_a_stranger_to_all(heard: Heard) -> None:
@@ -352,7 +251,6 @@ async def test_nothing_is_declared_without_a_beacon() -> None:
     async with context("a1", linked=False) as transport:
         neighbours = transport.neighbours
         told = Heard(transport)
-        neighbours.watch(True)
         with raw_session() as session:
             _token = announce_node(session, DOMAIN_ID)
             await until_nodes(transport, 1)
@@ -368,19 +266,15 @@ async def test_closing_leaves_nothing_behind() -> None:
         async with router(), context("b2"):
             async with context("a1") as transport:
                 heard = Heard(transport)
-                heard.neighbours.watch(True)
                 session = stack.enter_context(raw_session())
                 await known(session, "@aionode/*/*/link/**", 2)
                 await heard.until(True)
-            neighbours, routers = transport.neighbours, transport.neighbours._routers
+            neighbours = transport.neighbours
 
             assert not neighbours.strangers
             assert not neighbours._declared
             assert not neighbours._known
             assert not neighbours._connected
-            assert routers._timer is None
-            assert routers._look is None
-            assert not routers._watching
             tokens = {
                 str(each.ok.key_expr) for each in session.liveliness().get("@aionode/**") if each.ok
             }
@@ -398,36 +292,3 @@ async def test_it_opens_again() -> None:
             await heard.until(True)
             await transport.close()
         assert not transport.neighbours.strangers
-
-
-@pytest.mark.parametrize(
-    "text",
-    [b"", b"\xff", b"[]", b"{}", b'{"sessions": 1}', b'{"sessions": [1]}', b'{"sessions": [{}]}'],
-)
-def test_an_answer_in_no_known_form_is_none(text: bytes) -> None:
-    """The router counts as one that cannot be read."""
-    assert seen_in({"r": text}).unread == {"r"}
-
-
-def test_a_router_behind_a_router_has_to_answer_too() -> None:
-    """The first knows only that it is there."""
-    first = b'{"sessions": [{"peer": "2", "whatami": "router"}, {"peer": "c", "whatami": "peer"}]}'
-    second = b'{"sessions": [{"peer": "1", "whatami": "router"}], "plugins": null}'
-
-    assert seen_in({"1": first}).unread == {"2"}
-    assert seen_in({"1": first, "2": second}).unread == set()
-    assert seen_in({"1": first, "2": second}).behind == {"c"}
-
-
-@pytest.mark.parametrize(
-    ("text", "listeners"),
-    [
-        (b'{"routers": ["r"], "peers": ["p"], "clients": ["c"]}', {"p", "c"}),
-        (b'{"routers": ["r"], "peers": [], "clients": []}', {"r"}),
-        (b'{"routers": ["other"], "peers": [], "clients": []}', set()),
-        (b"nonsense", {"r"}),
-    ],
-)
-def test_a_router_says_who_listens(text: bytes, listeners: set[str]) -> None:
-    """It has itself in the list also when it subscribes for others."""
-    assert listeners_in({"r/router/subscriber/**": text}) == listeners

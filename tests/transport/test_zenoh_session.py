@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import os
 import socket
 import threading
-from contextlib import closing
+from collections.abc import Iterable
+from contextlib import ExitStack, closing
 from pathlib import Path
 
 import pytest
@@ -14,12 +16,14 @@ import pytest
 from aionode.context import Context
 from aionode.errors import ConfigurationError, TransportError
 from aionode.interfaces.std_msgs.msg import Int32
+from aionode.node import Node
 from aionode.settle import one_turn
 from aionode.transport.zenoh.session import (
     answering_ports,
     close_session,
     in_thread,
     open_router,
+    speaking_ports,
 )
 from tests.peers import free_ports, quiet_node, ros_router, ros_session
 
@@ -31,6 +35,95 @@ def test_only_ports_that_accept_a_connection_answer() -> None:
         (free,) = free_ports(1)
 
         assert answering_ports([taken, free]) == [taken]
+
+
+def held(stack: ExitStack, ports: Iterable[int], *, listening: bool = True) -> None:
+    """Take ports as programs that do not speak Zenoh do."""
+    for port in ports:
+        one = stack.enter_context(socket.socket())
+        one.bind(("127.0.0.1", port))
+        if listening:
+            one.listen()
+
+
+def meeting_ports(monkeypatch: pytest.MonkeyPatch, count: int) -> list[int]:
+    """Set ports to meet on, of which those beyond three are spare."""
+    ports = free_ports(count)
+    monkeypatch.setenv("AIONODE_MEETING_PORTS", ",".join(map(str, ports)))
+    return ports
+
+
+def sayings(caplog: pytest.LogCaptureFixture) -> list[tuple[int, str]]:
+    """Return level and text of what was said about ports that others hold."""
+    return [
+        (record.levelno, record.getMessage())
+        for record in caplog.records
+        if "other programs hold" in record.getMessage()
+    ]
+
+
+def test_who_answers_as_zenoh_does_is_told_from_others() -> None:
+    """A port that accepts connections may belong to any program."""
+    silent, router_port = free_ports(1)[0], int(os.environ["AIONODE_ROUTER_PORT"])
+    with ExitStack() as stack:
+        held(stack, [silent])
+        stack.enter_context(closing(ros_router()))
+
+        assert speaking_ports([silent, router_port]) == {router_port}
+        assert speaking_ports([silent]) == set()
+
+
+async def both_seen(node: Node) -> None:
+    """Wait until a node sees both of a test."""
+    async with asyncio.timeout(5):
+        await node.graph.until(lambda: {"one", "two"} == {n.name for n in node.graph.nodes()})
+
+
+async def test_processes_meet_elsewhere_if_others_have_all_their_ports(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Programs that know nothing of aionode may use any port."""
+    ports = meeting_ports(monkeypatch, 6)
+    with ExitStack() as stack, caplog.at_level(logging.INFO, "aionode.transport.zenoh"):
+        held(stack, ports[:3])
+        async with quiet_node("one") as one, quiet_node("two") as two:
+            for node in (one, two):
+                await both_seen(node)
+
+    assert [level for level, _ in sayings(caplog)] == [logging.INFO, logging.INFO]
+
+
+async def test_one_line_says_that_processes_cannot_meet(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """With what was found, and what to do."""
+    ports = meeting_ports(monkeypatch, 3)
+    with ExitStack() as stack, caplog.at_level(logging.INFO, "aionode.transport.zenoh"):
+        held(stack, ports)
+        async with quiet_node("one"):
+            pass
+
+    ((level, text),) = sayings(caplog)
+    assert level == logging.WARNING
+    assert ", ".join(map(str, ports)) in text
+    assert "AIONODE_MEETING_PORTS" in text
+
+
+@pytest.mark.parametrize("listening", [True, False], ids=["listening", "bound"])
+async def test_a_port_that_another_program_has_is_passed_over(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture, *, listening: bool
+) -> None:
+    """Whether it listens there or only has it, for a connection of its own."""
+    ports = meeting_ports(monkeypatch, 3)
+    with ExitStack() as stack, caplog.at_level(logging.INFO, "aionode.transport.zenoh"):
+        held(stack, ports[:2], listening=listening)
+        async with quiet_node("one") as one:
+            assert answering_ports(ports[2:]) == ports[2:]
+            async with quiet_node("two") as two:
+                assert {"one", "two"} <= {n.name for n in two.graph.nodes()}
+            assert one.context.ok()
+
+    assert sayings(caplog) == []
 
 
 async def test_a_setting_that_zenoh_does_not_know_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,6 +6,7 @@ import asyncio
 import json
 import logging
 import threading
+from collections.abc import Iterable
 from contextlib import ExitStack
 from pathlib import Path
 from types import SimpleNamespace
@@ -23,6 +24,7 @@ from aionode.interfaces.std_msgs.msg import Int32, String, UInt8MultiArray
 from aionode.message import from_builtins
 from aionode.node import Node
 from aionode.qos import QoSProfile
+from aionode.settle import one_turn
 from aionode.wire import attachment, cdr
 from aionode.wire.keyexpr import buffer_key, data_key
 from aionode.wire.typehash import type_hash
@@ -376,6 +378,59 @@ async def test_another_domain_is_named_and_not_heard(caplog: pytest.LogCaptureFi
             assert [n.name for n in here.graph.nodes()] == ["here"]
     told = [text for text in caplog.messages if f"nodes of domain {DOMAIN_ID + 1} can" in text]
     assert len(told) == 1
+
+
+def domain_lines(caplog: pytest.LogCaptureFixture) -> list[tuple[int, str]]:
+    """Return level and beginning of each line about other domains."""
+    return [
+        (record.levelno, record.getMessage().partition(" can be reached")[0])
+        for record in caplog.records
+        if "can be reached" in record.getMessage()
+    ]
+
+
+async def test_many_other_domains_make_one_line(caplog: pytest.LogCaptureFixture) -> None:
+    """It names a few, and counts the rest; they are forgotten when they are gone."""
+    with caplog.at_level(logging.DEBUG, "aionode.transport.zenoh"), raw_session() as session:
+        async with quiet_node("here") as here, quiet_node("elsewhere") as near:
+            tokens = announced(session, range(200, 260))
+            transport = transport_of(here)
+            while len(transport.other_domains) < 60:
+                await one_turn()
+            before = domain_lines(caplog)
+            for token in tokens:
+                token.undeclare()
+            while transport.other_domains:
+                await one_turn()
+            assert near.context.ok()
+
+    assert len(before) <= 2 * 2  # of each of two contexts the first, and one with ten times as many
+    assert all(level == logging.DEBUG for level, _ in before)
+
+
+async def test_other_domains_are_a_warning_to_one_that_hears_nobody(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """Then the domain is likely to be a mistake."""
+    with caplog.at_level(logging.DEBUG, "aionode.transport.zenoh"), raw_session() as session:
+        async with quiet_node("first", Context(domain_id=DOMAIN_ID + 7)):
+            _tokens = announced(session, range(200, 207))
+            await known(session, "@ros2_lv/*/*/*/*/NN/**", 8)
+            async with quiet_node("here"):
+                pass
+
+    (line,) = [line for line in domain_lines(caplog) if line[0] == logging.WARNING][-1:]
+    assert line[1] == f"nodes of domain {DOMAIN_ID + 7}, 200, 201, 202, 203 and 3 more"
+
+
+def announced(session: zenoh.Session, domains: Iterable[int]) -> list[zenoh.LivelinessToken]:
+    """Announce one node in each of these domains."""
+    return [
+        session.liveliness().declare_token(
+            f"@ros2_lv/{domain_id}/{session.zid()}/0/0/NN/%/%/theirs"
+        )
+        for domain_id in domains
+    ]
 
 
 # Lifetime

@@ -77,9 +77,6 @@ class Neighbours(Protocol):
     on_strangers: Callable[[bool], None]
     on_post: Callable[[bytes], None]
 
-    def watch(self, on: bool) -> None:
-        """Look out for strangers that nothing tells of, or no longer."""
-
     def post(self, participant: str, data: bytes) -> None:
         """Send bytes to one other context, in order."""
 
@@ -135,6 +132,7 @@ class Hub:
         self._ending: dict[tuple[Connection, bytes], Route] = {}
         self._timers: set[asyncio.TimerHandle] = set()
         self._link_changes = 0
+        self._junk = 0  # what came by post and is not understood
 
     # The whole
 
@@ -399,7 +397,6 @@ class Hub:
         self._link_changes += 1
         logger.debug("linked to %s", participant)
         self._near.add(participant)
-        self._neighbours.watch(True)
         self._neighbours.announce_link(participant, True)
         self._meet(connection)
 
@@ -413,8 +410,6 @@ class Hub:
         del self._links[participant]
         self._link_changes += 1
         self._neighbours.announce_link(participant, False)
-        if not self._links:
-            self._neighbours.watch(False)
         for key in [key for key in self._inlets if key[0] is connection]:
             for inlet in self._inlets.pop(key):
                 inlet.broken()
@@ -450,7 +445,13 @@ class Hub:
         try:
             frames = FrameParser().feed(data)
         except FrameError as error:
-            logger.warning("something came by post that is not understood: %s", error)
+            self._junk += 1
+            if self._junk == 1:
+                logger.warning(
+                    "something came by post that is not understood: %s; it was left out, and more "
+                    "of it is only counted",
+                    error,
+                )
             return
         sender = participant_of(frames[0]) if frames else ""
         self._read_out(sender)

@@ -10,7 +10,7 @@ import zenoh
 
 from aionode.transport.base import Linkage
 from aionode.transport.zenoh.handlers import direct, reason, translated
-from aionode.transport.zenoh.routers import Routers
+from aionode.transport.zenoh.recovery import is_look
 from aionode.wire.liveliness import PREFIX as ROS_PREFIX
 
 if TYPE_CHECKING:
@@ -33,9 +33,11 @@ class Neighbours:
 
     A session is known once it has announced a node or a context of aionode, in any domain: then
     it announces its subscriptions as well. Anybody else is a stranger, who may subscribe to
-    anything: a session that is connected, as long as it has not announced itself; one behind a
-    router, if the router says that it subscribes to something of this domain; and a router that
-    does not say who is behind it, or was not asked.
+    anything: a session that is connected, as long as it has not announced itself; and a router,
+    since nothing tells who is behind it. It could be asked through its admin space, but must not
+    be: it holds its routing table's lock while it answers, and takes it once more for each reply.
+    With a declaration in between it never lets go (zenoh 1.8 to 1.10, pull request 2619), and no
+    newcomer of the whole system gets in any more.
 
     Attributes:
         beacon: What to announce, as chunks of a key that begin with the participant; None for
@@ -58,7 +60,6 @@ class Neighbours:
         self._nodes = link.lane(self._take_node)
         self._changes = link.lane(self._take_change)
         self._posts = link.lane(self._take_post)
-        self._routers = Routers(link, self._is_known, self._update)
         # The tokens of each session that has announced itself. It stays known without any while
         # it can be reached: a context announces its subscriptions, with a node or without.
         self._known: dict[str, set[str]] = {}
@@ -77,7 +78,6 @@ class Neighbours:
             return
         self._session = session
         self._linked = {}
-        self._routers.start(session)
         liveliness = session.liveliness()
         with translated("links"):
             self._declared = [
@@ -96,11 +96,10 @@ class Neighbours:
         self._connected = {
             str(transport.zid): transport.whatami for transport in session.info.transports()
         }
-        self._on_connected()
+        self._update()
 
     def stop(self) -> None:
         """Announce nothing, and listen no longer."""
-        self._routers.stop()
         self._session = None
         self._warn(needed=False)
         declared, self._declared = self._declared, []
@@ -112,14 +111,6 @@ class Neighbours:
         self._hosts.clear()
         self._connected.clear()
         self.strangers = False
-
-    def watch(self, on: bool) -> None:
-        """Ask routers who is behind them, now and each second, or no longer.
-
-        While they are not asked, a router counts as a stranger.
-        """
-        self._routers.watch(on=on)
-        self._update()
 
     def post(self, participant: str, data: bytes) -> None:
         """Send `data` to another context, from a thread; nothing is dropped while both are open."""
@@ -211,9 +202,12 @@ class Neighbours:
             self._known.setdefault(zid, set()).add(key)
         elif zid in self._known:
             self._known[zid].discard(key)
+            self._forget(zid)
 
-    def _is_known(self, zid: str) -> bool:
-        return zid in self._known or zid == self._link.participant
+    def _forget(self, zid: str) -> None:
+        """Forget a session that announces nothing and is not connected."""
+        if zid not in self._connected and not self._known.get(zid, True):
+            del self._known[zid]
 
     def _take_change(self, event: zenoh.TransportEvent) -> None:
         # `transports()` may still have one whose end is being told.
@@ -222,10 +216,7 @@ class Neighbours:
             self._connected[zid] = event.transport.whatami
         else:
             self._connected.pop(zid, None)
-        self._on_connected()
-
-    def _on_connected(self) -> None:
-        self._routers.connect(self._of_kind(zenoh.WhatAmI.ROUTER))
+            self._forget(zid)
         self._update()
 
     def _of_kind(self, kind: zenoh.WhatAmI) -> set[str]:
@@ -235,14 +226,11 @@ class Neighbours:
         """Find out whether there are strangers, and tell."""
         if self._session is None:
             return
-        for zid in [zid for zid, tokens in self._known.items() if not tokens]:
-            if zid not in self._connected and zid not in self._routers.behind:
-                del self._known[zid]
-        unknown = {zid for zid in self._connected if not self._is_known(zid)}
-        unknown -= self._of_kind(zenoh.WhatAmI.ROUTER)
+        # A router announces nothing, and stays unknown.
+        unknown = {zid for zid in self._connected if zid not in self._known and not is_look(zid)}
         # Everybody reaches the clients of this session, but nobody else sees them.
         self._warn(needed=bool(unknown & self._of_kind(zenoh.WhatAmI.CLIENT)))
-        strangers = bool(unknown or self._hosts or self._routers.strangers)
+        strangers = bool(unknown or self._hosts)
         if strangers != self.strangers:
             self.strangers = strangers
             self.on_strangers(strangers)

@@ -9,8 +9,10 @@ import os
 import select
 import socket
 import threading
-from contextlib import closing, contextmanager, suppress
-from typing import TYPE_CHECKING, Any, TypeVar
+from contextlib import ExitStack, closing, contextmanager, suppress
+from dataclasses import replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import zenoh
 
@@ -18,7 +20,9 @@ from aionode.clock import perf_ns
 from aionode.errors import ConfigurationError, TransportError
 from aionode.transport.zenoh.handlers import direct, reason
 from aionode.transport.zenoh_config import (
+    EVERYWHERE,
     LOOPBACK,
+    DiscoveryRange,
     network_from,
     probed_ports,
     router_settings,
@@ -26,7 +30,7 @@ from aionode.transport.zenoh_config import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from aionode.transport.wakeup import Lane
     from aionode.transport.zenoh_config import Network
@@ -39,6 +43,9 @@ T = TypeVar("T")
 
 PROBE_S = 0.2
 """How long a port on this machine may take to accept a connection; it takes 0.1 ms."""
+
+SPEAK_S = 0.5
+"""How long somebody may take to answer Zenoh's first message; it takes a millisecond."""
 
 TURN_S = 1.0
 """How long others may take to open their sessions before this one goes ahead; each takes 10 ms."""
@@ -57,6 +64,15 @@ QUIET_S = 0.015
 
 CLOSE_S = 0.8
 """How long closing may hold its caller up. A frozen peer can take longer, and ends in the back."""
+
+
+INIT: Final = 1
+CLOSE: Final = 3
+KIND: Final = 0x1F
+"""Kinds of Zenoh's messages, and the bits of the first byte that say so."""
+
+INIT_SYN: Final = bytes([INIT, 9, 0xF1])
+"""How a session introduces itself: version 9, a peer whose id of 16 bytes follows."""
 
 
 async def in_thread(work: Callable[[], T], late: Callable[[T], object] | None = None) -> T:
@@ -125,6 +141,79 @@ def answering_ports(ports: Iterable[int]) -> list[int]:
     return answering
 
 
+def meeting(network: Network, answering: set[int]) -> tuple[Network, set[int]]:
+    """Return a network whose ports can be met on, and those of them that are taken.
+
+    Args:
+        network: What the context was told.
+        answering: Those of its ports that accept a connection; if Zenoh answers at none of the
+            meeting ports, these are removed, and spare ones where it does are added.
+    """
+    subnet = network.discovery_range is DiscoveryRange.SUBNET
+    address = EVERYWHERE if subnet else LOOPBACK
+    taken = {port for port in network.meeting_ports if not can_listen(address, port)}
+    if taken < set(network.meeting_ports):
+        return network, taken
+    if speaking_ports(taken):
+        return network, taken
+    answering -= taken
+    spare = network.spare_ports
+    spare_taken = {port for port in spare if not can_listen(address, port)}
+    named = ", ".join(map(str, network.meeting_ports))
+    met = speaking_ports(spare_taken)
+    if met or spare_taken < set(spare):
+        answering |= met
+        logger.info(
+            "other programs hold the ports %s, on which processes of this machine meet: they meet "
+            "on %s instead",
+            named,
+            ", ".join(map(str, spare)),
+        )
+    elif network.router_port not in answering:
+        logger.warning(
+            "other programs hold the ports %s, on which processes of this machine meet: nodes of "
+            "other processes will not be found without a router; `ss -ltnp` names the programs, "
+            "and AIONODE_MEETING_PORTS, with three free ports, makes all processes meet elsewhere",
+            ", ".join(map(str, (*network.meeting_ports, *spare))),
+        )
+    return replace(network, meeting_ports=network.meeting_ports + spare), taken | spare_taken
+
+
+def can_listen(address: str, port: int) -> bool:
+    """Whether nobody else has a port, listening or not."""
+    with socket.socket() as one:
+        if os.name == "posix":  # elsewhere it means something else
+            one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            one.bind((address, port))
+            one.listen()
+        except OSError:
+            return False
+    return True
+
+
+def speaking_ports(ports: Iterable[int]) -> set[int]:
+    """Return ports of this machine where Zenoh answers; those that do so first are enough."""
+    syn = INIT_SYN + os.urandom(16)
+    probes: dict[socket.socket, int] = {}
+    speaking: set[int] = set()
+    with ExitStack() as stack:
+        for port in ports:
+            with suppress(OSError):
+                probe = socket.create_connection((LOOPBACK, port), SPEAK_S)
+                probes[stack.enter_context(probe)] = port
+                probe.sendall(len(syn).to_bytes(2, "little") + syn)
+        ends_ns = perf_ns() + int(SPEAK_S * 1e9)
+        while probes and not speaking and (left_s := (ends_ns - perf_ns()) / 1e9) > 0:
+            for probe in select.select(list(probes), [], [], left_s)[0]:
+                port = probes.pop(probe)
+                with suppress(OSError):
+                    answer = probe.recv(3)
+                    if len(answer) == 3 and answer[2] & KIND in (INIT, CLOSE):
+                        speaking.add(port)
+    return speaking
+
+
 @contextmanager
 def one_at_a_time(port: int | None) -> Iterator[None]:
     """Let the processes of this machine look for a free meeting port, and take it, in turn.
@@ -147,9 +236,18 @@ def one_at_a_time(port: int | None) -> Iterator[None]:
 
 
 def load_config(
-    network: Network, settings: dict[str, Any], participant: str | None = None
+    network: Network,
+    settings: dict[str, Any],
+    participant: str | None = None,
+    last: Mapping[str, Any] = MappingProxyType({}),
 ) -> zenoh.Config:
     """Return Zenoh's own form of a configuration.
+
+    Args:
+        network: The file and the overrides.
+        settings: What takes the place of Zenoh's defaults.
+        participant: The id of the session.
+        last: What takes the place of everything else.
 
     Raises:
         ConfigurationError: the file or an override cannot be used; the text says why.
@@ -170,6 +268,8 @@ def load_config(
         except zenoh.ZError as error:
             fits = f"key paths and values of Zenoh's configuration fit: {reason(error)}"
             raise ConfigurationError(network.override_source, f"{key}={text}", fits) from error
+    for key, value in last.items():
+        config.insert_json5(key, json.dumps(value))
     if participant is not None:
         config.insert_json5("id", json.dumps(participant))
     return config
@@ -187,9 +287,10 @@ async def open_session(network: Network, participant: str) -> tuple[zenoh.Sessio
         ports = probed_ports(network)
         try:
             with one_at_a_time(network.meeting_ports[0] if len(ports) > 1 else None):
-                answering = answering_ports(ports)
-                config = load_config(network, session_settings(network, answering), participant)
-                session = zenoh.open(config)
+                answering = set(answering_ports(ports))
+                used, taken = meeting(network, answering) if len(ports) > 1 else (network, set())
+                settings = session_settings(used, taken)
+                session = zenoh.open(load_config(network, settings, participant))
         except zenoh.ZError as error:
             raise TransportError(
                 f"Zenoh: no session could be opened: {reason(error)}; look at "

@@ -10,6 +10,7 @@ from aionode.clock import perf_ns
 from aionode.transport.base import Transport
 from aionode.transport.zenoh.link import Link
 from aionode.transport.zenoh.neighbours import Neighbours
+from aionode.transport.zenoh.recovery import Recovery
 from aionode.transport.zenoh.services import ZenohRequester, ZenohServer
 from aionode.transport.zenoh.session import Links, close_session, open_session
 from aionode.transport.zenoh.tokens import NodeEntity, Watcher
@@ -50,6 +51,7 @@ class ZenohTransport(Transport):
         # Done when those who are linked have said what there is.
         self._answered: asyncio.Future[None] | None = None
         self._missing = 0  # so many who accept connections were not linked in time
+        self._recovery = Recovery(self._link, network, self._watcher.check)
 
     def __repr__(self) -> str:
         state = "closed" if self._link.session is None else "open"
@@ -83,6 +85,7 @@ class ZenohTransport(Transport):
         try:
             self._watcher.start(session)
             self.neighbours.start(session)
+            self._recovery.start(session)
             await links.settle(neighbours)
             # Of those who were configured nobody knows whether they are there.
             hoped_for = bool(self.network.static_peers or self.network.config_file)
@@ -115,6 +118,7 @@ class ZenohTransport(Transport):
         with suppress(TimeoutError):
             async with asyncio.timeout(FLUSH_S):
                 await link.flush()
+        self._recovery.stop()
         self.neighbours.stop()
         self._watcher.stop()
         session = link.disconnect()

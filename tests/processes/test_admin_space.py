@@ -1,0 +1,82 @@
+"""No router is asked for its admin space, which could lock its routing table for good."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+
+import pytest
+import zenoh  # noqa: TID251  # plays the router and who listens behind it, without aionode
+
+from tests.peers import ros_router, zenoh_config
+from tests.processes.process import Process, member
+
+CONTROL = "@/control/router"
+
+
+class Overheard:
+    """What was asked or written under ``@/``, by anybody behind the router."""
+
+    def __init__(self) -> None:
+        self.keys: list[str] = []
+        self._control = threading.Event()
+
+    def take(self, asked: zenoh.Query | zenoh.Sample) -> None:
+        """Note one key; from any thread."""
+        key = str(asked.key_expr)
+        self.keys.append(key)
+        if key == CONTROL:
+            self._control.set()
+
+    def all(self, session: zenoh.Session) -> list[str]:
+        """Return all keys up to a question of our own, which comes last."""
+        list(session.get(CONTROL, timeout=1))
+        assert self._control.wait(5)
+        return self.keys
+
+
+@contextmanager
+def router_with_a_listener() -> Iterator[tuple[zenoh.Session, Overheard]]:
+    """A router of ROS, and who answers for every admin space behind it."""
+    overheard = Overheard()
+    with ExitStack() as stack:
+        router = ros_router()
+        stack.callback(router.close)
+        settings = {
+            "mode": "client",
+            "connect/endpoints": [f"tcp/127.0.0.1:{os.environ['AIONODE_ROUTER_PORT']}"],
+            "scouting/multicast/enabled": False,
+        }
+        listener = zenoh.open(zenoh_config(settings))
+        stack.callback(listener.close)
+        listener.declare_queryable("@/**", overheard.take)
+        listener.declare_subscriber("@/**", overheard.take)
+        asking = zenoh.open(zenoh_config(settings))
+        stack.callback(asking.close)
+        yield asking, overheard
+
+
+@pytest.mark.parametrize("link", ["on", "off"])
+def test_nodes_and_commands_ask_no_admin_space(link: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two nodes with a link between them or without one, the questions of a user, and the doctor.
+
+    A router holds its routing table's lock while it answers, and takes it once more for each
+    reply: with a declaration in between nobody gets into the system any more (zenoh 1.8 to 1.10).
+    """
+    monkeypatch.setenv("AIONODE_LINK", link)
+    with router_with_a_listener() as (asking, overheard), ExitStack() as stack:
+        one, two = (stack.enter_context(member(name)) for name in ("one", "two"))
+        one.expect("open", "heard two")
+        two.expect("open", "heard one")
+        commands = [
+            stack.enter_context(Process("-m", "aionode", *command.split()))
+            for command in ("topic list", "node list", "doctor", "doctor /hello")
+        ]
+        for command in commands:
+            command.rest()
+        one.stop()
+        two.stop()
+
+        assert overheard.all(asking) == [CONTROL]
