@@ -403,8 +403,12 @@ class WriterProxy:
         first: The number of the first message for this reader.
         side: Takes the messages, each once and in order, and acknowledges.
         now_ns: Tells the time; any zero will do.
+        span: How many messages it waits for at most; older ones are left out when newer ones are
+            there, as a KEEP_LAST reader would drop them anyway.
 
     Attributes:
+        participant: Its process.
+        heard_ns: When it last said something besides its messages.
         next: The number that is accepted next.
         last: The highest number known of.
     """
@@ -417,6 +421,7 @@ class WriterProxy:
         "_nacked_ns",
         "_now_ns",
         "_side",
+        "_span",
         "_waiting",
         "gid",
         "heard_ns",
@@ -426,13 +431,20 @@ class WriterProxy:
     )
 
     def __init__(
-        self, gid: bytes, participant: str, first: int, side: ReaderSide, now_ns: Callable[[], int]
+        self,
+        gid: bytes,
+        participant: str,
+        first: int,
+        side: ReaderSide,
+        now_ns: Callable[[], int],
+        span: int = NEVER,
     ) -> None:
         self.gid = gid
         self.participant = participant
         self.next = first
         self.last = first - 1
         self.heard_ns = now_ns()
+        self._span = span
         self._side = side
         self._now_ns = now_ns
         self._held: dict[int, tuple[Any, int]] = {}
@@ -459,10 +471,13 @@ class WriterProxy:
             if len(self._held) < MAX_HELD:
                 self._held.setdefault(sequence, (item, size))
             self.last = max(self.last, sequence)
-            self._nack_soon()
+            if sequence - self.next >= self._span:
+                self._skip(sequence - self._span + 1)
+            if self.lacks:
+                self._nack_soon()
 
     def _accept(self, sequence: int, item: Any, size: int) -> None:
-        if self._side.accept(item, self):
+        if self._side.accept(item, self):  # raises nothing
             self._note_used(size)
         else:
             self._waiting.append(sequence)
@@ -498,12 +513,14 @@ class WriterProxy:
         self._waiting.popleft()
         self._note_used(size)
 
-    def heartbeat(self, first: int, last: int) -> None:
-        """Note how far the messages go, and answer."""
+    def heartbeat(self, first: int, last: int, *, ask: bool = True) -> None:
+        """Note how far the messages go, and answer; without `ask` some may just not be taken yet."""
         self.heard_ns = self._now_ns()
         self._skip(first)
         self.last = max(self.last, last)
-        self.acknowledge()
+        if self.last - self.next >= self._span and ask:
+            self._skip(self.last - self._span + 1)
+        self.acknowledge(ask=ask)
 
     def gap(self, first: int, last: int) -> None:
         """Note that some will not come."""
@@ -527,19 +544,17 @@ class WriterProxy:
         if now_ns - self._nacked_ns >= NACK_NS:
             self.acknowledge()
 
-    def acknowledge(self) -> None:
-        """Tell the writer what is here and what is not."""
+    def acknowledge(self, *, ask: bool = True) -> None:
+        """Tell the writer what is here, and with `ask` what is not."""
         self._count = self._bytes = 0
-        if self.lacks:
+        missing: list[tuple[int, int]] = []
+        if ask and self.lacks:
             self._nacked_ns = self._now_ns()
-        self._side.acknack(
-            self, self._waiting[0] if self._waiting else self.next, self._missing()
-        )
+            missing = self._missing()
+        self._side.acknack(self, self._waiting[0] if self._waiting else self.next, missing)
 
     def _missing(self) -> list[tuple[int, int]]:
         ranges: list[tuple[int, int]] = []
-        if not self.lacks:
-            return ranges
         begin = self.next
         here = [(number, number) for number in self._held]
         for first, last in sorted(here + self._gaps):
@@ -551,6 +566,11 @@ class WriterProxy:
         if begin <= self.last:
             ranges.append((begin, self.last))
         return ranges
+
+    def remind(self) -> None:
+        """Ask again for what is missing, if that is some time ago."""
+        if self._now_ns() - self._nacked_ns >= QUIET_NS:
+            self.acknowledge()
 
     def give_up(self) -> None:
         """Accept what is held, with its gaps: the writer is gone."""

@@ -31,7 +31,7 @@ class Kind(enum.IntEnum):
     HEARTBEAT = 1
     """The writer has sent messages up to `last`; what is before `first` is not for this reader.
 
-    The reader answers with an ACKNACK.
+    The rest is the writer's participant, to which the reader answers with an ACKNACK.
     """
     ACKNACK = 2
     """The reader has taken all messages before `first`. The rest are ranges that it lacks."""

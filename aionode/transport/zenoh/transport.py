@@ -26,8 +26,8 @@ __all__ = ["ZenohTransport"]
 KNOWN_S = 0.3
 """How long `open` waits for the graph of those who are linked; it takes a millisecond."""
 
-FLUSH_S = 0.15
-"""How long `close` waits for what is still to be sent."""
+FLUSH_S = 2.0
+"""How long `close` waits for what is still to be sent, while its readers make progress."""
 
 
 class ZenohTransport(Transport):
@@ -92,9 +92,7 @@ class ZenohTransport(Transport):
     async def close(self) -> None:
         """Withdraw everything and disconnect, within a second."""
         link = self._link
-        with suppress(TimeoutError):
-            async with asyncio.timeout(FLUSH_S):
-                await link.flush()
+        await link.flush(FLUSH_S)
         self.neighbours.stop()
         self._watcher.stop()
         session = link.disconnect()
