@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 __all__ = [
+    "NEVER",
+    "OVERHEAD_BYTES",
     "RETURN_NS",
     "Entry",
     "ReaderProxy",
@@ -477,7 +479,7 @@ class WriterProxy:
                 self._nack_soon()
 
     def _accept(self, sequence: int, item: Any, size: int) -> None:
-        if self._side.accept(item, self):  # raises nothing
+        if self._side.accept(item, self):
             self._note_used(size)
         else:
             self._waiting.append(sequence)
@@ -514,7 +516,7 @@ class WriterProxy:
         self._note_used(size)
 
     def heartbeat(self, first: int, last: int, *, ask: bool = True) -> None:
-        """Note how far the messages go, and answer; without `ask` some may just not be taken yet."""
+        """Note how far the messages go, and answer; without `ask` some may wait to be taken."""
         self.heard_ns = self._now_ns()
         self._skip(first)
         self.last = max(self.last, last)

@@ -1,8 +1,9 @@
-"""What publishers and subscriptions of aionode say to each other over Zenoh so that nothing is lost.
+"""What publishers and subscriptions of aionode say to each other so that Zenoh loses nothing.
 
 The words are those of RTPS. Each is one sample for one process, of which ROS nodes hear nothing::
 
-    version u8 | kind u8 | zero u16 | writer 16 bytes | reader 16 bytes | first i64 | last i64 | rest
+    version u8 | kind u8 | zero u16 | writer 16 bytes | reader 16 bytes | first i64 | last i64 |
+    rest
 
 Whoever does not know the version or the kind leaves the sample out.
 """

@@ -344,7 +344,7 @@ async def test_post_without_a_connection_is_given_up() -> None:
         pass
     transport.neighbours.post("b2", b"late")
 
-    assert transport._link.bulk._thread is None
+    assert transport._link.bulk._worker is None
 
 
 async def test_nothing_is_declared_without_a_beacon() -> None:

@@ -25,7 +25,7 @@ from aionode.wire.liveliness import gid_of
 if TYPE_CHECKING:
     from aionode.graph import Graph
 
-__all__ = ["Entity", "Link"]
+__all__ = ["FLUSH_S", "Entity", "Link"]
 
 T = TypeVar("T")
 
@@ -35,11 +35,11 @@ BURST_BYTES: Final = 256 * 1024
 BURST_NS: Final = 10_000_000
 """So much in so many nanoseconds finds its way to any peer that lives: a quarter of the queue."""
 
+FLUSH_S: Final = 2.0
+"""How long `flush` waits for what has to arrive, while its readers make progress."""
+
 BULK_FLUSH_S: Final = 0.15
 """How long `flush` waits for large messages, which may be dropped."""
-
-LOOK_S: Final = 0.01
-"""How often `flush` looks."""
 
 SHARING_NS: Final = 500_000_000
 """How long Zenoh may take to have its shared memory ready."""
@@ -91,6 +91,7 @@ class Link:
         self.cancellations = Cancellations(participant, domain_id, self.wakeup, self.note_garbage)
         self.now_ns = MachineTime().system_ns
         self.on_reader: dict[str, list[Callable[[], None]]] = {}
+        self._lingered: asyncio.Future[None] | None = None
         self._shares_from_ns = 0  # when the first large message of this session was sent
         self._entities: dict[Entity, None] = {}
 
@@ -129,23 +130,30 @@ class Link:
         self._shares_from_ns = self._shares_from_ns or now_ns
         return now_ns - self._shares_from_ns < SHARING_NS
 
-    async def flush(self, limit_s: float) -> None:
-        """Wait until everything that was handed over was sent, `limit_s` at most.
+    async def flush(self) -> None:
+        """Wait until everything that was handed over was sent, `FLUSH_S` at most.
 
         Destroyed publishers end that wait by themselves, when their readers make no progress.
         """
         for entity in list(self._entities):
             entity.linger()
         with suppress(TimeoutError):
-            async with asyncio.timeout(limit_s):
+            async with asyncio.timeout(FLUSH_S):
                 while self.lingering:
-                    await asyncio.sleep(LOOK_S)
+                    self._lingered = asyncio.get_running_loop().create_future()
+                    await self._lingered
                 for sender in list(self.senders):
                     if sender is not self.bulk:
                         await sender.flush()
         with suppress(TimeoutError):
             async with asyncio.timeout(BULK_FLUSH_S):
                 await self.bulk.flush()
+
+    def has_lingered(self, publisher: Lingering) -> None:
+        """Note that a publisher has nothing to send any more."""
+        self.lingering.pop(publisher, None)
+        if self._lingered is not None and not self._lingered.done():
+            self._lingered.set_result(None)
 
     def disconnect(self) -> zenoh.Session | None:
         """Undeclare everything, the newest first; return the session, to be closed."""

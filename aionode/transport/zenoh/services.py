@@ -16,7 +16,7 @@ from aionode.graph import EndpointKind
 from aionode.transport.base import Origin, Request, Requester
 from aionode.transport.zenoh.handlers import CALL_PRIORITY, direct, translated
 from aionode.transport.zenoh.link import Entity
-from aionode.transport.zenoh.topics import NOBODY, origin_of
+from aionode.transport.zenoh.subscriptions import NOBODY, origin_of
 from aionode.wire import attachment, cdr
 from aionode.wire.keyexpr import data_key
 from aionode.wire.liveliness import endpoint_token

@@ -11,8 +11,10 @@ from aionode.transport.zenoh.link import Link
 from aionode.transport.zenoh.neighbours import Neighbours
 from aionode.transport.zenoh.services import ZenohRequester, ZenohServer
 from aionode.transport.zenoh.session import Links, close_session, open_session
+from aionode.transport.zenoh.sockets import cut_stuck
+from aionode.transport.zenoh.subscriptions import ZenohReader
 from aionode.transport.zenoh.tokens import NodeEntity, Watcher
-from aionode.transport.zenoh.topics import ZenohReader, ZenohWriter
+from aionode.transport.zenoh.topics import ZenohWriter
 
 if TYPE_CHECKING:
     from collections import Counter
@@ -25,9 +27,6 @@ __all__ = ["ZenohTransport"]
 
 KNOWN_S = 0.3
 """How long `open` waits for the graph of those who are linked; it takes a millisecond."""
-
-FLUSH_S = 2.0
-"""How long `close` waits for what is still to be sent, while its readers make progress."""
 
 
 class ZenohTransport(Transport):
@@ -90,13 +89,14 @@ class ZenohTransport(Transport):
             links.close()
 
     async def close(self) -> None:
-        """Withdraw everything and disconnect, within a second."""
+        """Withdraw everything and disconnect, within a second of what `Link.flush` takes."""
         link = self._link
-        await link.flush(FLUSH_S)
+        await link.flush()
         self.neighbours.stop()
         self._watcher.stop()
         session = link.disconnect()
         if session is not None:
+            await cut_stuck(session)
             await close_session(session)
         link.wakeup.close()
 
