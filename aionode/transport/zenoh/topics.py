@@ -259,27 +259,34 @@ class ZenohWriter(Entity, Writer):
 
     def _update(self) -> None:
         """Find out whether anybody listens, and who of them acknowledges."""
-        if not self._transient:
-            publisher = self._publisher
-            self.active = isinstance(publisher, zenoh.Publisher) and bool(
-                publisher.matching_status.matching  # type: ignore[attr-defined]  # no bool, as the stub says
-            )
+        publisher, history, graph = self._publisher, self._history, self.link.graph
+        if self._transient:
+            if self._encode is None:
+                self._encode = cdr.encoder(self._msg_type)
+            return
+        self.active = isinstance(publisher, zenoh.Publisher) and bool(
+            publisher.matching_status.matching  # type: ignore[attr-defined]  # no bool, as the stub says
+        )
+        if history is not None and graph is not None and publisher is not None:
+            acknowledging, others = self._matched(graph)
+            # The token of a reader can come before Zenoh knows the way there: what is lost until
+            # then is sent again. Somebody without a token may listen too; beside readers that
+            # acknowledge, nothing is known of them.
+            self.active = self.active or bool(acknowledging)
+            history.others = others or not acknowledging
+            self._note_readers(history, acknowledging)
         if self.active and self._encode is None:
             self._encode = cdr.encoder(self._msg_type)
-        history = self._history
-        graph = self.link.graph
-        if history is None or graph is None or self._publisher is None:
-            return
-        acknowledging, others = self._matched(graph)
-        # Somebody without a token may listen too; of one beside others nothing is known.
-        history.others = others or not acknowledging
+
+    def _note_readers(self, history: WriterHistory, acknowledging: dict[bytes, str]) -> None:
+        """Let the history know who has come and gone."""
         for gid, known in list(history.readers.items()):
             if gid not in acknowledging and not known.away_ns:
                 history.remove(gid)
         if not self._closed:
             for gid, participant in acknowledging.items():
-                known_reader = history.readers.get(gid)
-                if known_reader is None or known_reader.away_ns:
+                reader = history.readers.get(gid)
+                if reader is None or reader.away_ns:
                     history.add(gid, participant)
         self._progress()
 
