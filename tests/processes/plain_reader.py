@@ -1,7 +1,8 @@
 """A subscription as a ROS 2 node on rmw_zenoh_cpp has it, which acknowledges nothing.
 
 ``python tests/processes/plain_reader.py TOPIC COUNT [bare]``, and with ``bare`` without a token.
-Lines on stdout are ``open``, ``heard N`` when all have come, and ``count N`` for each line on stdin.
+Lines on stdout are ``open``, ``heard N`` when all have come, ``wrong`` if not in order, and
+``count N`` for each line on stdin.
 """
 
 from __future__ import annotations
@@ -52,19 +53,23 @@ def main() -> None:
             fields = None if extra is None else attachment.unpack_fields(extra.to_bytes())
             numbers.append(0 if fields is None else fields[0])
             if len(numbers) == count:
-                tell("heard", count, "in order" if numbers == sorted(numbers) else "disordered")
+                if numbers != sorted(numbers):
+                    tell("wrong")
+                tell("heard", count)
                 done.set()
 
         subscriber = session.declare_subscriber(
             data_key(domain_id, topic, endpoint.type_name, endpoint.type_hash), take
         )
-        tokens = []
-        if "bare" not in sys.argv:
-            for token in (node_token(domain_id, node), endpoint_token(domain_id, endpoint)):
-                tokens.append(session.liveliness().declare_token(token))
+        own = (node_token(domain_id, node), endpoint_token(domain_id, endpoint))
+        tokens = [
+            session.liveliness().declare_token(token) for token in own if "bare" not in sys.argv
+        ]
         tell("open")
         for _ in sys.stdin:
             tell("count", len(numbers))
+        for token in tokens:
+            token.undeclare()
         subscriber.undeclare()
 
 
