@@ -337,16 +337,21 @@ class WriterHistory:
                     self._lose(max(first, self._jumped_to), absent)
                     self._side.gap(reader, first, absent)
                 first = absent + 1
-            for number in range(first, last + 1):
+            number = first
+            while number <= last:
                 entry = entries.get(number)
-                if entry is None:  # it was never written here
-                    self._side.gap(reader, number, number)
-                elif now_ns - reader.resent.get(number, -RESEND_NS) >= RESEND_NS:
+                if entry is None:  # it was never written here, nor were some after it
+                    after = min(next((n for n in entries if n > number), NEVER), last + 1)
+                    self._side.gap(reader, number, after - 1)
+                    number = after
+                    continue
+                if now_ns - reader.resent.get(number, -RESEND_NS) >= RESEND_NS:
                     reader.resent[number] = now_ns
                     self._side.resend(reader, entry)
                     left -= len(entry.payload) + OVERHEAD_BYTES
                     if left <= 0:
                         return
+                number += 1
 
     def _trim(self) -> None:
         """Forget what every reader has."""

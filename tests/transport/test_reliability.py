@@ -229,6 +229,18 @@ def test_numbers_that_went_another_way_are_not_waited_for() -> None:
     assert wire.lost_count == 0
 
 
+def test_a_gap_of_any_length_is_told_in_one_word() -> None:
+    """A publisher that was on a link for days comes back to Zenoh."""
+    wire = Wire(1, keep_all=True, depth=100)
+    wire.settle()
+    wire.publish()
+    wire.number += 10**12
+    wire.publish()
+    wire.control.clear()  # the word is lost, and asked for again
+    wire.settle()
+    assert wire.heard[wire.names[0]] == [1, 10**12 + 2]
+
+
 def test_a_writer_sends_a_window_ahead_and_no_more() -> None:
     """So that nothing on the way to a frozen reader ever fills up."""
     wire = Wire(1, keep_all=True, depth=1000)
