@@ -71,6 +71,8 @@ MAX_HELD: Final = 10_000
 MAX_GAPS: Final = 1_000
 """How many gaps a reader notes ahead of what it waits for; it asks again for the rest."""
 
+TOLD_RANGES: Final = 16
+
 NEVER: Final = 1 << 62
 
 
@@ -174,7 +176,7 @@ class WriterHistory:
         self._sent_end = 0
         self._sent_ns = 0
         self._jumped_to = 0  # numbers below this one that are not here were never written here
-        self._told = 0  # the last number whose loss was told
+        self._told: list[tuple[int, int]] = []  # what was lost and told, from first to last
         self._unsent: deque[Entry] = deque()
         self._pumping = False
 
@@ -243,10 +245,21 @@ class WriterHistory:
                 self._lose(sequence, sequence)
 
     def _lose(self, first: int, last: int) -> None:
-        first = max(first, self._told + 1)
-        if last >= first:
-            self._told = last
-            self._side.lost(last - first + 1)
+        """Tell of lost messages, each number once."""
+        count = last - first + 1
+        if count <= 0:
+            return
+        others: list[tuple[int, int]] = []
+        begin, end = first, last
+        for one in self._told:
+            if one[1] < first - 1 or one[0] > last + 1:
+                others.append(one)
+            else:
+                count -= max(min(one[1], last) - max(one[0], first) + 1, 0)
+                begin, end = min(begin, one[0]), max(end, one[1])
+        self._told = [*others, (begin, end)]
+        if count:
+            self._side.lost(count)
 
     def _admits(self, entry: Entry) -> bool:
         """Whether the window is open for the next message."""
@@ -258,7 +271,8 @@ class WriterHistory:
                 continue
             some = True
             is_open = (
-                entry.end - reader.end <= WINDOW_BYTES
+                reader.acked >= self.sent  # what was dropped unsent lies between the two ends too
+                or entry.end - reader.end <= WINDOW_BYTES
                 or entry.sequence - reader.acked <= WINDOW_MESSAGES
             )
             if is_open is not self._keep_all:
@@ -359,6 +373,8 @@ class WriterHistory:
         entries = self.entries
         while entries and (oldest := next(iter(entries))) <= min(everyone, self.sent):
             del entries[oldest]
+        if len(self._told) > TOLD_RANGES:
+            self._told = [one for one in self._told if one[1] > everyone]
 
     # Time
 
