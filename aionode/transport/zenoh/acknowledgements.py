@@ -105,16 +105,17 @@ class Acknowledgements:
             self._timer.cancel()
             self._timer = None
 
-    def say(self, participant: str, data: bytes) -> None:
-        """Send a submessage to another context; it may be lost."""
-        if self._session is None:
+    def say(self, participant: str, data: bytes, priority: zenoh.Priority = LOOP_PRIORITY) -> None:
+        """Send a submessage to another context; it may be lost. A large one from a thread."""
+        session = self._session
+        if session is None:
             return
         try:
-            self._session.put(
+            session.put(
                 self._prefix + participant + self._suffix,
                 data,
                 congestion_control=zenoh.CongestionControl.DROP,
-                priority=LOOP_PRIORITY,
+                priority=priority,
                 allowed_destination=zenoh.Locality.REMOTE,
             )
         except zenoh.ZError as error:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections import deque
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import zenoh
@@ -224,33 +225,39 @@ class ZenohWriter(Entity, Writer):
     def finish(self) -> None:
         """Withdraw the publisher, and count what was not sent."""
         self.link.has_lingered(self)
-        publisher, self._publisher = self._publisher, None
+        if self._history is not None and (missing := self._history.give_up()):
+            self.lost(missing)
+        for outlet in (self._large, self._patient):
+            if outlet is not None:
+                outlet.abandon()
         matching, self._matching = self._matching, None
-        if self._history is not None:
-            missing = self._history.give_up()
-            if missing:
-                self.lost(missing)
-        self._large.abandon()
-        if self._patient is not None:
-            self._patient.abandon()
-        patient, self._patient_publisher = self._patient_publisher, None
         if matching is not None:
             matching.undeclare()
-        if patient is not None:
-            self._patient_sender.submit(lambda: withdraw(patient))
-        self.link.senders.discard(self._patient_sender)
-        self._patient_sender.close()
-        self._patient = None
-        if publisher is not None:
-            if len(self._large):
-                # The thread may be inside `put`, and Zenoh's object is used by one at a time.
-                self.link.bulk.submit(lambda: withdraw(publisher))
-            else:
-                withdraw(publisher)
+        self._withdraw()
         self._wake()
         self._update()
         if self._closed:
             self._forget()
+
+    def _withdraw(self) -> None:
+        """Undeclare: Zenoh's objects are used by one at a time, and a thread may be inside."""
+        publisher, self._publisher = self._publisher, None
+        patient, self._patient_publisher = self._patient_publisher, None
+        if self._patient is not None:
+            self._patient = None
+            if patient is not None:
+                self._patient_sender.submit(partial(withdraw, patient))
+            elif publisher is not None:  # it is the thread's own
+                self._patient_sender.submit(partial(withdraw, publisher))
+                publisher = None
+        self.link.senders.discard(self._patient_sender)
+        self._patient_sender.close()
+        if publisher is None:
+            return
+        if len(self._large):
+            self.link.bulk.submit(partial(withdraw, publisher))
+        else:
+            withdraw(publisher)
 
     # Who listens
 
@@ -490,7 +497,11 @@ class ZenohWriter(Entity, Writer):
         self, kind: Kind, reader: ReaderProxy, first: int, last: int, rest: bytes = b""
     ) -> None:
         data = acknack.pack(kind, self.gid, reader.gid, first, last, rest)
-        self.link.acknowledgements.say(reader.participant, data)
+        say = self.link.acknowledgements.say
+        if len(data) < BULK_BYTES:
+            say(reader.participant, data)
+        else:  # each of its fragments may wait
+            self.link.bulk.submit(partial(say, reader.participant, data, BULK_PRIORITY))
 
     def lost(self, count: int) -> None:
         """Count dropped messages, and say so the first time."""
