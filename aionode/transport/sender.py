@@ -1,13 +1,15 @@
-"""Sending what may block, from a thread, so that the event loop never does."""
+"""Sending what may block, from threads, so that the event loop never does."""
 
 from __future__ import annotations
 
 import asyncio
+import atexit
 import threading
+import weakref
 from collections import deque
 from collections.abc import Callable
 from queue import SimpleQueue
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from aionode.transport.wakeup import Lane
 
@@ -18,6 +20,62 @@ __all__ = ["Outlet", "Sender"]
 
 
 Job = Callable[[], None]
+
+EXIT_S: Final = 1.0
+"""How long the end of the process waits for threads that are sending."""
+
+
+class Worker:
+    """One thread and its jobs.
+
+    Attributes:
+        stopped: Whether the jobs that wait are left out.
+        thread: The thread; Python does not wait for it at its end, but `end_all` does for a while.
+    """
+
+    def __init__(self, name: str) -> None:
+        self.stopped = False
+        self._jobs: SimpleQueue[Job | None] = SimpleQueue()
+        # Written by the loop only and by the thread only; the loop compares them.
+        self._put = 0
+        self._done = 0
+        self.thread = threading.Thread(target=self._run, name=name, daemon=True)
+        workers.add(self)
+        self.thread.start()
+
+    @property
+    def busy(self) -> bool:
+        """Whether a job waits or runs."""
+        return self._put != self._done
+
+    def submit(self, job: Job) -> None:
+        """Run `job` after those before it."""
+        self._put += 1
+        self._jobs.put(job)
+
+    def end(self) -> None:
+        """Let the thread end after its jobs."""
+        self._jobs.put(None)
+
+    def _run(self) -> None:
+        while (job := self._jobs.get()) is not None:
+            if not self.stopped:
+                job()
+            self._done += 1
+
+
+workers: weakref.WeakSet[Worker] = weakref.WeakSet()
+
+
+@atexit.register
+def end_all() -> None:
+    """Let no thread be inside Zenoh while the interpreter ends: that would abort the process."""
+    running = [worker for worker in workers if worker.thread.is_alive()]
+    for worker in running:
+        worker.stopped = True
+        worker.end()
+    for worker in running:
+        worker.thread.join(EXIT_S / len(running))
 
 
 class Sender:
@@ -30,49 +88,51 @@ class Sender:
 
     def __init__(self, name: str, wakeup: Wakeup) -> None:
         self._name = name
-        self._jobs: SimpleQueue[Job | None] = SimpleQueue()
-        self._thread: threading.Thread | None = None
+        self._worker: Worker | None = None
         self._wakeup = wakeup
+
+    @property
+    def busy(self) -> bool:
+        """Whether a job waits or runs."""
+        return self._worker is not None and self._worker.busy
 
     def submit(self, job: Job) -> None:
         """Run `job` after those before it. It must not raise."""
-        if self._thread is None:
-            self._jobs = SimpleQueue()  # an earlier thread may still be busy with its own
-            self._thread = threading.Thread(
-                target=run, args=(self._jobs,), name=self._name, daemon=True
-            )
-            self._thread.start()
-        self._jobs.put(job)
+        if self._worker is None:
+            self._worker = Worker(self._name)
+        self._worker.submit(job)
 
-    def outlet(self, limit: int, *, keep_all: bool) -> Outlet:
+    def outlet(
+        self, limit: int, *, keep_all: bool, lost: Callable[[int], None] | None = None
+    ) -> Outlet:
         """Return a bounded queue that this thread empties."""
-        return Outlet(self, self._wakeup, limit, keep_all=keep_all)
+        return Outlet(self, self._wakeup, limit, keep_all=keep_all, lost=lost)
 
     def close(self) -> None:
         """Let the thread end after the jobs that it has; returns at once."""
-        if self._thread is not None:
-            self._thread = None
-            self._jobs.put(None)
+        worker, self._worker = self._worker, None
+        if worker is not None:
+            worker.end()
+
+    def abandon(self) -> None:
+        """Let the thread end after the job that it is in; returns at once."""
+        if self._worker is not None:
+            self._worker.stopped = True
+        self.close()
 
     async def flush(self) -> None:
         """Wait until the jobs so far are done and the thread has ended; the next starts another.
 
         Cancelling stops the wait only: the thread still ends after its jobs.
         """
-        if self._thread is None:
+        worker = self._worker
+        if worker is None:
             return
         ended = asyncio.Event()
         lane: Lane[None] = Lane(self._wakeup, lambda _: ended.set())
-        self._thread = None
-        self._jobs.put(lambda: lane.put(None))
-        self._jobs.put(None)
+        worker.submit(lambda: lane.put(None))
+        self.close()
         await ended.wait()
-
-
-def run(jobs: SimpleQueue[Job | None]) -> None:
-    """Run jobs until there is None."""
-    while (job := jobs.get()) is not None:
-        job()
 
 
 class Outlet:
@@ -83,25 +143,36 @@ class Outlet:
         wakeup: Wakes the loop when everything was sent.
         limit: How many sends wait at most.
         keep_all: Whether a full queue has no room, or else drops its oldest.
+        lost: Called with how many were dropped.
 
     Attributes:
         dropped: How many sends were dropped.
+        sent: How many have left the queue.
     """
 
-    def __init__(self, sender: Sender, wakeup: Wakeup, limit: int, *, keep_all: bool) -> None:
+    def __init__(
+        self,
+        sender: Sender,
+        wakeup: Wakeup,
+        limit: int,
+        *,
+        keep_all: bool,
+        lost: Callable[[int], None] | None = None,
+    ) -> None:
         self.dropped = 0
         self._sender = sender
         self._limit = limit
         self._keep_all = keep_all
+        self._lost = lost
         self._waiting: deque[Callable[[], None]] = deque()
         # Written by the loop only and by the thread only; the loop compares them.
         self._put = 0
-        self._sent = 0
+        self.sent = 0
         self._drained: list[asyncio.Future[None]] = []
         self._lane: Lane[None] = Lane(wakeup, self._wake, limit=1)
 
     def __len__(self) -> int:
-        return self._put - self._sent
+        return self._put - self.sent
 
     def put(self, send: Callable[[], None]) -> None:
         """Have `send` called in the thread; a full queue drops its oldest unless it keeps all."""
@@ -111,12 +182,17 @@ class Outlet:
             except IndexError:  # the thread was faster
                 pass
             else:
-                self.dropped += 1
                 self._waiting.append(send)  # and takes the place, and the job, of the oldest
+                self._note_dropped(1)
                 return
         self._put += 1
         self._waiting.append(send)
         self._sender.submit(self._send)
+
+    def _note_dropped(self, count: int) -> None:
+        self.dropped += count
+        if self._lost is not None:
+            self._lost(count)
 
     def has_room(self) -> bool:
         """Whether one more can be put without dropping any."""
@@ -132,11 +208,23 @@ class Outlet:
             else:
                 self._wake(None)
 
+    def abandon(self) -> None:
+        """Drop, and count, what waits."""
+        count = len(self._waiting)
+        self._waiting.clear()
+        if count:
+            self._note_dropped(count)
+
     def _send(self) -> None:
         try:
-            self._waiting.popleft()()
+            send = self._waiting.popleft()
+        except IndexError:  # it was abandoned
+            send = None
+        try:
+            if send is not None:
+                send()
         finally:
-            self._sent += 1
+            self.sent += 1
             if self._drained and not len(self):
                 self._lane.put(None)
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import asyncio
     from collections.abc import Callable
 
-__all__ = ["Lane", "PatientLane", "Wakeup"]
+__all__ = ["Lane", "Wakeup"]
 
 T = TypeVar("T")
 
@@ -134,6 +134,9 @@ class Lane(Generic[T]):
         self._items: deque[T] = deque(maxlen=limit)
         self._queued = False
 
+    def __len__(self) -> int:
+        return len(self._items)
+
     def put(self, item: T) -> None:
         """Hand `item` over; from any thread. Never waits."""
         self._items.append(item)
@@ -158,61 +161,3 @@ class Lane(Generic[T]):
     def clear(self) -> None:
         """Forget what waits."""
         self._items.clear()
-
-
-class PatientLane(Lane[T]):
-    """A lane that loses nothing: it holds up the thread that puts into it while it is full.
-
-    Args:
-        wakeup: Wakes the loop.
-        handle: Called on the loop with each item, in order. Must not raise.
-        limit: How many items wait before the thread does.
-        has_room: Whether `handle` can take an item.
-        when_room: Calls its argument once `has_room` may be true again.
-    """
-
-    __slots__ = ("_has_room", "_limit", "_slots", "_when_room")
-
-    def __init__(
-        self,
-        wakeup: Wakeup,
-        handle: Callable[[T], None],
-        limit: int,
-        has_room: Callable[[], bool],
-        when_room: Callable[[Callable[[], None]], None],
-    ) -> None:
-        super().__init__(wakeup, handle)
-        self._has_room = has_room
-        self._when_room = when_room
-        self._limit = limit
-        self._slots = threading.Semaphore(limit)
-
-    def put(self, item: T) -> None:
-        """Hand `item` over; from a thread that may wait."""
-        self._slots.acquire()
-        super().put(item)
-
-    def take(self) -> None:
-        """Handle a slice of what waits, as far as there is room; on the loop."""
-        self._queued = False
-        items = self._items
-        left = min(len(items), SLICE_ITEMS)
-        while left and items:
-            left -= 1
-            if not self._has_room():
-                self._queued = True  # until somebody reads, nothing that comes is news
-                self._when_room(self._resume)
-                return
-            self._slots.release()
-            self._handle(items.popleft())
-        if items and not self._queued:
-            self._resume()
-
-    def _resume(self) -> None:
-        self._queued = True
-        self._wakeup.ready(self)  # type: ignore[arg-type]  # it only calls take()
-
-    def clear(self) -> None:
-        """Forget what waits, and let the thread that waits go on."""
-        self._items.clear()
-        self._slots.release(self._limit)

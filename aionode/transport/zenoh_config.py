@@ -49,6 +49,15 @@ EVERYWHERE: Final = "0.0.0.0"  # noqa: S104  # only on request: ROS_AUTOMATIC_DI
 
 MAX_DOMAIN_ID: Final = 2**32 - 1
 
+BLOCK_US: Final = 10_000_000
+"""How long a blocking send waits for a peer, in microseconds, before the connection is ended."""
+
+BATCHES: Final = 16
+"""How many batches of 64 kB wait for a peer that is busy, of each priority in `BURSTING`."""
+
+BURSTING: Final = ("interactive_high", "interactive_low", "data_high")
+"""The priorities of what the loop sends: tokens, requests and replies, messages."""
+
 
 class DiscoveryRange(enum.Enum):
     """How far a context looks for others by itself."""
@@ -310,8 +319,11 @@ def session_settings(network: Network, taken: Iterable[int]) -> dict[str, Any]:
             "period_increase_factor": 2,
         },
         "open/return_conditions/connect_scouted": False,
-        # A reader that keeps all and is slow may hold up its senders for so long, as in ROS.
-        "transport/link/tx/queue/congestion_control/block/wait_before_close": 60_000_000,
+        # What waits for a reader without acknowledgements does so in a thread, and as long as the
+        # lease: Zenoh ends the connection then anyway, but lets go of the thread only after this.
+        "transport/link/tx/queue/congestion_control/block/wait_before_close": BLOCK_US,
+        # Batches of 64 kB, made when they are needed: what the loop sends never waits for one.
+        **{f"transport/link/tx/queue/size/{name}": BATCHES for name in BURSTING},
         # Large messages are sent from a thread, which may wait longer for a slow network.
         "transport/link/tx/queue/congestion_control/drop/max_wait_before_drop_fragments": 500_000,
         # Bounds close() while a frozen peer does not answer; other machines may be slow to.

@@ -102,6 +102,32 @@ class Process:
             self.lines.append(entry)
             yield entry
 
+    def rest_so_far(self) -> list[str]:
+        """Return everything that it has written until now."""
+        while not self._queue.empty():
+            self.lines.append(self._queue.get())
+        return [line for _, line in self.lines]
+
+    def ask(self, line: str, answer: str) -> str:
+        """Send it a line, and return what follows `answer` in the next line that begins so.
+
+        Raises:
+            TimeoutError: there was none.
+        """
+        seen = len(self.rest_so_far())
+        self.write(line)
+        ends_s = time.monotonic() + PATIENCE_S
+        while time.monotonic() < ends_s:
+            for text in self.rest_so_far()[seen:]:
+                if text.startswith(answer + " "):
+                    return text.removeprefix(answer + " ")
+            time.sleep(0.005)
+        raise TimeoutError(f"{line!r} was not answered with {answer!r}")
+
+    def wait(self) -> int:
+        """Wait until it has ended, and return its status."""
+        return self._popen.wait(PATIENCE_S)
+
     def rest(self) -> list[str]:
         """Return everything that a process which has ended wrote."""
         self._reader.join()

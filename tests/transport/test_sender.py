@@ -9,7 +9,7 @@ from collections.abc import AsyncIterator
 import pytest
 
 from aionode.settle import one_turn
-from aionode.transport.sender import Outlet, Sender
+from aionode.transport.sender import Outlet, Sender, end_all
 from aionode.transport.wakeup import Wakeup
 
 
@@ -104,3 +104,33 @@ async def test_a_flushed_sender_has_no_thread_and_starts_another_when_needed(
     for thread in threading.enumerate():
         if thread.name == "test-sender":
             thread.join()
+
+
+async def test_an_abandoned_queue_sends_nothing_more_and_counts_it(sender: Sender) -> None:
+    """At the end of a publisher whose readers take nothing."""
+    lost: list[int] = []
+    outlet = sender.outlet(10, keep_all=True, lost=lost.append)
+    gate = blocked(outlet)
+    sent: list[int] = []
+    for n in range(5):
+        outlet.put(lambda n=n: sent.append(n))  # type: ignore[misc]  # a default is no argument
+    outlet.abandon()
+    gate.set()
+    await outlet.drain()
+
+    assert sent == []
+    assert lost == [5]
+    await sender.flush()
+
+
+async def test_the_end_of_the_process_waits_for_a_send_and_lets_none_begin(sender: Sender) -> None:
+    """A thread that comes back from Zenoh while the interpreter ends aborts the process."""
+    outlet = sender.outlet(10, keep_all=True)
+    gate = blocked(outlet)
+    sent: list[int] = []
+    outlet.put(lambda: sent.append(1))
+    threading.Timer(0.05, gate.set).start()
+    end_all()
+
+    assert sent == []
+    assert "test-sender" not in [thread.name for thread in threading.enumerate()]

@@ -13,7 +13,7 @@ import pytest
 from aionode.clock import perf_ns
 from aionode.settle import one_turn
 from aionode.transport import wakeup
-from aionode.transport.wakeup import Lane, PatientLane, Wakeup
+from aionode.transport.wakeup import Lane, Wakeup
 
 
 @pytest.fixture(params=["eventfd", "socketpair"])
@@ -168,8 +168,7 @@ async def drained(woken: Wakeup) -> None:
         await one_turn()
 
 
-@pytest.mark.parametrize("patient", [False, True])
-async def test_a_lane_may_be_cleared_by_what_it_calls(woken: Wakeup, *, patient: bool) -> None:
+async def test_a_lane_may_be_cleared_by_what_it_calls(woken: Wakeup) -> None:
     """A callback may run from there, and destroy its subscription."""
     reported: list[object] = []
     taken: list[int] = []
@@ -179,9 +178,7 @@ async def test_a_lane_may_be_cleared_by_what_it_calls(woken: Wakeup, *, patient:
         taken.append(item)
         lane.clear()
 
-    lane: Lane[int] = (
-        PatientLane(woken, take, 10, lambda: True, lambda _: None) if patient else Lane(woken, take)
-    )
+    lane = Lane(woken, take)
     in_thread(*(partial(lane.put, n) for n in range(3)))
     await drained(woken)
     assert taken == [0]

@@ -105,6 +105,51 @@ async def test_many_calls_at_once_each_get_their_answer() -> None:
         assert [answer.sum for answer in answers] == list(range(1, 201))
 
 
+async def test_ten_thousand_requests_wait_and_more_are_refused_with_the_reason(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A thousand did once, and the clients of the others were told that the server went away."""
+    monkeypatch.setenv("AIONODE_LINK", "off")
+    waiting, more = 10_000, 25
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("server", first) as server,
+        quiet_node("client", second) as node,
+    ):
+        began, gate = asyncio.Event(), asyncio.Event()
+
+        async def slow(request: AddTwoInts.Request) -> AddTwoInts.Response:
+            began.set()
+            await gate.wait()
+            return AddTwoInts.Response(sum=request.a)
+
+        service = server.create_service(AddTwoInts, "add", slow)
+        client = node.create_client(AddTwoInts, "add")
+        await client.wait_for_service()
+        calls = asyncio.gather(client.call(AddTwoInts.Request()))
+        await began.wait()
+        refused = asyncio.Event()
+
+        async def call(number: int) -> int | str:
+            try:
+                return (await client.call(AddTwoInts.Request(a=number))).sum
+            except ServiceError as error:
+                if service.stats.dropped == more:
+                    refused.set()
+                return str(error)
+
+        async with asyncio.TaskGroup() as tasks:
+            ends = [tasks.create_task(call(number)) for number in range(waiting + more)]
+            await refused.wait()
+            gate.set()
+        await calls
+        answers = [end.result() for end in ends]
+        errors = [answer for answer in answers if isinstance(answer, str)]
+        assert len(errors) == more
+        assert all("10000 requests are waiting already" in error for error in errors)
+        assert len(set(answers) - set(errors)) == waiting
+
+
 async def test_a_failing_handler_tells_the_client_at_once() -> None:
     """ROS has no way to; between aionode nodes the error travels."""
 

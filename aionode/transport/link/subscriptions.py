@@ -40,7 +40,9 @@ ZENOH_LATE_S: Final = 0.1
 """How long a reader that holds messages waits for the other way to say anything more."""
 
 MEND_S: Final = 0.5
-"""The same after a link has ended, when the other process has to notice and to send again."""
+"""The same where something is sent again: to a KEEP_ALL reader, or after a link has ended, when the
+other process has to notice.
+"""
 
 
 class Tap:
@@ -182,8 +184,9 @@ class Inlet:
     def _look_later(self) -> None:
         self._looking = True
         self._moved = False
-        mending = self.handover.way is Way.MENDING
-        self._hub.later(MEND_S if mending else ZENOH_LATE_S, self._look_again)
+        # What a KEEP_ALL reader waits for comes for certain, perhaps sent once more.
+        patient = self._patient or self.handover.way is Way.MENDING
+        self._hub.later(MEND_S if patient else ZENOH_LATE_S, self._look_again)
 
     def _look_again(self) -> None:
         """Wait no longer if nothing has come all the while."""

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import zenoh
 
 from aionode.transport.wakeup import Lane
-from aionode.transport.zenoh.handlers import direct
+from aionode.transport.zenoh.handlers import LOOP_PRIORITY, direct
 from aionode.wire import attachment
 
 if TYPE_CHECKING:
@@ -66,7 +66,11 @@ class Cancellations:
         if self._session is not None:
             for participant in participants:
                 self._session.put(
-                    self._key(participant), b"", attachment=attachment.pack(sequence, 0, gid)
+                    self._key(participant),
+                    b"",
+                    attachment=attachment.pack(sequence, 0, gid),
+                    congestion_control=zenoh.CongestionControl.DROP,
+                    priority=LOOP_PRIORITY,
                 )
 
     def _key(self, participant: str) -> str:

@@ -10,7 +10,32 @@ import zenoh
 
 from aionode.errors import TransportError
 
-__all__ = ["direct", "reason", "translated"]
+__all__ = [
+    "BULK_PRIORITY",
+    "CALL_PRIORITY",
+    "LOOP_PRIORITY",
+    "PATIENT_PRIORITY",
+    "direct",
+    "reason",
+    "translated",
+]
+
+# Zenoh has a queue for each priority and peer. Who waits for room in one (congestion control BLOCK,
+# and for a moment DROP) holds it, and everyone else who wants to put something there waits too, on
+# whatever thread. So what the loop sends itself has a queue in which nobody ever waits; Zenoh's
+# default, DATA, is left to what Zenoh sends itself and to replies to ROS 2 nodes.
+
+LOOP_PRIORITY = zenoh.Priority.DATA_HIGH
+"""Of what the loop's thread puts itself: always with congestion control DROP."""
+
+CALL_PRIORITY = zenoh.Priority.INTERACTIVE_LOW
+"""Of requests and their replies, which BLOCK."""
+
+BULK_PRIORITY = zenoh.Priority.DATA_LOW
+"""Of large messages, sent from a thread: DROP, but each fragment may wait."""
+
+PATIENT_PRIORITY = zenoh.Priority.BACKGROUND
+"""Of what has to arrive at readers that do not acknowledge, sent from threads that BLOCK."""
 
 T = TypeVar("T")
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 from abc import abstractmethod
 from collections import Counter
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Final, TypeVar
+from contextlib import suppress
+from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 
 import zenoh
 
@@ -14,21 +16,40 @@ from aionode.clock import MachineTime, perf_ns
 from aionode.transport.base import Announcement
 from aionode.transport.sender import Sender
 from aionode.transport.wakeup import Lane, Wakeup
+from aionode.transport.zenoh.acknowledgements import Acknowledgements
 from aionode.transport.zenoh.cancellations import Cancellations
 from aionode.transport.zenoh.handlers import translated
+from aionode.transport.zenoh.peers import Peers
 from aionode.wire.liveliness import gid_of
 
 if TYPE_CHECKING:
     from aionode.graph import Graph
 
-__all__ = ["Entity", "Link"]
+__all__ = ["FLUSH_S", "Entity", "Link"]
 
 T = TypeVar("T")
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
+BURST_BYTES: Final = 256 * 1024
+BURST_NS: Final = 10_000_000
+"""So much in so many nanoseconds finds its way to any peer that lives: a quarter of the queue."""
+
+FLUSH_S: Final = 2.0
+"""How long `flush` waits for what has to arrive, while its readers make progress."""
+
+BULK_FLUSH_S: Final = 0.15
+"""How long `flush` waits for large messages, which may be dropped."""
+
 SHARING_NS: Final = 500_000_000
 """How long Zenoh may take to have its shared memory ready."""
+
+
+class Lingering(Protocol):
+    """A publisher that was destroyed."""
+
+    def finish(self) -> None:
+        """Withdraw it now, and count what was not sent."""
 
 
 class Link:
@@ -41,7 +62,11 @@ class Link:
         graph: Where others are found while it is open.
         wakeup: The way from Zenoh's threads to the loop.
         bulk: Sends what is large.
-        senders: Every thread that sends.
+        senders: Every thread that sends messages.
+        peers: The ways of requests and replies.
+        burst: How much the loop has just put itself.
+        acknowledgements: What is said of messages between contexts of aionode.
+        lingering: Publishers that were destroyed and still have something to send.
         garbage: How many samples of each key were in no known form.
         own_gids: Ids of this context's publishers.
         cancellations: Requests that clients have given up.
@@ -57,11 +82,16 @@ class Link:
         self.wakeup = Wakeup()
         self.bulk = Sender("aionode-bulk", self.wakeup)
         self.senders = {self.bulk}
+        self.peers = Peers(self.wakeup)
+        self.burst = Burst()
+        self.acknowledgements = Acknowledgements(self)
+        self.lingering: dict[Lingering, None] = {}
         self.garbage: Counter[str] = Counter()
         self.own_gids: set[bytes] = set()
         self.cancellations = Cancellations(participant, domain_id, self.wakeup, self.note_garbage)
         self.now_ns = MachineTime().system_ns
         self.on_reader: dict[str, list[Callable[[], None]]] = {}
+        self._lingered: asyncio.Future[None] | None = None
         self._shares_from_ns = 0  # when the first large message of this session was sent
         self._entities: dict[Entity, None] = {}
 
@@ -84,6 +114,7 @@ class Link:
         self.session = session
         self.graph = graph
         self._shares_from_ns = 0
+        self.acknowledgements.start(session)
         self.cancellations.start(session)
         for entity in list(self._entities):
             entity.declare(session)
@@ -100,9 +131,29 @@ class Link:
         return now_ns - self._shares_from_ns < SHARING_NS
 
     async def flush(self) -> None:
-        """Wait until everything that was handed to the threads was sent, and let them end."""
-        for sender in list(self.senders):
-            await sender.flush()
+        """Wait until everything that was handed over was sent, `FLUSH_S` at most.
+
+        Destroyed publishers end that wait by themselves, when their readers make no progress.
+        """
+        for entity in list(self._entities):
+            entity.linger()
+        with suppress(TimeoutError):
+            async with asyncio.timeout(FLUSH_S):
+                while self.lingering:
+                    self._lingered = asyncio.get_running_loop().create_future()
+                    await self._lingered
+                for sender in list(self.senders):
+                    if sender is not self.bulk:
+                        await sender.flush()
+        with suppress(TimeoutError):
+            async with asyncio.timeout(BULK_FLUSH_S):
+                await self.bulk.flush()
+
+    def has_lingered(self, publisher: Lingering) -> None:
+        """Note that a publisher has nothing to send any more."""
+        self.lingering.pop(publisher, None)
+        if self._lingered is not None and not self._lingered.done():
+            self._lingered.set_result(None)
 
     def disconnect(self) -> zenoh.Session | None:
         """Undeclare everything, the newest first; return the session, to be closed."""
@@ -110,7 +161,11 @@ class Link:
         if session is not None:
             for entity in reversed(self._entities):
                 entity.undeclare()
+            for publisher in list(self.lingering):
+                publisher.finish()
+        self.peers.clear()
         self.cancellations.stop()
+        self.acknowledgements.stop()
         self.graph = None
         return session
 
@@ -124,6 +179,25 @@ class Link:
                 key,
                 problem,
             )
+
+
+class Burst:
+    """How much the loop puts into Zenoh at once, which has to go through its queue in time."""
+
+    def __init__(self) -> None:
+        self._left = BURST_BYTES
+        self._since_ns = 0
+
+    def spend(self, size_bytes: int) -> bool:
+        """Return whether so much more can be put now."""
+        self._left -= size_bytes + 128
+        if self._left < 0:
+            now_ns = perf_ns()
+            if now_ns - self._since_ns < BURST_NS:
+                return False
+            self._since_ns = now_ns
+            self._left = BURST_BYTES - size_bytes
+        return True
 
 
 class Entity(Announcement):
@@ -161,6 +235,9 @@ class Entity(Announcement):
                 token.undeclare()
             if declared:
                 self.undeclare_data()
+
+    def linger(self) -> None:
+        """Note that this is about to end, for those who still have something to send."""
 
     @abstractmethod
     def declare_data(self, session: zenoh.Session) -> None:

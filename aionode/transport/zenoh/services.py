@@ -14,9 +14,9 @@ from aionode.clock import perf_ns
 from aionode.errors import DecodeError, ServiceError
 from aionode.graph import EndpointKind
 from aionode.transport.base import Origin, Request, Requester
-from aionode.transport.zenoh.handlers import direct, translated
+from aionode.transport.zenoh.handlers import CALL_PRIORITY, direct, translated
 from aionode.transport.zenoh.link import Entity
-from aionode.transport.zenoh.topics import BULK_BYTES, NOBODY, origin_of
+from aionode.transport.zenoh.subscriptions import NOBODY, origin_of
 from aionode.wire import attachment, cdr
 from aionode.wire.keyexpr import data_key
 from aionode.wire.liveliness import endpoint_token
@@ -24,7 +24,7 @@ from aionode.wire.liveliness import endpoint_token
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.graph import EndpointInfo
+    from aionode.graph import EndpointInfo, Graph
     from aionode.transport.base import Call, ReplyTo, Serve
     from aionode.transport.zenoh.link import Link
 
@@ -54,14 +54,16 @@ The token of a server can be seen shortly before requests find their way to it. 
 
 AT_ONCE_NS = 50_000_000
 
-CALLS_BEFORE_THREAD = 32
-"""From so many unanswered calls of a client on, the next are sent from a thread.
+ARRIVING_REQUESTS = 50_000
+"""How many requests wait for the loop at most, before the service counts and refuses them.
 
-Sending waits where the way is blocked, and so many small requests do not yet block it.
+One more ends the oldest, whose client is told that nothing will come.
 """
 
-WAITING_REQUESTS = 1_000
-"""How many requests wait for the loop at most; one more ends the oldest, whose client is told."""
+REMEMBERED_CLIENTS = 10_000
+
+FRESH_NS = 100_000_000
+"""A request that is no older, by its stamp, shows that its client lives."""
 
 
 def error_payload(error_type: str, error_text: str) -> bytes:
@@ -98,8 +100,9 @@ class ZenohServer(Entity):
         self.srv_type = srv_type
         self._serve = serve
         self._queryable: zenoh.Queryable[None] | None = None
-        self._lane = link.lane(self._take, WAITING_REQUESTS)
+        self._lane = link.lane(self._take, ARRIVING_REQUESTS)
         self.unanswered: dict[tuple[bytes, int], ZenohRequest] = {}
+        self._clients: dict[bytes, str] = {}
         link.cancellations.listeners[self.cancel] = None
         link.add(self)
 
@@ -146,9 +149,43 @@ class ZenohServer(Entity):
         except DecodeError as error:
             self.link.note_garbage(self.key, str(error))
             problem = error_payload("DecodeError", str(error))
-            answer(query, lambda: query.reply_err(problem))
+            self.answer(query, origin, lambda: query.reply_err(problem), len(problem))
         else:
+            if abs(self.link.now_ns() - origin.source_ns) < FRESH_NS:
+                self.link.peers.heard(self.participant_of(origin.gid))
             self._serve(ZenohRequest(message, origin, query, self), self.link.wakeup.until_ns)
+
+    def participant_of(self, client: bytes) -> str:
+        """Return the context of a client; one of its own for a client without a token."""
+        participant = self._clients.get(client)
+        if participant is None:
+            graph = self.link.graph
+            for one in (
+                ()
+                if graph is None
+                else graph.endpoints(EndpointKind.CLIENT, name=self.endpoint.name)
+            ):
+                if one.gid == client:
+                    participant = one.node.participant
+                    if len(self._clients) >= REMEMBERED_CLIENTS:
+                        self._clients.clear()
+                    self._clients[client] = participant
+                    break
+            else:
+                return client.hex()
+        return participant
+
+    def answer(
+        self,
+        query: zenoh.Query,
+        origin: Origin,
+        reply: Callable[[], None] | None,
+        size_bytes: int,
+    ) -> None:
+        """End `query`, without waiting for a client that hangs."""
+        self.link.peers.send(
+            (self.participant_of(origin.gid),), size_bytes, lambda: answer(query, reply)
+        )
 
 
 def answer(query: zenoh.Query, reply: Callable[[], None] | None = None) -> None:
@@ -200,14 +237,10 @@ class ZenohRequest(Request):
     def drop(self) -> None:
         """End the query, which tells the client that nothing will come."""
         if self._finish():
-            answer(self._query)
+            self._answer(None, 0)
 
-    def _answer(self, reply: Callable[[], None], size_bytes: int) -> None:
-        query = self._query
-        if size_bytes < BULK_BYTES:
-            answer(query, reply)
-        else:
-            self._server.link.bulk.submit(lambda: answer(query, reply))
+    def _answer(self, reply: Callable[[], None] | None, size_bytes: int) -> None:
+        self._server.answer(self._query, self.origin, reply, size_bytes)
 
 
 # Clients
@@ -222,6 +255,8 @@ class ZenohRequester(Entity, Requester):
         self.key = data_key(link.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
         self.srv_type = srv_type
         self.unanswered: set[ZenohCall] = set()
+        self._looked_at: tuple[Graph, int] | None = None
+        self._known: list[EndpointInfo] = []
         self._window_ns = perf_ns()
         self._window_calls = 0
         link.add(self)
@@ -248,11 +283,19 @@ class ZenohRequester(Entity, Requester):
         graph = self.link.graph
         if graph is None:
             return []
-        return [
-            server
-            for server in graph.endpoints(EndpointKind.SERVER, name=self.endpoint.name)
-            if server.node.participant != self.link.participant and self.endpoint.matches(server)
-        ]
+        if self._looked_at != (graph, graph.changes):
+            self._looked_at = (graph, graph.changes)
+            self._known = [
+                server
+                for server in graph.endpoints(EndpointKind.SERVER, name=self.endpoint.name)
+                if server.node.participant != self.link.participant
+                and self.endpoint.matches(server)
+            ]
+        return self._known
+
+    def participants(self) -> set[str]:
+        """Return the contexts of the servers."""
+        return {server.node.participant for server in self._matched()}
 
     @property
     def servers(self) -> int:
@@ -261,7 +304,7 @@ class ZenohRequester(Entity, Requester):
 
     def tell_cancelled(self, sequence: int) -> None:
         """Tell the servers that a request need not be served."""
-        participants = {server.node.participant for server in self._matched()}
+        participants = self.participants()
         self.link.cancellations.tell(participants, self.gid, sequence)
 
     def send(self, request: Any, origin: Origin, reply_to: ReplyTo) -> Call:
@@ -274,15 +317,7 @@ class ZenohRequester(Entity, Requester):
             call.refuse()
             return call
 
-        timeout_s = self.timeout_s()
-
-        def get() -> None:
-            call.get(session, payload, extra, timeout_s)
-
-        if len(payload) < BULK_BYTES and len(self.unanswered) <= CALLS_BEFORE_THREAD:
-            get()
-        else:
-            self.link.bulk.submit(get)
+        call.send(session, payload, extra, self.timeout_s())
         return call
 
 
@@ -301,9 +336,20 @@ class ZenohCall:
         self._lane = requester.link.lane(self._take)
         requester.unanswered.add(self)
 
-    def get(self, session: zenoh.Session, payload: bytes, extra: bytes, timeout_s: float) -> None:
-        """Send the request; on any thread."""
-        self._send_again = partial(self.get, session, payload, extra, timeout_s)
+    def send(self, session: zenoh.Session, payload: bytes, extra: bytes, timeout_s: float) -> None:
+        """Send the request without waiting for a server that hangs; on the loop."""
+        self._send_again = partial(self.send, session, payload, extra, timeout_s)
+        requester = self._requester
+        requester.link.peers.send(
+            requester.participants(),
+            len(payload),
+            partial(self._get, session, payload, extra, timeout_s),
+        )
+
+    def _get(self, session: zenoh.Session, payload: bytes, extra: bytes, timeout_s: float) -> None:
+        """Send the request, unless it was given up meanwhile; on any thread."""
+        if self._reply_to is None:
+            return
         self._sent_ns = perf_ns()
         try:
             session.get(
@@ -311,6 +357,8 @@ class ZenohCall:
                 direct(self._lane.put, lambda: self._lane.put(None)),
                 target=zenoh.QueryTarget.ALL_COMPLETE,
                 consolidation=zenoh.ConsolidationMode.NONE,
+                congestion_control=zenoh.CongestionControl.BLOCK,
+                priority=CALL_PRIORITY,
                 timeout=timeout_s,
                 payload=payload,
                 attachment=extra,
@@ -333,6 +381,9 @@ class ZenohCall:
             if not self._try_again():
                 self.end()
             return
+        servers = self._requester.participants()
+        if len(servers) == 1:  # else it is not known which of them lives
+            self._requester.link.peers.heard(servers.pop())
         sample = reply.ok
         if sample is None:
             error = reply.err

@@ -1,48 +1,69 @@
-"""Publishers and subscriptions on Zenoh."""
+"""Publishers on Zenoh, and what publishers and subscriptions have in common."""
 
 from __future__ import annotations
 
+import asyncio
 import logging
 from collections import deque
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import zenoh
 from zenoh import ext
 
-from aionode.errors import DecodeError, TransportError
+from aionode.clock import perf_ns
+from aionode.errors import TransportError
+from aionode.graph import EndpointKind
 from aionode.message import fields
 from aionode.qos import DurabilityPolicy, HistoryPolicy, ReliabilityPolicy
-from aionode.transport.base import Origin, Writer
-from aionode.transport.sender import Sender
-from aionode.transport.wakeup import Lane, PatientLane
-from aionode.transport.zenoh.handlers import direct, reason
-from aionode.transport.zenoh.link import Entity
-from aionode.wire import attachment, cdr
-from aionode.wire.keyexpr import buffer_key, data_key
-from aionode.wire.liveliness import CPU_BACKEND, endpoint_token
+from aionode.transport.base import Writer
+from aionode.transport.reliability import WriterHistory
+from aionode.transport.sender import Outlet, Sender
+from aionode.transport.zenoh.handlers import (
+    BULK_PRIORITY,
+    LOOP_PRIORITY,
+    PATIENT_PRIORITY,
+    direct,
+    reason,
+)
+from aionode.transport.zenoh.link import FLUSH_S, Entity
+from aionode.transport.zenoh_config import BLOCK_US
+from aionode.wire import acknack, attachment, cdr
+from aionode.wire.acknack import Kind
+from aionode.wire.keyexpr import data_key
+from aionode.wire.liveliness import endpoint_token
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.graph import EndpointInfo
+    from aionode.graph import EndpointInfo, Graph
     from aionode.qos import QoSProfile
-    from aionode.transport.base import Reader
+    from aionode.transport.base import Origin
+    from aionode.transport.reliability import Entry, ReaderProxy
     from aionode.transport.zenoh.link import Link
+    from aionode.wire.acknack import Submessage
 
-__all__ = ["ZenohReader", "ZenohWriter", "has_buffers", "origin_of"]
+__all__ = ["ZenohWriter", "depth_of", "has_buffers", "is_reliable", "is_transient"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
 KEEP_ALL_DEPTH = 10_000
 """How many messages a KEEP_ALL publisher holds that are not sent yet, or are kept for late ones."""
 
-BACKLOG = 10_000
-"""How many small messages wait for the loop at least, before the oldest are dropped."""
-
 BULK_BYTES = 60_000
 """From this size on a message is sent from a thread: it takes more than one packet of Zenoh's."""
 
-NOBODY = bytes(16)
+FLUSH_NS = int(FLUSH_S * 1e9)
+"""How long what was published has to arrive after the publisher was destroyed."""
+
+STILL_NS = 500_000_000
+"""The same while nothing moves."""
+
+GIVEN_UP_NS = BLOCK_US * 900
+"""What took so long to send was given up by Zenoh."""
+
+BLOCK = zenoh.CongestionControl.BLOCK
+DROP = zenoh.CongestionControl.DROP
 
 
 def has_buffers(msg_type: type[Any]) -> bool:
@@ -82,7 +103,12 @@ def is_transient(qos: QoSProfile) -> bool:
 
 
 class ZenohWriter(Entity, Writer):
-    """A publisher as the subscriptions of others see it."""
+    """A publisher as the subscriptions of others see it.
+
+    A message leaves in one of three ways, each with a queue of its own in Zenoh: from the loop,
+    which never waits; from the thread for large ones; or, for readers that do not acknowledge and
+    must not lose it, from a thread of this publisher that waits for them.
+    """
 
     def __init__(self, link: Link, endpoint: EndpointInfo, msg_type: type[Any]) -> None:
         super().__init__(link, endpoint_token(link.domain_id, endpoint))
@@ -96,35 +122,55 @@ class ZenohWriter(Entity, Writer):
         self._matching: zenoh.MatchingListener[None] | None = None
         self._matching_changed = link.lane(self._update_with, limit=1)
         self._transient = is_transient(qos)
-        depth = depth_of(qos)
+        self._depth = depth_of(qos)
+        self._reliable = is_reliable(qos)
         # What a publisher keeps for late readers before the session is open.
-        self._early: deque[tuple[bytes, bytes]] = deque(maxlen=depth)
+        self._early: deque[tuple[bytes, bytes]] = deque(maxlen=self._depth)
         self.active = self._transient
-        self.bounded = qos.history is HistoryPolicy.KEEP_ALL and is_reliable(qos)
-        # One that `_send` may make wait; the others wait anyway, or may lose what they send.
-        self._patient = is_reliable(qos) and not self.bounded and not self._transient
-        # One that waits for slow readers holds up nobody else.
-        self._sender = Sender("aionode-keep-all", link.wakeup) if self.bounded else link.bulk
-        link.senders.add(self._sender)
-        self._outlet = self._sender.outlet(depth, keep_all=self.bounded)
+        self.bounded = qos.history is HistoryPolicy.KEEP_ALL and self._reliable
+        # Who keeps messages for late readers leaves it to Zenoh to send them again.
+        self._history: WriterHistory | None = None
+        if self._reliable and not self._transient:
+            self._history = WriterHistory(
+                self._depth, keep_all=self.bounded, side=self, now_ns=perf_ns
+            )
+            link.acknowledgements.writers[self.gid] = self
+        # Large messages, and small ones behind them so that the order stays.
+        self._large = self._outlet(link.bulk, keep_all=False)
+        self._bulk_only = self._transient and not self.bounded and has_buffers(msg_type)
+        # What waits for readers that do not acknowledge; once begun it stays so, for the order.
+        self._patient: Outlet | None = None
+        self._patient_sender = Sender("aionode-patient", link.wakeup)
+        self._patient_publisher: zenoh.Publisher | None = None
+        self._drained: list[asyncio.Future[None]] = []
+        self._dropped = 0
+        self._given_up = link.lane(self.lost)
+        self._closed = False
+        self._ends_ns = 0  # when a publisher that lingers gives up
+        self._moved: tuple[int, ...] = ()
+        self._moved_ns = 0
         link.own_gids.add(self.gid)
         link.on_reader.setdefault(endpoint.name, []).append(self._update)
         link.add(self)
 
+    def _outlet(self, sender: Sender, *, keep_all: bool) -> Outlet:
+        lost = self.lost if self._reliable else self._count_lost
+        return sender.outlet(self._depth, keep_all=keep_all, lost=lost)
+
     def declare_data(self, session: zenoh.Session) -> None:
         """Declare the publisher, and send what was kept."""
-        qos = self.endpoint.qos
-        reliable = is_reliable(qos)
+        reliable = self._reliable
         reliability = zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT
-        congestion = zenoh.CongestionControl.BLOCK if self.bounded else zenoh.CongestionControl.DROP
         if self._transient:
+            priority = BULK_PRIORITY if self._bulk_only else LOOP_PRIORITY
             self._publisher = ext.declare_advanced_publisher(
                 session,
                 self._key,
-                congestion_control=congestion,
+                congestion_control=BLOCK if self.bounded else DROP,
+                priority=PATIENT_PRIORITY if self.bounded else priority,
                 reliability=reliability,
                 allowed_destination=zenoh.Locality.REMOTE,
-                cache=ext.CacheConfig(max_samples=depth_of(qos)),
+                cache=ext.CacheConfig(max_samples=self._depth),
                 publisher_detection=True,
                 # Samples are numbered, so that readers ask again for what is missing between two.
                 # No heartbeat, which would tell of a missing last one too: undeclaring waits for
@@ -137,12 +183,12 @@ class ZenohWriter(Entity, Writer):
                 else None,
             )
             while self._early:
-                payload, extra = self._early.popleft()
-                self._publisher.put(payload, attachment=extra)
+                self._put(*self._early.popleft())
         else:
             self._publisher = session.declare_publisher(
                 self._key,
-                congestion_control=congestion,
+                congestion_control=DROP,
+                priority=LOOP_PRIORITY,
                 reliability=reliability,
                 allowed_destination=zenoh.Locality.REMOTE,
             )
@@ -152,32 +198,124 @@ class ZenohWriter(Entity, Writer):
         self._update()
 
     def undeclare_data(self) -> None:
-        """Withdraw the publisher."""
-        publisher, self._publisher = self._publisher, None
+        """Withdraw the publisher, as soon as what was published is sent or given up."""
+        self.linger()
+        if self not in self.link.lingering or self.link.session is None:
+            self.finish()
+
+    def linger(self) -> None:
+        """Give what was published some time to arrive."""
+        if self.is_done() or self in self.link.lingering or self._publisher is None:
+            return
+        now_ns = perf_ns()
+        self._ends_ns = now_ns + FLUSH_NS
+        self._moved_ns = now_ns
+        self._moved = ()
+        self.link.lingering[self] = None
+        self.link.acknowledgements.watch(self)
+
+    def is_done(self) -> bool:
+        """Whether nothing is left to send, or to be acknowledged."""
+        return (
+            (self._history is None or self._history.done)
+            and not len(self._large)
+            and (self._patient is None or not len(self._patient))
+        )
+
+    def finish(self) -> None:
+        """Withdraw the publisher, and count what was not sent."""
+        self.link.has_lingered(self)
+        if self._history is not None and (missing := self._history.give_up()):
+            self.lost(missing)
+        for outlet in (self._large, self._patient):
+            if outlet is not None:
+                outlet.abandon()
         matching, self._matching = self._matching, None
         if matching is not None:
             matching.undeclare()
-        if publisher is not None:
-            if len(self._outlet):
-                # The thread may be inside `put`, and Zenoh's object is used by one at a time; what
-                # was published before is still sent.
-                self._sender.submit(lambda: withdraw(publisher))
-            else:
-                withdraw(publisher)
+        self._withdraw()
+        self._wake()
         self._update()
+        if self._closed:
+            self._forget()
+
+    def _withdraw(self) -> None:
+        """Undeclare: Zenoh's objects are used by one at a time, and a thread may be inside."""
+        publisher, self._publisher = self._publisher, None
+        patient, self._patient_publisher = self._patient_publisher, None
+        if self._patient is not None:
+            self._patient = None
+            if patient is not None:
+                self._patient_sender.submit(partial(withdraw, patient))
+            elif publisher is not None:  # it is the thread's own
+                self._patient_sender.submit(partial(withdraw, publisher))
+                publisher = None
+        self.link.senders.discard(self._patient_sender)
+        self._patient_sender.close()
+        if publisher is None:
+            return
+        if len(self._large):
+            self.link.bulk.submit(partial(withdraw, publisher))
+        else:
+            withdraw(publisher)
+
+    # Who listens
 
     def _update_with(self, _: zenoh.MatchingStatus) -> None:
         self._update()
 
     def _update(self) -> None:
-        """Find out whether anybody listens."""
-        if not self._transient:
-            publisher = self._publisher
-            self.active = isinstance(publisher, zenoh.Publisher) and bool(
-                publisher.matching_status.matching  # type: ignore[attr-defined]  # no bool, as the stub says
-            )
+        """Find out whether anybody listens, and who of them acknowledges."""
+        publisher, history, graph = self._publisher, self._history, self.link.graph
+        if self._transient:
+            if self._encode is None:
+                self._encode = cdr.encoder(self._msg_type)
+            return
+        self.active = isinstance(publisher, zenoh.Publisher) and bool(
+            publisher.matching_status.matching  # type: ignore[attr-defined]  # no bool, as the stub says
+        )
+        if history is not None and graph is not None and publisher is not None:
+            acknowledging, others = self._matched(graph)
+            # The token of a reader can come before Zenoh knows the way there: what is lost until
+            # then is sent again. Somebody without a token may listen too; beside readers that
+            # acknowledge, nothing is known of them.
+            self.active = self.active or bool(acknowledging)
+            history.others = others or not acknowledging
+            self._note_readers(history, acknowledging)
         if self.active and self._encode is None:
             self._encode = cdr.encoder(self._msg_type)
+
+    def _note_readers(self, history: WriterHistory, acknowledging: dict[bytes, str]) -> None:
+        """Let the history know who has come and gone."""
+        for gid, known in list(history.readers.items()):
+            if gid not in acknowledging and not known.away_ns:
+                history.remove(gid)
+        if not self._closed:
+            for gid, participant in acknowledging.items():
+                reader = history.readers.get(gid)
+                if reader is None or reader.away_ns:
+                    history.add(gid, participant)
+        self._progress()
+
+    def _matched(self, graph: Graph) -> tuple[dict[bytes, str], bool]:
+        """Return the readers that acknowledge, and whether others must not lose messages."""
+        able = self.link.acknowledgements.participants
+        acknowledging: dict[bytes, str] = {}
+        others = False
+        for reader in graph.endpoints(EndpointKind.SUBSCRIPTION, name=self.endpoint.name):
+            participant = reader.node.participant
+            if participant == self.link.participant or not self.endpoint.matches(reader):
+                continue
+            if participant not in able:
+                others = True
+            elif is_reliable(reader.qos):
+                if is_transient(reader.qos):
+                    others = True
+                else:
+                    acknowledging[reader.gid] = participant
+        return acknowledging, others
+
+    # Messages
 
     def write(self, msg: Any, origin: Origin) -> None:
         """Send `msg`."""
@@ -186,18 +324,77 @@ class ZenohWriter(Entity, Writer):
             encode = self._encode = cdr.encoder(self._msg_type)
         payload = encode(msg)
         extra = attachment.pack(origin.sequence, origin.source_ns, self.gid)
-        publisher = self._publisher
-        if publisher is None:
+        history = self._history
+        if self._publisher is None:
             if self._transient:
                 self._early.append((payload, extra))
-        elif self.bounded or len(payload) >= BULK_BYTES or len(self._outlet):
-            # Small ones wait behind a large one, so that the order stays.
-            self._outlet.put(lambda: self._send(publisher, payload, extra))
+        elif history is None:
+            self._put(payload, extra)
+        else:
+            history.write(origin.sequence, payload, extra)
+            if history.entries:
+                self.link.acknowledgements.watch(self)
+
+    def put(self, payload: bytes, extra: bytes) -> None:
+        """Send a message to every reader."""
+        self._put(payload, extra)
+
+    def _put(self, payload: bytes, extra: bytes) -> None:
+        publisher = self._publisher
+        if publisher is None:
+            return
+        history = self._history
+        others = history is None or history.others
+        size = len(payload)
+        if (
+            self._patient is not None
+            or (others and self.bounded)
+            or (
+                others
+                and self._reliable
+                and not self._transient
+                and size < BULK_BYTES
+                and not self.link.burst.spend(size)
+            )
+        ):
+            self._put_patiently(publisher, payload, extra)
+        elif size >= BULK_BYTES or self._bulk_only or len(self._large):
+            self._large.put(lambda: self._send(publisher, payload, extra))
         else:
             try:
                 publisher.put(payload, attachment=extra)
             except zenoh.ZError as error:
                 raise TransportError(f"{self._key}: {reason(error)}") from error
+
+    def _put_patiently(
+        self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
+    ) -> None:
+        """Send from the thread that waits for slow readers."""
+        if self._patient is None:
+            self.link.senders.add(self._patient_sender)
+            self._patient = self._outlet(self._patient_sender, keep_all=self.bounded)
+            if not self._transient and self.link.session is not None:
+                self._patient_publisher = self.link.session.declare_publisher(
+                    self._key,
+                    congestion_control=BLOCK,
+                    priority=PATIENT_PRIORITY,
+                    reliability=zenoh.Reliability.RELIABLE,
+                    allowed_destination=zenoh.Locality.REMOTE,
+                )
+        patient = self._patient_publisher or publisher
+        self._patient.put(lambda: self._send_patiently(patient, payload, extra))
+
+    def _send_patiently(
+        self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
+    ) -> None:
+        """Send in the thread; Zenoh gives up after a while, and says so to nobody."""
+        began_ns = perf_ns()
+        try:
+            publisher.put(payload, attachment=extra)
+        except zenoh.ZError as error:
+            logger.debug("%s: not sent: %s", self._key, reason(error))
+        if perf_ns() - began_ns >= GIVEN_UP_NS:
+            self._given_up.put(1)
 
     def _send(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
@@ -205,50 +402,149 @@ class ZenohWriter(Entity, Writer):
         """Send from a thread, where nobody can be told that the session was closed meanwhile."""
         session = self.link.session
         try:
-            if session is not None and self._patient and self.link.begins_to_share():
+            if session is None or self._transient:
+                publisher.put(payload, attachment=extra)
+            else:
+                waits = self._reliable and self.link.begins_to_share()
                 session.put(
                     self._key,
                     payload,
                     attachment=extra,
-                    congestion_control=zenoh.CongestionControl.BLOCK,
+                    congestion_control=BLOCK if waits else DROP,
+                    priority=BULK_PRIORITY,
                     allowed_destination=zenoh.Locality.REMOTE,
                 )
-            else:
-                publisher.put(payload, attachment=extra)
         except zenoh.ZError as error:
             logger.debug("%s: not sent: %s", self._key, reason(error))
 
     def has_room(self) -> bool:
         """Whether one more message can wait to be sent."""
-        return not self.bounded or self._outlet.has_room()
+        if not self.bounded:
+            return True
+        return (self._history is None or self._history.has_room()) and (
+            self._patient is None or self._patient.has_room()
+        )
 
     async def drain(self) -> None:
-        """Wait until everything was handed to Zenoh."""
-        await self._outlet.drain()
+        """Wait until there is room, and everything was handed to Zenoh."""
+        while self._history is not None and (self._history.unsent or not self.has_room()):
+            waiter = asyncio.get_running_loop().create_future()
+            self._drained.append(waiter)
+            self.link.acknowledgements.watch(self)
+            await waiter
+        if self._patient is not None:
+            await self._patient.drain()
+        await self._large.drain()
+
+    def _progress(self) -> None:
+        """Let those go on who wait for it."""
+        history = self._history
+        if self._drained and (history is None or not (history.unsent or not history.has_room())):
+            self._wake()
+
+    def _wake(self) -> None:
+        drained, self._drained = self._drained, []
+        for waiter in drained:
+            if not waiter.done():
+                waiter.set_result(None)
+
+    # What readers say, and are told
+
+    def answer(self, said: Submessage) -> None:
+        """Take an ACKNACK."""
+        if self._history is not None:
+            self._history.acknack(said.reader, said.first, said.ranges())
+            self._progress()
+            if self in self.link.lingering and self.is_done():
+                self.finish()
+
+    def tick(self) -> bool:
+        """Ask readers, and give up in the end; return whether to come again."""
+        history = self._history
+        again = history is not None and history.tick()
+        self._progress()
+        if self in self.link.lingering:
+            now_ns = perf_ns()
+            moved = (
+                0 if history is None else history.sent,
+                0 if history is None else sum(r.acked for r in history.readers.values()),
+                self._large.sent,
+                0 if self._patient is None else self._patient.sent,
+            )
+            if moved != self._moved:
+                self._moved, self._moved_ns = moved, now_ns
+            if self.is_done() or now_ns > min(self._ends_ns, self._moved_ns + STILL_NS):
+                self.finish()
+                return False
+            return True
+        return again
+
+    def heartbeat(self, reader: ReaderProxy, first: int, last: int) -> None:
+        """Tell a reader how far the messages go."""
+        self._say(Kind.HEARTBEAT, reader, first, last, self.link.participant.encode())
+
+    def gap(self, reader: ReaderProxy, first: int, last: int) -> None:
+        """Tell a reader that some will not come."""
+        self._say(Kind.GAP, reader, first, last)
+
+    def resend(self, reader: ReaderProxy, entry: Entry) -> None:
+        """Send a message again to one reader."""
+        fields = attachment.unpack_fields(entry.extra)
+        source_ns = 0 if fields is None else fields[1]
+        self._say(Kind.DATA, reader, entry.sequence, source_ns, entry.payload)
+
+    def _say(
+        self, kind: Kind, reader: ReaderProxy, first: int, last: int, rest: bytes = b""
+    ) -> None:
+        data = acknack.pack(kind, self.gid, reader.gid, first, last, rest)
+        say = self.link.acknowledgements.say
+        if len(data) < BULK_BYTES:
+            say(reader.participant, data)
+        else:  # each of its fragments may wait
+            self.link.bulk.submit(partial(say, reader.participant, data, BULK_PRIORITY))
+
+    def lost(self, count: int) -> None:
+        """Count dropped messages, and say so the first time."""
+        if not self._dropped:
+            logger.warning(
+                "%s: %d of the messages published here were dropped before every reader had them: "
+                "one is too slow, hangs or has gone; more of them are only counted, in the "
+                "publisher's stats.dropped. A greater depth keeps more of them, KEEP_ALL and "
+                "`await drain()` all",
+                self.endpoint.name,
+                count,
+            )
+        self._dropped += count
+
+    def _count_lost(self, count: int) -> None:
+        self._dropped += count
 
     @property
     def dropped(self) -> int:
-        """How many large messages were dropped before Zenoh took them."""
-        return self._outlet.dropped
+        """How many messages were dropped on their way, as far as that can be known."""
+        return self._dropped
 
     def way_of(self, reader: EndpointInfo) -> str | None:
         """Return ``zenoh`` for the subscriptions of others."""
         return "zenoh" if reader.node.participant != self.link.participant else None
 
     def close(self) -> None:
-        """Withdraw the publisher for good."""
+        """Withdraw the publisher for good; what was published has some time to arrive."""
+        self._closed = True
+        super().close()
+        self._transient = False
+        if self not in self.link.lingering:
+            self._forget()
+            self._update()
+
+    def _forget(self) -> None:
+        self.link.own_gids.discard(self.gid)
+        self.link.acknowledgements.writers.pop(self.gid, None)
         updates = self.link.on_reader.get(self.endpoint.name, [])
         if self._update in updates:
             updates.remove(self._update)
             if not updates:
                 del self.link.on_reader[self.endpoint.name]
-        self._transient = False
-        super().close()
-        self.link.own_gids.discard(self.gid)
-        if self.bounded:
-            self.link.senders.discard(self._sender)
-            self._sender.close()
-        self._update()
 
 
 def withdraw(publisher: zenoh.Publisher | ext.AdvancedPublisher) -> None:
@@ -257,110 +553,3 @@ def withdraw(publisher: zenoh.Publisher | ext.AdvancedPublisher) -> None:
         publisher.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
     except zenoh.ZError as error:
         logger.debug("%s: not undeclared: %s", publisher.key_expr, error)
-
-
-# Receiving
-
-
-class ZenohReader(Entity):
-    """A subscription as the publishers of others see it."""
-
-    def __init__(
-        self, link: Link, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
-    ) -> None:
-        self._buffers = has_buffers(msg_type)
-        transient = is_transient(endpoint.qos)
-        self._second_key = self._buffers and not transient
-        backends = CPU_BACKEND if self._second_key else ""
-        # Without a hash it takes every definition of the type, which ROS has no token for.
-        visible = bool(endpoint.type_hash)
-        super().__init__(
-            link, endpoint_token(link.domain_id, endpoint, backends) if visible else ""
-        )
-        self.endpoint = endpoint
-        self._key = data_key(link.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
-        self._transient = transient
-        self._deliver = reader.deliver
-        self._wakeup = link.wakeup
-        self._reject = reader.reject
-        self._raw = reader.raw
-        self._msg_type = msg_type
-        self._decode: Callable[[bytes], Any] | None = None
-        depth = depth_of(endpoint.qos)
-        # A few hundred images waiting for a busy loop would take all memory; what is small may
-        # wait for its turn in the subscription's own queue, where it is counted if dropped.
-        limit = depth if self._buffers else max(depth, BACKLOG)
-        if endpoint.qos.history is HistoryPolicy.KEEP_ALL and is_reliable(endpoint.qos):
-            self._lane: Lane[zenoh.Sample] = PatientLane(
-                link.wakeup, self._take, limit, reader.has_room, reader.when_room
-            )
-        else:
-            self._lane = link.lane(self._take, limit)
-        self._subscribers: list[zenoh.Subscriber[None] | ext.AdvancedSubscriber[None]] = []
-        link.add(self)
-
-    def declare_data(self, session: zenoh.Session) -> None:
-        """Declare the subscriber; a transient local one is given the history."""
-        put = self._lane.put
-        if self._transient:
-            reliable = is_reliable(self.endpoint.qos)
-            subscriber: Any = ext.declare_advanced_subscriber(
-                session,
-                self._key,
-                put,
-                allowed_origin=zenoh.Locality.REMOTE,
-                history=ext.HistoryConfig(
-                    detect_late_publishers=True, max_samples=depth_of(self.endpoint.qos)
-                ),
-                recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True)
-                if reliable
-                else None,
-                subscriber_detection=True,
-            )
-            self._subscribers.append(subscriber)
-            return
-        for key in (self._key, buffer_key(self._key)) if self._second_key else (self._key,):
-            self._subscribers.append(
-                session.declare_subscriber(key, put, allowed_origin=zenoh.Locality.REMOTE)
-            )
-
-    def undeclare_data(self) -> None:
-        """Withdraw the subscriber."""
-        subscribers, self._subscribers = self._subscribers, []
-        self._lane.clear()  # a thread that waits for room would hold up what follows
-        for subscriber in subscribers:
-            subscriber.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
-        self._lane.clear()
-
-    def _take(self, sample: zenoh.Sample) -> None:
-        extra = sample.attachment
-        origin = origin_of(extra)
-        if origin is None:
-            # ROS drops it; here the message counts, and who sent it stays unknown.
-            if extra is not None:
-                self.link.note_garbage(self._key, "an attachment")
-            origin = Origin(NOBODY, 0, 0, True)
-        elif origin.gid in self.link.own_gids:
-            return  # a late subscription asks the publishers of its own context for history too
-        payload = sample.payload.to_bytes()
-        if self._raw:
-            self._deliver(payload, origin, self._wakeup.until_ns)
-            return
-        decode = self._decode
-        if decode is None:
-            decode = self._decode = cdr.decoder(self._msg_type)
-        try:
-            msg = decode(payload)
-        except DecodeError as error:
-            self.link.note_garbage(self._key, str(error))
-            self._reject(error)
-        else:
-            self._deliver(msg, origin, self._wakeup.until_ns)
-
-
-def origin_of(extra: zenoh.ZBytes | None) -> Origin | None:
-    """Return what an attachment says, or None when there is none in a known form."""
-    if extra is None:
-        return None
-    fields = attachment.unpack_fields(extra.to_bytes())
-    return None if fields is None else Origin(fields[2], fields[0], fields[1], True)

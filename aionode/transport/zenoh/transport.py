@@ -13,8 +13,10 @@ from aionode.transport.zenoh.neighbours import Neighbours
 from aionode.transport.zenoh.recovery import Recovery
 from aionode.transport.zenoh.services import ZenohRequester, ZenohServer
 from aionode.transport.zenoh.session import Links, close_session, open_session
+from aionode.transport.zenoh.sockets import cut_stuck
+from aionode.transport.zenoh.subscriptions import ZenohReader
 from aionode.transport.zenoh.tokens import NodeEntity, Watcher
-from aionode.transport.zenoh.topics import ZenohReader, ZenohWriter
+from aionode.transport.zenoh.topics import ZenohWriter
 
 if TYPE_CHECKING:
     from collections import Counter
@@ -27,9 +29,6 @@ __all__ = ["ZenohTransport"]
 
 KNOWN_S = 0.3
 """How long `open` waits for the graph of those who are linked; it takes a millisecond."""
-
-FLUSH_S = 0.15
-"""How long `close` waits for what is still to be sent."""
 
 
 class ZenohTransport(Transport):
@@ -112,17 +111,16 @@ class ZenohTransport(Transport):
         return self._missing <= 0
 
     async def close(self) -> None:
-        """Withdraw everything and disconnect, within a second."""
+        """Withdraw everything and disconnect, within a second of what `Link.flush` takes."""
         link = self._link
         self._answered = None
-        with suppress(TimeoutError):
-            async with asyncio.timeout(FLUSH_S):
-                await link.flush()
+        await link.flush()
         self._recovery.stop()
         self.neighbours.stop()
         self._watcher.stop()
         session = link.disconnect()
         if session is not None:
+            await cut_stuck(session)
             await close_session(session)
         link.wakeup.close()
 

@@ -1,0 +1,340 @@
+"""The state machine of acknowledgements, without a network."""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from aionode.transport.reliability import (
+    RETURN_NS,
+    ReaderProxy,
+    WriterHistory,
+    WriterProxy,
+)
+
+WRITER = b"w" * 16
+
+
+class Clock:
+    """Time by hand, in nanoseconds."""
+
+    def __init__(self) -> None:
+        self.ns = 1_000_000_000
+
+    def __call__(self) -> int:
+        """Return the time."""
+        return self.ns
+
+
+class Wire:
+    """A writer and its readers, with everything on its way in lists that a test empties.
+
+    Attributes:
+        topic: Messages under way to each reader.
+        control: The rest under way, as calls.
+        heard: What each reader was given.
+        lost: How many the writer says were dropped.
+    """
+
+    def __init__(self, readers: int, *, keep_all: bool, depth: int) -> None:
+        self.clock = Clock()
+        self.history = WriterHistory(depth, keep_all=keep_all, side=self, now_ns=self.clock)
+        self.names = [bytes([n]) * 16 for n in range(readers)]
+        self.topic: dict[bytes, list[tuple[int, bytes]]] = {name: [] for name in self.names}
+        self.control: list[tuple[str, bytes, Any]] = []
+        self.proxies: dict[bytes, WriterProxy] = {}
+        self.heard: dict[bytes, list[int]] = {name: [] for name in self.names}
+        self.full: dict[bytes, list[tuple[int, WriterProxy]]] = {name: [] for name in self.names}
+        self.room = dict.fromkeys(self.names, True)
+        self.lost_count = 0
+        self.number = 0
+        for name in self.names:
+            self.history.add(name, name.hex())
+
+    def publish(self, size: int = 10) -> None:
+        """Write one message."""
+        self.number += 1
+        self.history.write(self.number, self.number.to_bytes(size, "big"), b"")
+
+    # What the writer does
+
+    def put(self, payload: bytes, extra: bytes) -> None:
+        """Send to all who are there."""
+        assert extra == b""
+        for name in self.names:
+            reader = self.history.readers.get(name)
+            if reader is not None and not reader.away_ns:
+                self.topic[name].append((int.from_bytes(payload, "big"), payload))
+
+    def resend(self, reader: ReaderProxy, entry: Any) -> None:
+        """Send again."""
+        self.control.append(("data", reader.gid, entry))
+
+    def heartbeat(self, reader: ReaderProxy, first: int, last: int) -> None:
+        """Tell how far it goes."""
+        self.control.append(("heartbeat", reader.gid, (first, last)))
+
+    def gap(self, reader: ReaderProxy, first: int, last: int) -> None:
+        """Tell what will not come."""
+        self.control.append(("gap", reader.gid, (first, last)))
+
+    def lost(self, count: int) -> None:
+        """Count."""
+        self.lost_count += count
+
+    # What readers do
+
+    def accept(self, item: Any, proxy: WriterProxy) -> bool:
+        """Take a message, or keep it waiting without room."""
+        name = proxy.gid
+        if self.full[name] or not self.room[name]:
+            self.full[name].append((item, proxy))
+            return False
+        self.heard[name].append(item)
+        return True
+
+    def acknack(self, proxy: WriterProxy, first: int, ranges: list[tuple[int, int]]) -> None:
+        """Answer."""
+        self.control.append(("acknack", proxy.gid, (first, ranges)))
+
+    def make_room(self, name: bytes) -> None:
+        """Use what waits."""
+        self.room[name] = True
+        while self.full[name]:
+            item, proxy = self.full[name].pop(0)
+            self.heard[name].append(item)
+            proxy.used(10)
+
+    # The way between
+
+    def bring_topic(self, name: bytes, *, lose: bool = False) -> None:
+        """Let the next message arrive, or not."""
+        if self.topic[name]:
+            number, payload = self.topic[name].pop(0)
+            proxy = self.proxies.get(name)
+            if not lose and proxy is not None:
+                proxy.take(number, number, len(payload))
+
+    def bring_control(self, index: int = 0, *, lose: bool = False) -> None:
+        """Let one of the rest arrive, or not."""
+        if not self.control:
+            return
+        kind, name, what = self.control.pop(index % len(self.control))
+        if lose:
+            return
+        if kind == "acknack":
+            self.history.acknack(name, *what)
+        elif kind == "heartbeat":
+            if name not in self.proxies:
+                self.proxies[name] = WriterProxy(name, "", what[0], self, self.clock)
+            self.proxies[name].heartbeat(*what)
+        elif name in self.proxies:
+            if kind == "gap":
+                self.proxies[name].gap(*what)
+            else:
+                self.proxies[name].take(what.sequence, what.sequence, len(what.payload))
+
+    def settle(self) -> None:
+        """Bring everything, and let time pass, until nothing happens any more."""
+        for _ in range(10_000):
+            for name in self.names:
+                while self.topic[name]:
+                    self.bring_topic(name)
+            while self.control:
+                self.bring_control()
+            self.clock.ns += 60_000_000
+            if not self.history.tick() and not self.control:
+                return
+        raise AssertionError("it does not settle")
+
+
+@given(
+    keep_all=st.booleans(),
+    readers=st.integers(1, 3),
+    moves=st.lists(
+        st.tuples(st.integers(0, 9), st.integers(0, 2), st.integers(0, 7)), max_size=200
+    ),
+)
+def test_whatever_is_lost_on_the_way_each_reader_has_each_message_once_and_in_order(
+    moves: list[tuple[int, int, int]], readers: int, *, keep_all: bool
+) -> None:
+    """The promise itself, in any order of events."""
+    wire = Wire(readers, keep_all=keep_all, depth=100_000)
+    for move, which, index in moves:
+        name = wire.names[which % readers]
+        if move <= 2:
+            for _ in range(index + 1):
+                wire.publish()
+        elif move <= 4:
+            wire.bring_topic(name, lose=move == 4)
+        elif move <= 6:
+            wire.bring_control(index, lose=move == 6)
+        elif move == 7:
+            wire.room[name] = False
+        elif move == 8:
+            wire.make_room(name)
+        else:
+            wire.clock.ns += 30_000_000
+            wire.history.tick()
+    for name in wire.names:
+        wire.make_room(name)
+    wire.settle()
+    everything = list(range(1, wire.number + 1))
+    assert all(heard == everything for heard in wire.heard.values())
+    assert wire.lost_count == 0
+    assert wire.history.done
+
+
+@given(
+    depth=st.integers(1, 5),
+    moves=st.lists(st.tuples(st.integers(0, 6), st.integers(0, 7)), max_size=150),
+)
+def test_what_the_depth_drops_is_counted_and_the_rest_arrives_in_order(
+    depth: int, moves: list[tuple[int, int]]
+) -> None:
+    """One reader: what it did not hear was counted, and the last `depth` are there.
+
+    One more may be counted that is being sent again just when it is dropped.
+    """
+    wire = Wire(1, keep_all=False, depth=depth)
+    (name,) = wire.names
+    for move, index in moves:
+        if move <= 2:
+            wire.publish(200_000 if index == 7 else 10)
+        elif move <= 4:
+            wire.bring_topic(name, lose=move == 4)
+        elif move == 5:
+            if not wire.topic[name]:  # nothing overtakes messages on their way
+                wire.bring_control(index)
+        else:
+            wire.clock.ns += 30_000_000
+            wire.history.tick()
+    wire.settle()
+    heard = wire.heard[name]
+    assert heard == sorted(set(heard))
+    assert set(range(max(1, wire.number - depth + 1), wire.number + 1)) <= set(heard)
+    assert wire.number - len(heard) <= wire.lost_count
+
+
+def test_numbers_that_went_another_way_are_not_waited_for() -> None:
+    """A publisher leaves Zenoh while links carry everything, and comes back."""
+    wire = Wire(1, keep_all=True, depth=100)
+    wire.publish()
+    wire.number += 50
+    wire.publish()
+    wire.settle()
+    assert wire.heard[wire.names[0]] == [1, 52]
+    assert wire.lost_count == 0
+
+
+def test_a_gap_of_any_length_is_told_in_one_word() -> None:
+    """A publisher that was on a link for days comes back to Zenoh."""
+    wire = Wire(1, keep_all=True, depth=100)
+    wire.settle()
+    wire.publish()
+    wire.number += 10**12
+    wire.publish()
+    wire.control.clear()  # the word is lost, and asked for again
+    wire.settle()
+    assert wire.heard[wire.names[0]] == [1, 10**12 + 2]
+
+
+def test_a_writer_sends_a_window_ahead_and_no_more() -> None:
+    """So that nothing on the way to a frozen reader ever fills up."""
+    wire = Wire(1, keep_all=True, depth=1000)
+    for _ in range(900):
+        wire.publish(10_000)
+    assert 40 <= len(wire.topic[wire.names[0]]) <= 60
+    assert wire.history.has_room()
+    for _ in range(100):
+        wire.publish(10_000)
+    assert not wire.history.has_room()
+    wire.settle()
+    assert wire.heard[wire.names[0]] == list(range(1, 1001))
+
+
+def test_what_was_dropped_before_it_was_sent_does_not_fill_the_window() -> None:
+    """Else a publisher of large messages stands still for good after its reader lagged once."""
+    wire = Wire(1, keep_all=False, depth=1)
+    for _ in range(20):
+        wire.publish(200_000)
+    wire.topic[wire.names[0]].clear()
+    wire.settle()
+    assert wire.heard[wire.names[0]] == [20]
+    assert wire.lost_count == 19
+
+
+def test_a_lagging_reader_holds_up_no_other_of_a_keep_last_writer() -> None:
+    """One laptop that left the network must not silence the robot."""
+    wire = Wire(2, keep_all=False, depth=10)
+    slow, quick = wire.names
+    for _ in range(500):
+        wire.publish(10_000)
+        while wire.topic[quick]:
+            wire.bring_topic(quick)
+        while any(each[1] == quick for each in wire.control):
+            wire.bring_control([each[1] for each in wire.control].index(quick))
+    assert wire.heard[quick] == list(range(1, 501))
+    wire.topic[slow].clear()
+    wire.settle()
+    assert wire.heard[slow] == list(range(491, 501))
+    assert wire.lost_count == 490
+
+
+@pytest.mark.parametrize("back", [True, False])
+def test_the_place_of_a_reader_that_vanished_silently_is_kept_for_a_while(*, back: bool) -> None:
+    """It was frozen for longer than its lease: KEEP_ALL is complete when it comes back."""
+    wire = Wire(1, keep_all=True, depth=1000)
+    (name,) = wire.names
+    wire.bring_control()
+    wire.publish()
+    wire.clock.ns += 10_000_000_000
+    wire.history.remove(name)
+    wire.topic[name].clear()
+    for _ in range(50):
+        wire.publish()
+    assert not wire.history.done
+    if back:
+        wire.history.add(name, "")
+        wire.settle()
+        assert wire.heard[name] == list(range(1, 52))
+        assert wire.lost_count == 0
+    else:
+        wire.clock.ns += RETURN_NS
+        wire.history.tick()
+        assert wire.history.done
+        assert wire.lost_count == 51  # type: ignore[unreachable]
+
+
+def test_a_reader_that_answered_just_now_has_ended_when_it_vanishes() -> None:
+    """A killed process must not hold up a KEEP_ALL publisher."""
+    wire = Wire(1, keep_all=True, depth=1000)
+    for _ in range(10):
+        wire.publish()
+    wire.clock.ns += 1_000_000_000
+    wire.history.remove(wire.names[0])
+    assert wire.history.done
+    assert wire.lost_count == 0
+
+
+def test_a_heavy_loss_is_made_good_without_sending_much_twice() -> None:
+    """A storm of repetitions would make congestion worse."""
+    wire = Wire(1, keep_all=False, depth=20_000)
+    (name,) = wire.names
+    dice = random.Random(1)  # noqa: S311  # the same each time
+    resent = 0
+    for _ in range(5_000):
+        wire.publish(100)
+    for _ in range(5_000):
+        wire.bring_topic(name, lose=dice.random() < 0.3)
+        wire.clock.ns += 50_000
+        while wire.control:
+            resent += wire.control[0][0] == "data"
+            wire.bring_control()
+    wire.settle()
+    assert wire.heard[name] == list(range(1, 5_001))
+    assert resent < 3_000
