@@ -1,0 +1,116 @@
+"""Runs the fault cases: ``python -m tests.faults --times 3 --write docs/reliability.md``.
+
+It prints the table, writes it, and ends with status 1 if a promise was broken.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import itertools
+import os
+import platform
+import re
+import sys
+from collections.abc import Iterator
+from importlib.metadata import version
+from pathlib import Path
+
+import msgspec
+
+
+from tests.faults.cases import NOTHING, all_cases
+from tests.faults.harness import RECOVERY_LIMIT_S, Case, Outcome, Skipped, run_together
+
+SIDE_BY_SIDE = 10
+
+PAGE = """# Reliability
+
+What happens to processes when others freeze, lag or die, and when the network does.
+`make faults` wrote this page: each case ran over real processes, {together} at once, on {cores} cores of {system} with Python {python} and aionode {version}.
+
+- **sent** counts messages once for each reader, calls and goals; **lost** those that did not arrive, or ended with an error.
+- **told** says how many of the lost ones were counted in `stats`, or ended with an error. KEEP_ALL promises that nothing is lost; everything else promises that nothing is lost untold.
+- **hung** counts runs in which something did not work again within {limit:g} s, a call took longer than its time limit, or a process did not end after SIGTERM.
+- **recovery** is the longest time from the end of the fault until everyone heard everyone again, and calls and goals were answered. The promise is 5 s where the table does not say otherwise.
+- **gap** is the longest time for which the event loop of a process that was not itself stopped did not turn. A process that did nothing but watch its loop meanwhile had gaps of up to {noise:.0f} ms.
+- **end** is the longest that a process took to end after SIGTERM.
+
+| case | runs | sent | lost | told | doubled | hung | recovery | gap | end | promise |
+| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |
+{rows}
+"""
+
+Result = Outcome | BaseException
+
+
+def row(case: Case, results: list[Result]) -> tuple[str, bool]:
+    """Return the line of a case, and whether its promise was broken."""
+    skipped = [result for result in results if isinstance(result, Skipped)]
+    if skipped:
+        return f"| {case.name} | 0 |  |  |  |  |  |  |  |  | skipped: {skipped[0]} |", False
+    done = [result for result in results if isinstance(result, Outcome)]
+    problems = [text for result in done for text in case.broken(result)]
+    problems += [repr(result) for result in results if not isinstance(result, Outcome)]
+    cells = (
+        case.name,
+        len(results),
+        sum(each.sent for each in done),
+        sum(each.lost for each in done),
+        sum(each.told for each in done),
+        sum(each.doubled for each in done),
+        sum(bool(each.hung) for each in done),
+        f"{max((each.recovery_s for each in done), default=0):.1f} s",
+        f"{max((each.gap_s for each in done), default=0) * 1000:.0f} ms",
+        f"{max((each.end_s for each in done), default=0):.1f} s",
+        f"broken: {problems[0]}" if problems else "kept",
+    )
+    line = " | ".join(str(cell).replace("\n", " ").replace("|", "/") for cell in cells)
+    return f"| {line} |", bool(problems)
+
+
+def batches(cases: list[Case], size: int) -> Iterator[list[Case]]:
+    """Yield cases that run side by side, with the one in which nothing happens."""
+    iterator = iter(cases)
+    while batch := list(itertools.islice(iterator, size)):
+        longest_s = max(case.lasts_s for case in batch)
+        yield [*batch, msgspec.structs.replace(NOTHING, lasts_s=longest_s)]
+
+
+def main() -> None:
+    """Run the cases, and tell what came of them."""
+    parser = argparse.ArgumentParser(description="Faults over real processes.")
+    parser.add_argument("--times", type=int, default=1, help="how often each case runs (1)")
+    parser.add_argument("--only", default="", help="a regular expression for names of cases")
+    parser.add_argument("--write", type=Path, help="the page to write")
+    parser.add_argument("--side-by-side", type=int, default=SIDE_BY_SIDE, help=f"({SIDE_BY_SIDE})")
+    options = parser.parse_args()
+    cases = [case for case in all_cases() if re.search(options.only, case.name)]
+    results: dict[str, list[Result]] = {case.name: [] for case in (*cases, NOTHING)}
+    for _ in range(options.times):
+        for batch in batches(cases, options.side_by_side):
+            for case, result in zip(batch, asyncio.run(run_together(batch)), strict=True):
+                results[case.name].append(result)
+                if case.name != NOTHING.name:
+                    print(row(case, [result])[0], flush=True)  # noqa: T201 - a program
+    idle = [each for each in results[NOTHING.name] if isinstance(each, Outcome)]
+    rows = [row(case, results[case.name]) for case in cases]
+    page = PAGE.format(
+        together=options.side_by_side,
+        cores=os.cpu_count(),
+        system=platform.system(),
+        python=platform.python_version(),
+        version=version("aionode"),
+        limit=RECOVERY_LIMIT_S,
+        noise=max((each.gap_s for each in idle), default=0.0) * 1000,
+        rows="\n".join(line for line, _ in rows),
+    )
+    print(page)  # noqa: T201 - a program
+    if options.write is not None:
+        options.write.write_text(page, encoding="utf-8")
+    broken = sum(is_broken for _, is_broken in rows)
+    sys.exit(f"{broken} of {len(rows)} cases broke a promise" if broken else 0)
+
+
+if __name__ == "__main__":
+    main()
