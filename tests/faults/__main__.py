@@ -11,13 +11,13 @@ import itertools
 import os
 import platform
 import re
+import signal
 import sys
 from collections.abc import Iterator
 from importlib.metadata import version
 from pathlib import Path
 
 import msgspec
-
 
 from tests.faults.cases import NOTHING, all_cases
 from tests.faults.harness import RECOVERY_LIMIT_S, Case, Outcome, Skipped, run_together
@@ -85,6 +85,7 @@ def main() -> None:
     parser.add_argument("--write", type=Path, help="the page to write")
     parser.add_argument("--side-by-side", type=int, default=SIDE_BY_SIDE, help=f"({SIDE_BY_SIDE})")
     options = parser.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))  # cleans up
     cases = [case for case in all_cases() if re.search(options.only, case.name)]
     results: dict[str, list[Result]] = {case.name: [] for case in (*cases, NOTHING)}
     for _ in range(options.times):

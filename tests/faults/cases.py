@@ -28,15 +28,17 @@ ROUTER = Role("router", router="tcp/127.0.0.1:{AIONODE_ROUTER_PORT}")
 def on(way: str, *roles: Role) -> tuple[Role, ...]:
     """Return roles that talk over links, or over Zenoh alone."""
     return tuple(
-        msgspec.structs.replace(role, env={**role.env, "AIONODE_LINK": WAYS[way]})
-        for role in roles
+        msgspec.structs.replace(role, env={**role.env, "AIONODE_LINK": WAYS[way]}) for role in roles
     )
 
 
 def talk(*, keep_all: bool) -> tuple[Role, ...]:
-    """Return a publisher, a reader to be hurt, and one beside it on a topic of its own."""
+    """Return a publisher, a reader to be hurt, and one beside it on a topic of its own.
+
+    What waits for a reader that is frozen soon fills every buffer on the way to it.
+    """
     return (
-        Role("talker", publish=(Publish("/a", keep_all=keep_all), Publish("/b"))),
+        Role("talker", publish=(Publish("/a", keep_all=keep_all, size=59_000), Publish("/b"))),
         Role("reader", hear=(Hear("/a", keep_all=keep_all),)),
         Role("beside", hear=(Hear("/b"),)),
     )
@@ -44,7 +46,7 @@ def talk(*, keep_all: bool) -> tuple[Role, ...]:
 
 CALLING = (
     Role("server", serve="/add"),
-    Role("client", call="/add"),
+    Role("client", call="/add", callers=10, size=100_000),
     Role("other", call="/add"),
 )
 
@@ -185,13 +187,15 @@ def outputs(way: str) -> Iterator[Case]:
     """Yield what happens when nobody reads what a process prints, or the disk is full."""
     for output, what in (("full", "on /dev/full"), ("unread", "in a pipe that nobody reads")):
         yield Case(
-            f"{way}: stdout and stderr {what}",
+            f"{way}: a process logs without end, stdout and stderr {what}",
             on(
                 way,
-                Role("talker", publish=(Publish("/a", keep_all=True),), noisy=True, output=output),
+                Role("noisy", noisy=True, output=output),
+                Role("talker", publish=(Publish("/a", keep_all=True),)),
                 Role("reader", hear=(Hear("/a", keep_all=True),)),
             ),
             wait(3),
+            ("noisy",),
             short=way == "link",
         )
     yield Case(
@@ -235,9 +239,7 @@ class OwnMounts(contextlib.AbstractContextManager[None]):
     """Nothing to set up, but the machine has to allow it."""
 
     def __enter__(self) -> None:
-        done = subprocess.run(
-            [*FULL_MEMORY, "true"], capture_output=True, text=True, check=False
-        )
+        done = subprocess.run([*FULL_MEMORY, "true"], capture_output=True, text=True, check=False)
         if done.returncode:
             raise Skipped(f"no file system of its own: {done.stderr.strip()}")
 
@@ -269,9 +271,6 @@ def routers() -> Iterator[Case]:
 def all_cases() -> list[Case]:
     """Return every case, those that take about as long after each other."""
     cases = [
-        case
-        for way in WAYS
-        for make in (freezes, kills, comings, outputs)
-        for case in make(way)
+        case for way in WAYS for make in (freezes, kills, comings, outputs) for case in make(way)
     ]
     return sorted([*cases, *routers(), *host_cases()], key=lambda case: case.lasts_s)

@@ -309,9 +309,7 @@ class Stage:
     def lost(self) -> int:
         """Return how many messages are missing at readers that live."""
         sent = self.streams()
-        killed = {
-            key for child in self.former if not child.last.last for key in child.last.sent
-        }
+        killed = {key for child in self.former if not child.last.last for key in child.last.sent}
         return sum(
             missing(ranges, 0 if key in killed else sent.get(key, 0))
             for child in self.children.values()
@@ -357,7 +355,6 @@ class Stage:
 async def staged(case: Case) -> AsyncIterator[Stage]:
     """Give a case its stage, and leave nothing behind."""
     with tempfile.TemporaryDirectory(prefix="faults-") as folder:
-        os.chmod(folder, 0o700)
         async with asyncio.TaskGroup() as tasks:
             stage = Stage(case, tasks, Path(folder))
             try:

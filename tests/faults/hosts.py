@@ -65,8 +65,8 @@ class TwoHosts:
             subprocess.run(["ip", "netns", "delete", name], capture_output=True, check=False)
 
     def within(self, host: int, role: Role) -> Role:
-        """Return a role as one on a host; all dial the router of the first one."""
-        env = {"AIONODE_LINK": "off", "ROS_STATIC_PEERS": f"{ADDRESSES[0]}:{PORT}", **role.env}
+        """Return a role as one on a host."""
+        env = {"AIONODE_LINK": "off", "AIONODE_ROUTER_PORT": str(PORT), **role.env}
         wrapper = ("ip", "netns", "exec", self.names[host])
         return msgspec.structs.replace(role, env=env, wrapper=wrapper)
 
@@ -94,7 +94,7 @@ class TwoHosts:
 
 
 def host_cases() -> Iterator[Case]:
-    """Yield what happens to the cable between two hosts with a router on one of them."""
+    """Yield what happens to the cable between two hosts with a router on each of them."""
     cuts = [(f"cut {seconds} s", seconds) for seconds in (3, 14, 70)]
     shapes = [
         ("delays 100 ms for 5 s", ("netem", "delay", "100ms", "20ms")),
@@ -106,7 +106,12 @@ def host_cases() -> Iterator[Case]:
         strike = hosts.shape(5, *how) if isinstance(how, tuple) else hosts.cut(how)
         for_all = Hear("/hello", depth=1000)
         roles = (
-            Role("router", router=f"tcp/0.0.0.0:{PORT}"),
+            Role("router here", router=f"tcp/0.0.0.0:{PORT}"),
+            Role(
+                "router there",
+                router=f"tcp/0.0.0.0:{PORT}",
+                env={"ZENOH_CONFIG_OVERRIDE": f'connect/endpoints=["tcp/{ADDRESSES[0]}:{PORT}"]'},
+            ),
             Role(
                 "here",
                 publish=(Publish("/hello"), Publish("/all", keep_all=True)),
@@ -122,7 +127,7 @@ def host_cases() -> Iterator[Case]:
         )
         yield Case(
             f"two hosts, the cable {what if isinstance(how, tuple) else f'is {what}'}",
-            tuple(hosts.within(int(role.name == "there"), role) for role in roles),
+            tuple(hosts.within(int(role.name.endswith("there")), role) for role in roles),
             strike,
             lossless=False,
             lasts_s=5 if isinstance(how, tuple) else how,

@@ -21,7 +21,8 @@ import aionode
 from aionode import Context, Node
 from aionode.errors import AionodeError, QueueFullError
 from aionode.interfaces.example_interfaces.action import Fibonacci
-from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.rcl_interfaces.msg import ParameterValue
+from aionode.interfaces.rcl_interfaces.srv import GetParameters
 from aionode.interfaces.std_msgs.msg import String
 from aionode.qos import HistoryPolicy, QoSProfile
 from aionode.transport.zenoh.session import close_session, open_router
@@ -45,7 +46,11 @@ REPORT_S = 0.1
 TICK_S = 0.01
 CALL_LIMIT_S = 1.0
 GOAL_LIMIT_S = 3.0
-HUNG_S = 1.0  # beyond the limit
+HUNG_S = 2.0
+"""How much longer than its limit a call or goal may take: canceling a goal waits 1 s at most."""
+
+PAUSE_S = 0.05
+"""Between two calls of one process, on average."""
 
 
 def profile(keep_all: bool, depth: int) -> QoSProfile:
@@ -156,7 +161,7 @@ class Process:
             for each in role.hear:
                 self.hear(node, each)
             if role.serve:
-                node.create_service(AddTwoInts, role.serve, add)
+                node.create_service(GetParameters, role.serve, answer)
             if role.act:
                 node.create_action_server(Fibonacci, role.act, count)
             self.report.ready = True
@@ -164,7 +169,7 @@ class Process:
                 self.publish(node, each) for each in role.publish
             ]
             if role.call:
-                work.append(self.call(node))
+                work += [self.call(node) for _ in range(role.callers)]
             if role.send:
                 work.append(self.send(node))
             if role.noisy:
@@ -235,16 +240,17 @@ class Process:
 
     async def call(self, node: Node) -> None:
         """Call again and again."""
-        client = node.create_client(AddTwoInts, self.role.call)
+        client = node.create_client(GetParameters, self.role.call)
+        request = GetParameters.Request(names=["x" * self.role.size])
         while not self.quiet.is_set():
             if not await client.wait_for_service(timeout_sec=1.0):
                 continue
             await self.attempt(
                 "call",
                 CALL_LIMIT_S,
-                lambda: client.call(AddTwoInts.Request(a=1, b=2), timeout_sec=CALL_LIMIT_S),
+                lambda: client.call(request, timeout_sec=CALL_LIMIT_S),
             )
-            await asyncio.sleep(0.02)
+            await asyncio.sleep(PAUSE_S * self.role.callers)
 
     async def send(self, node: Node) -> None:
         """Send goals again and again."""
@@ -259,9 +265,9 @@ class Process:
                 await self.attempt("goal", GOAL_LIMIT_S, goal)
 
 
-async def add(request: AddTwoInts.Request) -> AddTwoInts.Response:
-    """Answer."""
-    return AddTwoInts.Response(sum=request.a + request.b)
+async def answer(request: GetParameters.Request) -> GetParameters.Response:
+    """Answer with what was sent."""
+    return GetParameters.Response(values=[ParameterValue(string_value=request.names[0])])
 
 
 async def count(goal: Any) -> Fibonacci.Result:

@@ -14,7 +14,15 @@ import msgspec
 
 __all__ = [
     "REPORTS_VARIABLE",
-    "Hear", "Publish", "Report", "Role", "hear_mark", "missing", "note", "stream_key"]
+    "Hear",
+    "Publish",
+    "Report",
+    "Role",
+    "hear_mark",
+    "missing",
+    "note",
+    "stream_key",
+]
 
 REPORTS_VARIABLE = "AIONODE_FAULTS_REPORTS"
 
@@ -68,6 +76,8 @@ class Role(msgspec.Struct, frozen=True):
         hear: What it hears.
         serve: The service that it serves.
         call: The service that it calls, again and again, with a time limit of 1 s.
+        callers: How many such calls are under way at once.
+        size: Bytes of each request and of each response.
         act: The action that it serves.
         send: The action to which it sends goals, one after the other.
         router: The endpoint on which it listens as a router; it has no node then.
@@ -86,6 +96,8 @@ class Role(msgspec.Struct, frozen=True):
     hear: tuple[Hear, ...] = ()
     serve: str = ""
     call: str = ""
+    callers: int = 1
+    size: int = 10
     act: str = ""
     send: str = ""
     router: str = ""
@@ -161,4 +173,4 @@ def missing(ranges: Iterable[tuple[int, int]], last: int) -> int:
         return 0
     first = min(begin for begin, _ in known)
     have = sum(end - begin + 1 for begin, end in known)
-    return max(last, max(end for _, end in known)) - first + 1 - have
+    return max(last, *(end for _, end in known)) - first + 1 - have

@@ -14,7 +14,7 @@ import time
 from contextlib import ExitStack, closing
 
 import msgspec
-import zenoh  # noqa: TID251  # plays another participant, without aionode
+import zenoh  # plays another participant, without aionode
 
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import String

@@ -32,18 +32,20 @@ def fuzz(name: str, seconds: int) -> None:
     corpus.mkdir(parents=True, exist_ok=True)
     for number, seed in enumerate(target.seeds()):
         (corpus / f"seed-{number}").write_bytes(seed)
-    words = FOLDER / f"{name}.dict"
-    words.write_text("".join(f'"{escaped(word)}"\n' for word in target.words), encoding="ascii")
-    options = (
+    options = [
         f"-max_total_time={seconds}",
         f"-max_len={LONGEST_INPUT}",
         f"-timeout={SLOWEST_S}",
         f"-rss_limit_mb={MOST_MEMORY_MB}",
         f"-artifact_prefix={FOLDER / name}-",
-        f"-dict={words}",
         "-print_final_stats=1",
         "-verbosity=0",
-    )
+    ]
+    if target.words:
+        words = FOLDER / f"{name}.dict"
+        lines = (f'"{escaped(word)}"\n' for word in target.words)
+        words.write_text("".join(lines), encoding="ascii")
+        options.append(f"-dict={words}")
     atheris.Setup([sys.argv[0], *options, str(corpus)], target.run)
     atheris.Fuzz()
 
@@ -73,7 +75,7 @@ def fuzz_all(names: list[str], seconds: int) -> list[str]:
             print(f"{name}: {executed[-1].split()[-1] if executed else 0} inputs", flush=True)  # noqa: T201 - a program
             if process.returncode:
                 failed.append(name)
-                print(output[-6000:], flush=True)  # noqa: T201 - a program
+                print(output.partition("Using built-in libfuzzer")[2][-6000:], flush=True)  # noqa: T201 - a program
     return failed
 
 
