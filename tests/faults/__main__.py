@@ -24,22 +24,7 @@ from tests.faults.harness import RECOVERY_LIMIT_S, Case, Outcome, Skipped, run_t
 
 SIDE_BY_SIDE = 10
 
-PAGE = """# Reliability
-
-What happens to processes when others freeze, lag or die, and when the network does.
-`make faults` wrote this page: each case ran over real processes, {together} at once, on {cores} cores of {system} with Python {python} and aionode {version}.
-
-- **sent** counts messages once for each reader, calls and goals; **lost** those that did not arrive, or ended with an error.
-- **told** says how many of the lost ones were counted in `stats`, or ended with an error. KEEP_ALL promises that nothing is lost; everything else promises that nothing is lost untold.
-- **hung** counts runs in which something did not work again within {limit:g} s, a call took longer than its time limit, or a process did not end after SIGTERM.
-- **recovery** is the longest time from the end of the fault until everyone heard everyone again, and calls and goals were answered. The promise is 5 s where the table does not say otherwise.
-- **gap** is the longest time for which the event loop of a process that was not itself stopped did not turn. A process that did nothing but watch its loop meanwhile had gaps of up to {noise:.0f} ms.
-- **end** is the longest that a process took to end after SIGTERM.
-
-| case | runs | sent | lost | told | doubled | hung | recovery | gap | end | promise |
-| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |
-{rows}
-"""
+PAGE = Path(__file__).with_name("page.md")
 
 Result = Outcome | BaseException
 
@@ -96,7 +81,7 @@ def main() -> None:
                     print(row(case, [result])[0], flush=True)  # noqa: T201 - a program
     idle = [each for each in results[NOTHING.name] if isinstance(each, Outcome)]
     rows = [row(case, results[case.name]) for case in cases]
-    page = PAGE.format(
+    page = PAGE.read_text(encoding="utf-8").format(
         together=options.side_by_side,
         cores=os.cpu_count(),
         system=platform.system(),

@@ -82,7 +82,7 @@ def freezes(way: str) -> Iterator[Case]:
                     on(way, *talk(keep_all=keep_all)),
                     freeze(name, seconds),
                     (name,),
-                    lossless=keep_all,
+                    loss="none" if keep_all else "told",
                     lasts_s=seconds,
                     short=short and keep_all and name == "reader",
                 )
@@ -103,7 +103,7 @@ def freezes(way: str) -> Iterator[Case]:
                     on(way, *roles),
                     freeze(name, seconds),
                     (name,),
-                    lossless=False,
+                    loss="told",
                     lasts_s=seconds,
                     short=short and kind == "calls" and name == "server",
                 )
@@ -112,7 +112,7 @@ def freezes(way: str) -> Iterator[Case]:
             on(way, *members(3)),
             freeze("member1", seconds),
             ("member1",),
-            lossless=False,
+            loss="any",
             lasts_s=seconds,
         )
 
@@ -132,7 +132,7 @@ def kills(way: str) -> Iterator[Case]:
                 f"{way}: {kind}, {name} killed and replaced",
                 on(way, *roles),
                 replace(name),
-                lossless=False,
+                loss="told",
                 short=name == "server",
             )
 
@@ -253,7 +253,7 @@ def routers() -> Iterator[Case]:
         "router killed and replaced, all hear all",
         (ROUTER, *on("Zenoh", *members(3))),
         replace("router", after_s=3.0),
-        lossless=False,
+        loss="any",
         short=True,
     )
     for seconds in (5, 14, 33, 70):
@@ -263,7 +263,7 @@ def routers() -> Iterator[Case]:
                 (ROUTER, *members(3, ros=2)),
                 freeze(name, seconds),
                 (name,),
-                lossless=False,
+                loss="any",
                 lasts_s=seconds,
             )
 

@@ -129,7 +129,7 @@ def host_cases() -> Iterator[Case]:
             f"two hosts, the cable {what if isinstance(how, tuple) else f'is {what}'}",
             tuple(hosts.within(int(role.name.endswith("there")), role) for role in roles),
             strike,
-            lossless=False,
+            loss="any",
             lasts_s=5 if isinstance(how, tuple) else how,
             around=hosts,
         )

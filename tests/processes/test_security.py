@@ -186,5 +186,3 @@ def test_a_certificate_that_access_control_does_not_allow_neither_hears_nor_is_h
 def test_a_certificate_of_another_authority_is_refused(join: Join) -> None:
     """It does not even get a session, and is told so."""
     join("wrong", "forged").expect("error: Zenoh: no session could be opened")
-
-
