@@ -11,7 +11,7 @@ import msgspec
 from tests.faults.faults import end_and_replace, freeze, replace, wait
 from tests.faults.harness import Case, Skipped
 from tests.faults.hosts import host_cases
-from tests.faults.roles import Hear, Publish, Role
+from tests.faults.roles import Hear, Output, Publish, Role
 
 __all__ = ["NOTHING", "all_cases"]
 
@@ -151,7 +151,7 @@ def comings(way: str) -> Iterator[Case]:
     )
     for keep_all in (True, False):
         yield Case(
-            f"{way}: {'KEEP_ALL' if keep_all else 'KEEP_LAST'} talker ends right after 400 messages",
+            f"{way}: {'KEEP_ALL' if keep_all else 'KEEP_LAST'} talker ends after 400 messages",
             on(
                 way,
                 Role(
@@ -185,7 +185,9 @@ RECOVERY_OF_BACKLOG_S = 20.0
 
 def outputs(way: str) -> Iterator[Case]:
     """Yield what happens when nobody reads what a process prints, or the disk is full."""
-    for output, what in (("full", "on /dev/full"), ("unread", "in a pipe that nobody reads")):
+    full: tuple[Output, str] = ("full", "on /dev/full")
+    unread: tuple[Output, str] = ("unread", "in a pipe that is not read")
+    for output, what in (full, unread):
         yield Case(
             f"{way}: a process logs without end, stdout and stderr {what}",
             on(

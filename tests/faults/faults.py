@@ -74,5 +74,5 @@ def all_of(*faults: Fault) -> Fault:
 async def until_ready(stage: Stage, name: str) -> None:
     """Wait until the node of a process runs."""
     async with asyncio.timeout(20):
-        while not stage.children[name].last.ready:
+        while not stage.children[name].last.ready:  # noqa: ASYNC110 - it is what a process reports
             await asyncio.sleep(0.01)

@@ -95,13 +95,13 @@ class TwoHosts:
 
 def host_cases() -> Iterator[Case]:
     """Yield what happens to the cable between two hosts with a router on each of them."""
-    cuts = [(f"cut {seconds} s", seconds) for seconds in (3, 14, 70)]
-    shapes = [
+    shapes: list[tuple[str, float | tuple[str, ...]]] = [
+        *((f"is cut {seconds} s", seconds) for seconds in (3, 14, 70)),
         ("delays 100 ms for 5 s", ("netem", "delay", "100ms", "20ms")),
         ("loses 5 % for 5 s", ("netem", "loss", "5%")),
         ("carries 1 Mbit/s for 5 s", ("tbf", "rate", "1mbit", "burst", "10kb", "latency", "50ms")),
     ]
-    for number, (what, how) in enumerate([*cuts, *shapes]):
+    for number, (what, how) in enumerate(shapes):
         hosts = TwoHosts(number)
         strike = hosts.shape(5, *how) if isinstance(how, tuple) else hosts.cut(how)
         for_all = Hear("/hello", depth=1000)
@@ -126,7 +126,7 @@ def host_cases() -> Iterator[Case]:
             ),
         )
         yield Case(
-            f"two hosts, the cable {what if isinstance(how, tuple) else f'is {what}'}",
+            f"two hosts, the cable {what}",
             tuple(hosts.within(int(role.name.endswith("there")), role) for role in roles),
             strike,
             loss="any",

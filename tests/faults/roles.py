@@ -15,6 +15,7 @@ import msgspec
 __all__ = [
     "REPORTS_VARIABLE",
     "Hear",
+    "Output",
     "Publish",
     "Report",
     "Role",
@@ -25,6 +26,8 @@ __all__ = [
 ]
 
 REPORTS_VARIABLE = "AIONODE_FAULTS_REPORTS"
+
+Output = Literal["file", "full", "unread"]
 
 
 class Publish(msgspec.Struct, frozen=True):
@@ -106,7 +109,7 @@ class Role(msgspec.Struct, frozen=True):
     fork: bool = False
     env: dict[str, str] = {}
     wrapper: tuple[str, ...] = ()
-    output: Literal["file", "full", "unread"] = "file"
+    output: Output = "file"
 
 
 class Report(msgspec.Struct):

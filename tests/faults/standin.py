@@ -95,12 +95,18 @@ class StandIn:
             self.reporter.report.sent[key] = number
 
 
+def hush(quiet: threading.Event) -> None:
+    """Wait for a line, after which nothing is published."""
+    sys.stdin.readline()
+    quiet.set()
+
+
 def main() -> None:
     """Run until SIGTERM, and report a last time."""
     role = msgspec.json.decode(sys.argv[1], type=Role)
     ended, quiet = threading.Event(), threading.Event()
     signal.signal(signal.SIGTERM, lambda *_: ended.set())
-    threading.Thread(target=lambda: (sys.stdin.readline(), quiet.set()), daemon=True).start()
+    threading.Thread(target=hush, args=(quiet,), daemon=True).start()
     with ExitStack() as stack:
         stand_in = StandIn(role, stack.enter_context(closing(ros_session())))
         period_s = min((each.period_s for each in role.publish), default=REPORT_S)
