@@ -32,13 +32,19 @@ def on(way: str, *roles: Role) -> tuple[Role, ...]:
     )
 
 
-def talk(*, keep_all: bool) -> tuple[Role, ...]:
+def talk(*, keep_all: bool, period_s: float = 0.02) -> tuple[Role, ...]:
     """Return a publisher, a reader to be hurt, and one beside it on a topic of its own.
 
     What waits for a reader that is frozen soon fills every buffer on the way to it.
     """
     return (
-        Role("talker", publish=(Publish("/a", keep_all=keep_all, size=59_000), Publish("/b"))),
+        Role(
+            "talker",
+            publish=(
+                Publish("/a", keep_all=keep_all, period_s=period_s, size=59_000),
+                Publish("/b"),
+            ),
+        ),
         Role("reader", hear=(Hear("/a", keep_all=keep_all),)),
         Role("beside", hear=(Hear("/b"),)),
     )
@@ -79,7 +85,7 @@ def freezes(way: str) -> Iterator[Case]:
             for name in ("reader", "talker"):
                 yield Case(
                     f"{way}: {kind} {name} frozen {seconds} s",
-                    on(way, *talk(keep_all=keep_all)),
+                    on(way, *talk(keep_all=keep_all, period_s=0.02 if short else 0.1)),
                     freeze(name, seconds),
                     (name,),
                     loss="none" if keep_all else "told",
