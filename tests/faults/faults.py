@@ -8,7 +8,7 @@ from collections.abc import Awaitable, Callable
 
 from tests.faults.harness import Stage
 
-__all__ = ["Fault", "all_of", "end_and_replace", "freeze", "kill", "replace", "wait"]
+__all__ = ["Fault", "all_of", "end_and_replace", "freeze", "replace", "wait"]
 
 Fault = Callable[[Stage], Awaitable[None]]
 
@@ -29,16 +29,6 @@ def freeze(name: str, seconds: float) -> Fault:
         stage.children[name].send(signal.SIGSTOP)
         await asyncio.sleep(seconds)
         stage.children[name].send(signal.SIGCONT)
-
-    return strike
-
-
-def kill(name: str) -> Fault:
-    """Kill a process."""
-
-    async def strike(stage: Stage) -> None:
-        stage.children[name].send(signal.SIGKILL)
-        await stage.children[name].until_ended()
 
     return strike
 

@@ -202,7 +202,8 @@ class Child:
     async def end(self) -> str | None:
         """End it with SIGTERM; return what was wrong with that."""
         if not self.runs:
-            return None
+            status = await self.until_ended()
+            return f"{self.role.name} had ended with status {status}" if status else None
         began_s = time.monotonic()
         self.send(signal.SIGTERM)
         try:
@@ -358,20 +359,23 @@ class Stage:
 async def staged(case: Case) -> AsyncIterator[Stage]:
     """Give a case its stage, and leave nothing behind."""
     with tempfile.TemporaryDirectory(prefix="faults-") as folder:
+        failure: Exception | None = None
         async with asyncio.TaskGroup() as tasks:
             stage = Stage(case, tasks, Path(folder))
             try:
                 yield stage
-            except Exception as error:
-                for child in stage.children.values():
-                    error.add_note(f"{child.role.name}: {child.output()}")
-                raise
+            except Exception as error:  # noqa: BLE001 - raised below, outside of the group
+                failure = error
             finally:
                 children = [*stage.children.values(), *stage.former]
                 for child in children:
                     await child.kill()
         for child in children:
+            if failure is not None:
+                failure.add_note(f"{child.role.name}: {child.output()}")
             child.close()
+        if failure is not None:
+            raise failure
 
 
 async def run_case(case: Case, barrier: asyncio.Barrier | None = None) -> Outcome:
