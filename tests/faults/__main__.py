@@ -73,29 +73,37 @@ def main() -> None:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))  # cleans up
     cases = [case for case in all_cases() if re.search(options.only, case.name)]
     results: dict[str, list[Result]] = {case.name: [] for case in (*cases, NOTHING)}
-    for _ in range(options.times):
-        for batch in batches(cases, options.side_by_side):
-            for case, result in zip(batch, asyncio.run(run_together(batch)), strict=True):
-                results[case.name].append(result)
-                if case.name != NOTHING.name:
-                    print(row(case, [result])[0], flush=True)  # noqa: T201 - a program
-    idle = [each for each in results[NOTHING.name] if isinstance(each, Outcome)]
-    rows = [row(case, results[case.name]) for case in cases]
+    try:
+        for _ in range(options.times):
+            for batch in batches(cases, options.side_by_side):
+                for case, result in zip(batch, asyncio.run(run_together(batch)), strict=True):
+                    results[case.name].append(result)
+                    if case.name != NOTHING.name:
+                        print(row(case, [result])[0], flush=True)  # noqa: T201 - a program
+    finally:  # what has run is told also when the rest is not waited for
+        rows = [row(case, results[case.name]) for case in cases if results[case.name]]
+        tell(rows, results[NOTHING.name], options.side_by_side, options.write)
+    broken = sum(is_broken for _, is_broken in rows)
+    sys.exit(f"{broken} of {len(rows)} cases broke a promise" if broken else 0)
+
+
+def tell(
+    rows: list[tuple[str, bool]], idle: list[Result], side_by_side: int, path: Path | None
+) -> None:
+    """Print the page, and write it where it is wanted."""
     page = PAGE.read_text(encoding="utf-8").format(
-        together=options.side_by_side,
+        together=side_by_side,
         cores=os.cpu_count(),
         system=platform.system(),
         python=platform.python_version(),
         version=version("aionode"),
         limit=RECOVERY_LIMIT_S,
-        noise=max((each.gap_s for each in idle), default=0.0) * 1000,
+        noise=1000 * max((each.gap_s for each in idle if isinstance(each, Outcome)), default=0.0),
         rows="\n".join(line for line, _ in rows),
     )
     print(page)  # noqa: T201 - a program
-    if options.write is not None:
-        options.write.write_text(page, encoding="utf-8")
-    broken = sum(is_broken for _, is_broken in rows)
-    sys.exit(f"{broken} of {len(rows)} cases broke a promise" if broken else 0)
+    if path is not None:
+        path.write_text(page, encoding="utf-8")
 
 
 if __name__ == "__main__":
