@@ -35,7 +35,10 @@ RECOVERY_LIMIT_S = 20.0
 BEFORE_S = 1.0
 """How long everything works before the fault."""
 
-AFTER_S = 1.0
+START_S = 1.0
+"""How long a process that takes another's place may still be busy with its start."""
+
+AFTER_S = 1.5
 """How long everything works after it."""
 
 QUIET_LIMIT_S = 10.0
@@ -177,6 +180,11 @@ class Child:
     def last(self) -> Report:
         """The newest report, an empty one before the first."""
         return self.reports[-1] if self.reports else Report()
+
+    @property
+    def started_s(self) -> float:
+        """When it had started, imports and first uses of its types included."""
+        return next((each.time_s for each in self.reports if each.ready), 0.0) + START_S
 
     @property
     def runs(self) -> bool:
@@ -338,7 +346,7 @@ class Stage:
             for child in children
             if child.role.name not in self.case.hurt
             for report in child.reports
-            if steady_s < report.time_s < quiet_s
+            if max(steady_s, child.started_s) < report.time_s < quiet_s
         ]
         return Outcome(
             sent=heard + lost + calls,
