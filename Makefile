@@ -5,7 +5,8 @@
 #   make check   style, types, layers, the documentation's code, the documentation itself
 #   make bench   the benchmarks; tables, JSON and pictures in benchmarks/results/
 #   make docs    the documentation as pages, in site/
-#   make fuzz    the property tests with many more examples, and damaged messages by the million
+#   make fuzz    damaged input for every parser: by property tests, and guided by coverage
+#   make faults  processes that freeze, lag and die, FAULTS_TIMES times: writes docs/reliability.md
 #   make soak    everything at once, for SOAK_SECONDS seconds: nothing may grow
 #   make quotes  brings the code quoted in README.md and docs/ up to date
 #   make clean   removes what was made, .venv included
@@ -15,13 +16,15 @@ PYTHON ?= $(shell for name in python3 python3.14 python3.13 python3.12 python3.1
 	$$name -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$name && break; \
 	done)
 BIN := .venv/bin
-SOAK_SECONDS ?= 60
+SOAK_SECONDS ?= 600
+FUZZ_SECONDS ?= 60
+FAULTS_TIMES ?= 3
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check bench docs fuzz soak quotes clean
+.PHONY: help demo test check bench docs fuzz faults soak quotes clean
 
 help:
-	@sed -n '3,11s/^# *//p' Makefile
+	@sed -n '3,12s/^# *//p' Makefile
 
 demo: .venv/installed
 	$(BIN)/python -m aionode.examples.pubsub
@@ -48,6 +51,11 @@ docs: .venv/installed-dev
 fuzz: .venv/installed-dev
 	$(BIN)/python -m pytest -q -m hypothesis --hypothesis-profile=fuzz --timeout=3600
 	$(BIN)/python -m tests.fuzz_cdr --cases 3000000
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fuzz]'
+	$(BIN)/python -m tests.fuzz --seconds $(FUZZ_SECONDS)
+
+faults: .venv/installed-dev
+	$(BIN)/python -m tests.faults --times $(FAULTS_TIMES) --write docs/reliability.md
 
 soak: .venv/installed-dev
 	$(BIN)/python benchmarks/soak.py --seconds $(SOAK_SECONDS)
@@ -56,7 +64,7 @@ quotes: .venv/installed-dev
 	$(BIN)/python docs/quotes.py
 
 clean:
-	rm -rf .venv site benchmarks/results .coverage htmlcov
+	rm -rf .venv .fuzz site benchmarks/results .coverage htmlcov
 	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache .grimp_cache
 
 # Two steps, so that the first look at aionode does not wait for the tools of its developers.

@@ -1,9 +1,14 @@
 """Everything at once for a long time: nothing may grow, nothing may be lost uncounted.
 
-A fast publisher floods a slow reader, services are called, time out and are cancelled, nodes come
-and go, and a timer of 10 ms ticks through all of it. After a warm-up the memory of the process is
-noted; the program fails if it has grown at the end, or if what was sent is not what was received,
-dropped and left.
+One process has a fast publisher that floods a slow reader, a service, an action and a timer of
+10 ms; nodes come and go in it, calls are answered, time out and are cancelled. Beside it processes
+come and go, over links and over Zenoh alone: they hear the flood, call, send goals, give goals up,
+exchange large messages, and end in good order or are killed.
+
+After a warm-up and at the end the guests are sent away and everything is counted that could be
+left behind: tasks, descriptors, threads, memory, shared memory, and the entities that a newcomer
+finds on the network. The program fails if any of it has grown, or if what was sent is not what was
+received, dropped and left.
 
 Run it with ``make soak``, or ``python benchmarks/soak.py --seconds 600``.
 """
@@ -14,28 +19,73 @@ import argparse
 import asyncio
 import contextlib
 import gc
+import itertools
+import os
+import signal
+import socket
 import sys
+import tempfile
 import time
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Final
+from typing import Any, Final, NamedTuple
 
-from aionode import Context, Node
+from aionode import Context, Node, run
+from aionode.errors import AionodeError
+from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
-from aionode.interfaces.std_msgs.msg import String
+from aionode.interfaces.std_msgs.msg import String, UInt8MultiArray
 
-ALLOWED_GROWTH_KB: Final = 4_000
-WARM_UP_SHARE: Final = 0.25
+WARM_UP_SHARE: Final = 0.3
 TICK_SEC: Final = 0.01
-PAGE_KB: Final = 4
+LARGE_BYTES: Final = 300_000
+GUESTS_AT_ONCE: Final = 2
+GUEST_SEC: Final = 1.0
+LEVEL_LIMIT_SEC: Final = 20.0
+"""How long what belongs to guests may take to go after they have."""
 
 
-def resident_kb() -> int:
-    """Return the memory of this process in kB; 0 where the system does not tell."""
+class Level(NamedTuple):
+    """What there is of everything that could be left behind."""
+
+    tasks: int
+    descriptors: int
+    threads: int
+    memory_kb: int
+    """Of this process alone: shared memory counts as `segments`."""
+    segments: int
+    """Pieces of shared memory that this process has mapped."""
+    entities: int
+    """Nodes and endpoints of the domain."""
+
+
+ALLOWED: Final = Level(0, 4, 2, 12_000, 4, 0)
+"""How much of each may have come in addition: what is made when it is first needed."""
+
+
+def level(entities: int) -> Level:
+    """Return what there is now; 0 where the system does not tell."""
     gc.collect()
+    me = Path("/proc/self")
     try:
-        return int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[1]) * PAGE_KB
+        status = (me / "status").read_text(encoding="utf-8")
+        maps = (me / "maps").read_text(encoding="utf-8")
+        shared = {line.split()[4] for line in maps.splitlines() if is_shared(line)}
+        return Level(
+            len(asyncio.all_tasks()),
+            len(list((me / "fd").iterdir())),
+            int(status.partition("Threads:")[2].split()[0]),
+            int(status.partition("RssAnon:")[2].split()[0]),
+            len(shared),
+            entities,
+        )
     except OSError:
-        return 0
+        return Level(len(asyncio.all_tasks()), 0, 0, 0, 0, entities)
+
+
+def is_shared(line: str) -> bool:
+    """Return whether a line of ``/proc/self/maps`` is shared memory of links or of Zenoh."""
+    return "/memfd:" in line or line.rstrip().endswith((".zenoh", ".zenoh (deleted)"))
 
 
 class Soak:
@@ -43,17 +93,28 @@ class Soak:
 
     def __init__(self, context: Context) -> None:
         self.context = context
-        self.node = Node("soak", context=context)
-        self.publisher = self.node.create_publisher(String, "/flood", 10)
-        self.subscription = self.node.create_subscription(String, "/flood", self.read, 10)
-        self.node.create_service(AddTwoInts, "/add", self.add, concurrent=True)
-        self.client = self.node.create_client(AddTwoInts, "/add")
-        self.node.create_timer(TICK_SEC, self.tick)
-        self.ticks = self.sent = self.calls = self.timeouts = self.cancelled = self.nodes = 0
+        self.node = node = Node("soak", context=context, callback_budget_ms=1000)
+        self.publisher = node.create_publisher(String, "/flood", 10)
+        self.subscription = node.create_subscription(String, "/flood", self.read, 10)
+        self.large = node.create_publisher(UInt8MultiArray, "/large", 2)
+        node.create_subscription(UInt8MultiArray, "/large_back", self.take, 2)
+        node.create_service(AddTwoInts, "/add", self.add, concurrent=True)
+        node.create_action_server(Fibonacci, "/count", self.count)
+        self.client = node.create_client(AddTwoInts, "/add")
+        node.create_timer(TICK_SEC, self.tick)
+        node.create_timer(0.05, lambda: self.large.publish(LARGE))
+        self.invited = asyncio.Event()
+        self.guests: set[asyncio.subprocess.Process] = set()
+        self.ticks = self.sent = self.calls = self.timeouts = self.cancelled = 0
+        self.nodes = self.processes = self.killed = self.goals = self.taken = 0
 
     def read(self, _msg: String) -> None:
         """Take longer than messages take to come."""
         time.sleep(0.0005)
+
+    def take(self, _msg: UInt8MultiArray) -> None:
+        """Count a large message."""
+        self.taken += 1
 
     def tick(self) -> None:
         """Count a tick of the timer."""
@@ -64,6 +125,15 @@ class Soak:
         if request.a < 0:
             await asyncio.sleep(0.05)
         return AddTwoInts.Response(sum=request.a + request.b)
+
+    async def count(self, goal: Any) -> Fibonacci.Result:
+        """Count as far as a goal asks for."""
+        self.goals += 1
+        for number in range(goal.request.order):
+            await asyncio.sleep(0.01)
+            goal.publish_feedback(Fibonacci.Feedback(sequence=[number]))
+        goal.succeed()
+        return Fibonacci.Result(sequence=[goal.request.order])
 
     async def flood(self) -> None:
         """Publish without end."""
@@ -92,11 +162,62 @@ class Soak:
     async def come_and_go(self) -> None:
         """Make nodes with entities, and end them, without end."""
         while True:
-            async with Node("guest", context=self.context) as guest:
-                guest.create_subscription(String, "/flood", lambda _msg: None, 5)
-                guest.create_timer(TICK_SEC, lambda: None)
+            await self.invited.wait()
+            async with Node("visitor", context=self.context) as visitor:
+                visitor.create_subscription(String, "/flood", lambda _msg: None, 5)
+                visitor.create_timer(TICK_SEC, lambda: None)
                 await asyncio.sleep(0.05)
             self.nodes += 1
+
+    async def invite(self, number: int) -> None:
+        """Start processes, one after the other, and end them in every way."""
+        for turn in itertools.count(number):
+            await self.invited.wait()
+            guest = await asyncio.create_subprocess_exec(
+                sys.executable,
+                __file__,
+                "--guest",
+                env={**os.environ, "AIONODE_LINK": "off" if turn % 2 else "on"},
+                start_new_session=True,
+                stdout=asyncio.subprocess.PIPE,
+            )
+            self.guests.add(guest)
+            try:
+                if guest.stdout is not None:
+                    await guest.stdout.readline()  # its node runs
+                await asyncio.sleep(GUEST_SEC)
+                kill = turn % 3 == 0
+                guest.send_signal(signal.SIGKILL if kill else signal.SIGTERM)
+                await guest.wait()
+                self.killed += kill
+            finally:
+                if guest.returncode is None:
+                    guest.kill()
+                self.guests.discard(guest)
+            self.processes += 1
+
+    async def level(self) -> Level:
+        """Send all guests away, and return what is there when nothing gets less any more."""
+        self.invited.clear()
+        while self.guests:  # noqa: ASYNC110 - many set it
+            await asyncio.sleep(0.1)
+        ends = time.monotonic() + LEVEL_LIMIT_SEC
+        last, steady = await self.look(), 0
+        while steady < 3 and time.monotonic() < ends:
+            await asyncio.sleep(0.5)
+            now = await self.look()
+            steady = steady + 1 if all(a >= b for a, b in zip(now, last, strict=True)) else 0
+            last = Level(*map(min, now, last))
+        self.invited.set()
+        return last
+
+    async def look(self) -> Level:
+        """Return what there is, with what a newcomer finds on the network."""
+        async with Context() as newcomer, Node("newcomer", context=newcomer) as node:
+            graph = node.graph
+            entities = len(graph.nodes()) + len(graph.endpoints())
+        await asyncio.sleep(0.1)
+        return level(entities)
 
     def lost(self) -> int:
         """Return how many messages are neither received, dropped nor in the queue."""
@@ -105,40 +226,99 @@ class Soak:
         return left if left < 0 else max(0, left - self.subscription.qos_profile.depth)
 
 
+LARGE: Final = UInt8MultiArray(data=bytes(LARGE_BYTES))
+
+
+class Guest(Node):
+    """The node of a process that comes and goes."""
+
+    def __init__(self) -> None:
+        super().__init__(f"guest_{os.getpid()}", callback_budget_ms=1000)
+        self.create_subscription(String, "/flood", lambda _msg: None, 5)
+        self.create_subscription(UInt8MultiArray, "/large", self.send_back, 2)
+        self.back = self.create_publisher(UInt8MultiArray, "/large_back", 2)
+        self.adding = self.create_client(AddTwoInts, "/add")
+        self.counting = self.create_action_client(Fibonacci, "/count")
+
+    def send_back(self, msg: UInt8MultiArray) -> None:
+        """Return a large message."""
+        self.back.publish(msg)
+
+    async def work(self) -> None:
+        """Call, and send goals; every second one is given up."""
+        await self.adding.wait_for_service()
+        await self.counting.wait_for_server()
+        for number in itertools.count():
+            with contextlib.suppress(AionodeError, TimeoutError):
+                await self.adding.call(AddTwoInts.Request(a=number), timeout_sec=1.0)
+                async with asyncio.timeout(0.02 if number % 2 else 1.0):
+                    await self.counting.call(Fibonacci.Goal(order=3))
+
+
+async def be_guest() -> None:
+    """Be one, until a signal comes."""
+    async with Guest() as guest:
+        print("here", flush=True)
+        await guest.work()
+
+
 async def soak(seconds: float) -> list[str]:
     """Do all of it for some time, and return what was wrong."""
-    async with Context(transport="local") as context:
+    async with Context() as context:
         work = Soak(context)
         async with work.node, asyncio.TaskGroup() as tasks:
-            running = [
-                tasks.create_task(each) for each in (work.flood(), work.call(), work.come_and_go())
-            ]
+            doing = [work.flood(), work.call(), work.come_and_go()]
+            doing += [work.invite(number) for number in range(GUESTS_AT_ONCE)]
+            running = [tasks.create_task(each) for each in doing]
+            work.invited.set()
             await asyncio.sleep(seconds * WARM_UP_SHARE)
-            before_kb = resident_kb()
+            before = await work.level()
             await asyncio.sleep(seconds * (1 - WARM_UP_SHARE))
-            grown_kb = resident_kb() - before_kb
+            after = await work.level()
             lost = work.lost()
             for task in running:
                 task.cancel()
     print(
         f"{seconds:g} s: {work.sent} sent, {work.subscription.stats.dropped} dropped, "
         f"{work.calls} calls, {work.timeouts} timed out, {work.cancelled} cancelled, "
-        f"{work.nodes} nodes came and went, {work.ticks} of {seconds / TICK_SEC:.0f} ticks; "
-        f"memory {before_kb} kB, {grown_kb:+} kB since the warm-up"
+        f"{work.goals} goals, {work.taken} large messages, {work.nodes} nodes and "
+        f"{work.processes} processes came and went, {work.killed} of them killed, "
+        f"{work.ticks} ticks"
     )
-    problems = []
-    if grown_kb > ALLOWED_GROWTH_KB:
-        problems.append(f"memory grew by {grown_kb} kB; {ALLOWED_GROWTH_KB} kB is the limit")
-    if lost:
-        problems.append(f"{lost} messages were neither received, dropped nor left")
+    problems = [f"{lost} messages were neither received, dropped nor left"] if lost else []
+    for name, old, new, allowed in zip(Level._fields, before, after, ALLOWED, strict=True):
+        print(f"{name:12} {old:8} -> {new:8}  {new - old:+}")
+        if new - old > allowed:
+            problems.append(f"{name} grew by {new - old}; {allowed} is the limit")
     return problems
+
+
+@contextlib.contextmanager
+def apart() -> Iterator[None]:
+    """Let this process and its guests hear each other, and nothing else on the machine."""
+    with contextlib.ExitStack() as until_all_are_found:
+        held = [until_all_are_found.enter_context(socket.socket()) for _ in range(4)]
+        for one in held:
+            one.bind(("127.0.0.1", 0))
+        ports = [one.getsockname()[1] for one in held]
+    with tempfile.TemporaryDirectory(prefix="soak-") as folder:
+        os.environ["AIONODE_MEETING_PORTS"] = ",".join(map(str, ports[:3]))
+        os.environ["AIONODE_ROUTER_PORT"] = str(ports[3])
+        os.environ["XDG_RUNTIME_DIR"] = folder
+        yield
 
 
 def main() -> None:
     """Soak, and exit with status 1 if anything was wrong."""
     parser = argparse.ArgumentParser(description="Everything at once for a long time.")
     parser.add_argument("--seconds", type=float, default=10.0, help="how long (default 10)")
-    problems = asyncio.run(soak(parser.parse_args().seconds))
+    parser.add_argument("--guest", action="store_true", help="be a process that comes and goes")
+    options = parser.parse_args()
+    if options.guest:
+        run(be_guest, args=[])
+        return
+    with apart():
+        problems = asyncio.run(soak(options.seconds))
     sys.exit("\n".join(problems) or 0)
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import difflib
 import re
+import sys
 from collections.abc import Iterator
 from keyword import iskeyword
 
@@ -50,6 +51,13 @@ ESCAPED = {
     '"': '"',
     "'": "'",
 }
+
+
+MOST_ELEMENTS = 2**32 - 1
+"""How long a sequence or string can be at all: its length has 32 bits on the wire."""
+
+LARGEST_ARRAY = 2**26
+"""How many elements an array of fixed size may have, since each new message has all of them."""
 
 
 class MisfitError(Exception):
@@ -149,18 +157,31 @@ def type_text(match: re.Match[str]) -> TypeText:
         raise MisfitError(
             at, f"{name!r} is no type; {hint}, and names of messages such as pkg/Name"
         )
-    bound = match["string_bound"]
-    if bound is not None and name not in STRINGS:
-        raise MisfitError(match.start("string_bound") - 2, f"only strings have a bound, not {name}")
-    if bound is not None and int(bound) < 1:
-        raise MisfitError(match.start("string_bound"), "a bound is at least 1")
+    bound = None
+    if match["string_bound"] is not None:
+        at = match.start("string_bound")
+        if name not in STRINGS:
+            raise MisfitError(at - 2, f"only strings have a bound, not {name}")
+        bound = limit(match["string_bound"], at, "a bound", MOST_ELEMENTS)
     if match["brackets"] is None:
-        return TypeText(name, int(bound) if bound else None)
-    size = match["size"]
-    if (match["upper"] and not size) or (size and int(size) < 1):
-        raise MisfitError(match.start("size"), "a size or bound is a number of at least 1")
-    kind = "bounded" if match["upper"] else "array" if size else "unbounded"
-    return TypeText(name, int(bound) if bound else None, kind, int(size or 0))  # type: ignore[arg-type] # one of the three
+        return TypeText(name, bound)
+    size, at = match["size"], match.start("size")
+    if match["upper"]:
+        return TypeText(name, bound, "bounded", limit(size, at, "a size or bound", MOST_ELEMENTS))
+    if size:
+        return TypeText(name, bound, "array", limit(size, at, "a size or bound", LARGEST_ARRAY))
+    return TypeText(name, bound, "unbounded")
+
+
+def limit(text: str, at: int, what: str, most: int) -> int:
+    """Return the size or bound that `text` says, or raise `MisfitError`."""
+    text = text.lstrip("0")
+    if not text:
+        number = "" if what == "a bound" else "a number of "
+        raise MisfitError(at, f"{what} is {number}at least 1")
+    if len(text) > len(str(most)) or int(text) > most:  # int() refuses thousands of digits
+        raise MisfitError(at, f"{what} is at most {most} here")
+    return int(text)
 
 
 def check_name(name: str, at: int, *, constant: bool) -> None:
@@ -283,7 +304,8 @@ def unescaped(text: str) -> str:
     def replaced(match: re.Match[str]) -> str:
         code = match[1]
         if code[0] in "xuU" and len(code) > 1:
-            return chr(int(code[1:], 16))
+            point = int(code[1:], 16)
+            return chr(point) if point <= sys.maxunicode else match[0]
         if code[0] in "01234567":
             return chr(int(code, 8))
         return ESCAPED.get(code, match[0])

@@ -77,12 +77,13 @@ def default_factory(type_: FieldType, default: object) -> Callable[[], Any]:
         return (
             partial(several, type_.nested, count) if type_.container != "single" else type_.nested
         )
-    items = default if isinstance(default, tuple) else ("",) * count
-    return partial(list, items) if items else list
+    if isinstance(default, tuple):
+        return partial(list, default)
+    return partial(several, str, count) if count else list
 
 
 def several(make: Callable[[], Any], count: int) -> list[Any]:
-    """Return `count` new messages."""
+    """Return `count` new messages or empty strings."""
     return [make() for _ in range(count)]
 
 

@@ -76,9 +76,11 @@ def parse_error(payload: bytes, service: str) -> ServiceError:
     text = payload.decode(errors="replace")
     try:
         fields = json.loads(text)
-        return ServiceError(service, str(fields["text"]), str(fields["type"]))
-    except (ValueError, TypeError, LookupError):
+        error_text, error_type = str(fields["text"]), str(fields["type"])
+        (error_text + error_type).encode()  # JSON can hold half a surrogate pair; UTF-8 cannot
+    except (ValueError, TypeError, LookupError, RecursionError):
         return ServiceError(service, text or "the server sent an error without a text")
+    return ServiceError(service, error_text, error_type)
 
 
 # Servers

@@ -1,0 +1,284 @@
+"""The cases: roles, a fault, and what is promised."""
+
+from __future__ import annotations
+
+import contextlib
+import subprocess
+from collections.abc import Iterator
+
+import msgspec
+
+from tests.faults.faults import end_and_replace, freeze, replace, wait
+from tests.faults.harness import Case, Skipped
+from tests.faults.hosts import host_cases
+from tests.faults.roles import Hear, Output, Publish, Role
+
+__all__ = ["NOTHING", "all_cases"]
+
+NOTHING = Case("nothing", (Role("idle"),), wait(5))
+"""What the machine itself makes a process wait for, while the other cases run."""
+
+WAYS = {"link": "on", "Zenoh": "off"}
+FREEZES_S = (5, 14, 70)
+"""Shorter than the lease of 10 s, longer, and longer than that of ROS 2 nodes, which is 60 s."""
+
+ROUTER = Role("router", router="tcp/127.0.0.1:{AIONODE_ROUTER_PORT}")
+
+
+def on(way: str, *roles: Role) -> tuple[Role, ...]:
+    """Return roles that talk over links, or over Zenoh alone."""
+    return tuple(
+        msgspec.structs.replace(role, env={**role.env, "AIONODE_LINK": WAYS[way]}) for role in roles
+    )
+
+
+def talk(*, keep_all: bool, period_s: float = 0.02) -> tuple[Role, ...]:
+    """Return a publisher, a reader to be hurt, and one beside it on a topic of its own.
+
+    What waits for a reader that is frozen soon fills every buffer on the way to it.
+    """
+    return (
+        Role(
+            "talker",
+            publish=(
+                Publish("/a", keep_all=keep_all, period_s=period_s, size=59_000),
+                Publish("/b"),
+            ),
+        ),
+        Role("reader", hear=(Hear("/a", keep_all=keep_all),)),
+        Role("beside", hear=(Hear("/b"),)),
+    )
+
+
+CALLING = (
+    Role("server", serve="/add"),
+    Role("client", call="/add", callers=10, size=100_000),
+    Role("other", call="/add"),
+)
+
+ACTING = (
+    Role("server", act="/count"),
+    Role("client", send="/count"),
+    Role("other", send="/count"),
+)
+
+
+def members(count: int, *, ros: int = 0) -> tuple[Role, ...]:
+    """Return processes that all hear each other."""
+    return tuple(
+        Role(
+            f"{'ros' if number < ros else 'member'}{number}",
+            publish=(Publish("/hello", period_s=0.05),),
+            hear=(Hear("/hello", depth=100),),
+            ros=number < ros,
+        )
+        for number in range(count)
+    )
+
+
+def freezes(way: str) -> Iterator[Case]:
+    """Yield what happens when a process stops for a while."""
+    for seconds in FREEZES_S:
+        short = seconds == FREEZES_S[0]
+        for keep_all in (True, False):
+            kind = "KEEP_ALL" if keep_all else "KEEP_LAST"
+            for name in ("reader", "talker"):
+                yield Case(
+                    f"{way}: {kind} {name} frozen {seconds} s",
+                    on(way, *talk(keep_all=keep_all, period_s=0.02 if short else 0.1)),
+                    freeze(name, seconds),
+                    (name,),
+                    loss="none" if keep_all else "told",
+                    lasts_s=seconds,
+                    short=short and keep_all and name == "reader",
+                )
+        yield Case(
+            f"{way}: KEEP_ALL callback awaits for {seconds} s",
+            on(
+                way,
+                Role("talker", publish=(Publish("/a", keep_all=True, period_s=0.001),)),
+                Role("reader", hear=(Hear("/a", keep_all=True, pause_s=seconds),)),
+            ),
+            wait(seconds),
+            lasts_s=seconds,
+        )
+        for roles, kind in ((CALLING, "calls"), (ACTING, "goals")):
+            for name in ("server", "client"):
+                yield Case(
+                    f"{way}: {kind}, {name} frozen {seconds} s",
+                    on(way, *roles),
+                    freeze(name, seconds),
+                    (name,),
+                    loss="told",
+                    lasts_s=seconds,
+                    short=short and kind == "calls" and name == "server",
+                )
+        yield Case(
+            f"{way}: one of three frozen {seconds} s, all hear all",
+            on(way, *members(3)),
+            freeze("member1", seconds),
+            ("member1",),
+            loss="any",
+            lasts_s=seconds,
+        )
+
+
+def kills(way: str) -> Iterator[Case]:
+    """Yield what happens when a process is killed, and another takes its place."""
+    for name in ("reader", "talker"):
+        yield Case(
+            f"{way}: KEEP_ALL {name} killed and replaced",
+            on(way, *talk(keep_all=True)),
+            replace(name),
+            short=name == "talker",
+        )
+    for roles, kind in ((CALLING, "calls"), (ACTING, "goals")):
+        for name in ("server", "client"):
+            yield Case(
+                f"{way}: {kind}, {name} killed and replaced",
+                on(way, *roles),
+                replace(name),
+                loss="told",
+                short=name == "server",
+            )
+
+
+def comings(way: str) -> Iterator[Case]:
+    """Yield what happens to messages while processes start and stop."""
+    yield Case(
+        f"{way}: talker beside a reader that starts and stops",
+        on(
+            way,
+            Role("talker", publish=(Publish("/a", keep_all=True, period_s=0.005),)),
+            Role("reader", hear=(Hear("/a", keep_all=True),)),
+            Role("other", hear=(Hear("/a", keep_all=True),)),
+        ),
+        end_and_replace("other", 3),
+    )
+    for keep_all in (True, False):
+        yield Case(
+            f"{way}: {'KEEP_ALL' if keep_all else 'KEEP_LAST'} talker ends after 400 messages",
+            on(
+                way,
+                Role(
+                    "talker",
+                    publish=(Publish("/a", keep_all=keep_all, depth=400, period_s=0, count=400),),
+                ),
+                Role("reader", hear=(Hear("/a", keep_all=keep_all, depth=1000),)),
+            ),
+            wait(2),
+            short=keep_all,
+        )
+    yield Case(
+        f"{way}: KEEP_ALL reader takes 20 ms a message",
+        on(
+            way,
+            Role(
+                "talker",
+                publish=(Publish("/a", keep_all=True, period_s=0.001), Publish("/b")),
+            ),
+            Role("reader", hear=(Hear("/a", keep_all=True, slow_s=0.02),)),
+            Role("beside", hear=(Hear("/b"),)),
+        ),
+        wait(5),
+        recovery_limit_s=RECOVERY_OF_BACKLOG_S,
+    )
+
+
+RECOVERY_OF_BACKLOG_S = 20.0
+"""A slow reader has the backlog of its publisher, 1000 messages or a few, before what is new."""
+
+
+def outputs(way: str) -> Iterator[Case]:
+    """Yield what happens when nobody reads what a process prints, or the disk is full."""
+    full: tuple[Output, str] = ("full", "on /dev/full")
+    unread: tuple[Output, str] = ("unread", "in a pipe that is not read")
+    for output, what in (full, unread):
+        yield Case(
+            f"{way}: a process logs without end, stdout and stderr {what}",
+            on(
+                way,
+                Role("noisy", noisy=True, output=output),
+                Role("talker", publish=(Publish("/a", keep_all=True),)),
+                Role("reader", hear=(Hear("/a", keep_all=True),)),
+            ),
+            wait(3),
+            ("noisy",),
+            short=way == "link",
+        )
+    yield Case(
+        f"{way}: shared memory full, large messages",
+        on(
+            way,
+            Role(
+                "talker",
+                publish=(Publish("/a", keep_all=True, size=300_000),),
+                wrapper=FULL_MEMORY,
+            ),
+            Role("reader", hear=(Hear("/a", keep_all=True),), wrapper=FULL_MEMORY),
+        ),
+        wait(3),
+        around=OwnMounts(),
+    )
+    yield Case(
+        f"{way}: a node in a forked child",
+        on(
+            way,
+            Role("talker", publish=(Publish("/a", keep_all=True),), fork=True),
+            Role("reader", hear=(Hear("/a", keep_all=True),)),
+        ),
+        wait(3),
+        ("talker",),
+    )
+
+
+FULL_MEMORY = (
+    "unshare",
+    "--mount",
+    "sh",
+    "-c",
+    'mount -t tmpfs -o size=64k none /dev/shm && exec "$@"',
+    "sh",
+)
+"""Runs a command where ``/dev/shm`` has room for next to nothing; needs root."""
+
+
+class OwnMounts(contextlib.AbstractContextManager[None]):
+    """Nothing to set up, but the machine has to allow it."""
+
+    def __enter__(self) -> None:
+        done = subprocess.run([*FULL_MEMORY, "true"], capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise Skipped(f"no file system of its own: {done.stderr.strip()}")
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+
+def routers() -> Iterator[Case]:
+    """Yield what happens beside a router, and beside ROS 2 nodes with their lease of 60 s."""
+    yield Case(
+        "router killed and replaced, all hear all",
+        (ROUTER, *on("Zenoh", *members(3))),
+        replace("router", after_s=3.0),
+        loss="any",
+        short=True,
+    )
+    for seconds in (5, 14, 33, 70):
+        for name in ("member2", "ros0"):
+            yield Case(
+                f"router and two ROS 2 nodes, {name[:-1]} frozen {seconds} s, all hear all",
+                (ROUTER, *members(3, ros=2)),
+                freeze(name, seconds),
+                (name,),
+                loss="any",
+                lasts_s=seconds,
+            )
+
+
+def all_cases() -> list[Case]:
+    """Return every case, those that take about as long after each other."""
+    cases = [
+        case for way in WAYS for make in (freezes, kills, comings, outputs) for case in make(way)
+    ]
+    return sorted([*cases, *routers(), *host_cases()], key=lambda case: case.lasts_s)

@@ -1,0 +1,68 @@
+"""What may happen to the processes of a case. Each fault returns when it is over."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+from collections.abc import Awaitable, Callable
+
+from tests.faults.harness import Stage
+
+__all__ = ["Fault", "all_of", "end_and_replace", "freeze", "replace", "wait"]
+
+Fault = Callable[[Stage], Awaitable[None]]
+
+
+def wait(seconds: float) -> Fault:
+    """Let time pass: what happens is part of a role."""
+
+    async def strike(stage: Stage) -> None:
+        await asyncio.sleep(seconds)
+
+    return strike
+
+
+def freeze(name: str, seconds: float) -> Fault:
+    """Stop a process for some time, as a debugger or a closed laptop does."""
+
+    async def strike(stage: Stage) -> None:
+        stage.children[name].send(signal.SIGSTOP)
+        await asyncio.sleep(seconds)
+        stage.children[name].send(signal.SIGCONT)
+
+    return strike
+
+
+def replace(name: str, *, after_s: float = 0.5, number: int = signal.SIGKILL) -> Fault:
+    """Kill a process, and start it anew a moment later; over when the new one runs."""
+
+    async def strike(stage: Stage) -> None:
+        stage.children[name].send(number)
+        await stage.children[name].until_ended()
+        await asyncio.sleep(after_s)
+        await stage.start(stage.role(name))
+        await until_ready(stage, name)
+
+    return strike
+
+
+def end_and_replace(name: str, times: int) -> Fault:
+    """End a process in good order and start it anew, several times."""
+    return all_of(*[replace(name, after_s=0.0, number=signal.SIGTERM)] * times)
+
+
+def all_of(*faults: Fault) -> Fault:
+    """Let several faults strike one after the other."""
+
+    async def strike(stage: Stage) -> None:
+        for fault in faults:
+            await fault(stage)
+
+    return strike
+
+
+async def until_ready(stage: Stage, name: str) -> None:
+    """Wait until the node of a process runs."""
+    async with asyncio.timeout(20):
+        while not stage.children[name].last.ready:  # noqa: ASYNC110 - it is what a process reports
+            await asyncio.sleep(0.01)

@@ -1,0 +1,437 @@
+"""Runs fault cases: starts the processes, lets the fault strike, and counts.
+
+A `Case` is the roles of its processes, a fault, and what is promised. Whatever happens, no process
+of a case outlives it: each is the head of a process group that is killed in the end.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import signal
+import sys
+import tempfile
+import time
+from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+import msgspec
+
+from tests.faults.roles import REPORTS_VARIABLE, Report, Role, hear_mark, missing
+from tests.peers import isolated_environment
+
+__all__ = ["Case", "Outcome", "Skipped", "Stage", "run_case", "run_together"]
+
+ROOT = Path(__file__).parent.parent.parent
+
+READY_LIMIT_S = 30.0
+"""How long all processes may take to hear each other at first, on a busy machine."""
+
+RECOVERY_LIMIT_S = 20.0
+"""After so long what does not work again counts as hung."""
+
+BEFORE_S = 1.0
+"""How long everything works before the fault."""
+
+START_S = 1.0
+"""How long a process that takes another's place may still be busy with its start."""
+
+AFTER_S = 1.5
+"""How long everything works after it."""
+
+QUIET_LIMIT_S = 10.0
+"""How long what is under way may take to arrive when nothing more is sent."""
+
+END_LIMIT_S = 10.0
+"""How long a process may take to end; then it is killed."""
+
+
+class Skipped(Exception):  # noqa: N818  # no error
+    """The machine cannot do this; the text says why."""
+
+
+class Outcome(msgspec.Struct):
+    """What came of one run of a case.
+
+    Attributes:
+        sent: Messages, once for each reader of theirs, and calls and goals.
+        lost: How many of them did not arrive, or ended with an error.
+        told: How many of those were told: counted by a publisher or subscription, or an error.
+        doubled: How many arrived twice.
+        hung: What did not work again, took longer than its time limit, or did not end.
+        recovery_s: From the end of the fault until everything worked again.
+        gap_s: The longest time for which the loop of a process that was not hurt did not turn.
+        end_s: The longest that a process took to end after SIGTERM.
+    """
+
+    sent: int = 0
+    lost: int = 0
+    told: int = 0
+    doubled: int = 0
+    hung: list[str] = []
+    recovery_s: float = 0.0
+    gap_s: float = 0.0
+    end_s: float = 0.0
+
+
+class Case(msgspec.Struct, frozen=True):
+    """Processes, and what happens to them.
+
+    Attributes:
+        name: What happens, for the table.
+        roles: The processes.
+        strike: The fault; returns when it is over.
+        hurt: Names of the processes whose own event loop the fault stops.
+        loss: What may be lost: ``none``, only what is ``told``, or ``any``, where readers that a
+            publisher takes for gone miss what it says meanwhile.
+        recovery_limit_s: After how long everything has to work again.
+        lasts_s: About how long the fault takes; those alike run side by side.
+        short: Whether it is part of the ordinary tests.
+        around: What has to be there before its processes start, such as two hosts.
+    """
+
+    name: str
+    roles: tuple[Role, ...]
+    strike: Callable[[Stage], Awaitable[None]]
+    hurt: tuple[str, ...] = ()
+    loss: Literal["none", "told", "any"] = "none"
+    recovery_limit_s: float = 5.0
+    lasts_s: float = 5.0
+    short: bool = False
+    around: contextlib.AbstractContextManager[None] = contextlib.nullcontext()
+
+    def broken(self, outcome: Outcome) -> list[str]:
+        """Return which promises an outcome breaks."""
+        untold = outcome.lost - outcome.told
+        return [
+            text
+            for is_broken, text in (
+                (
+                    self.loss == "none" and outcome.lost > 0,
+                    f"{outcome.lost} of {outcome.sent} lost",
+                ),
+                (self.loss == "told" and untold > 0, f"{untold} of {outcome.sent} lost untold"),
+                (outcome.doubled > 0, f"{outcome.doubled} doubled"),
+                (bool(outcome.hung), f"hung: {', '.join(outcome.hung)}"),
+                (
+                    outcome.recovery_s > self.recovery_limit_s,
+                    f"recovered after {outcome.recovery_s:.1f} s, not {self.recovery_limit_s:g} s",
+                ),
+            )
+            if is_broken
+        ]
+
+
+class Child:
+    """One process of a case."""
+
+    def __init__(self, role: Role, env: dict[str, str], folder: Path) -> None:
+        self.role = role
+        self.reports: list[Report] = []
+        self.end_s = 0.0
+        self._env = {**os.environ, "PYTHONPATH": str(ROOT), **env, **role.env}
+        self._output = folder / f"{role.name}.txt"
+        self._process: asyncio.subprocess.Process | None = None
+        self._closing = contextlib.ExitStack()
+
+    async def start(self) -> None:
+        """Start it."""
+        module = "standin" if self.role.ros else "process"
+        reading, writing = os.pipe()
+        unread, output = os.pipe()
+        self._closing.callback(os.close, unread)
+        if self.role.output != "unread":
+            os.close(output)
+            path = "/dev/full" if self.role.output == "full" else self._output
+            output = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+        try:
+            self._process = await asyncio.create_subprocess_exec(
+                *self.role.wrapper,
+                sys.executable,
+                "-m",
+                f"tests.faults.{module}",
+                msgspec.json.encode(self.role).decode(),
+                stdin=asyncio.subprocess.PIPE,
+                stdout=output,
+                stderr=output,
+                pass_fds=[writing],
+                env={**self._env, REPORTS_VARIABLE: str(writing)},
+                cwd=ROOT,
+                start_new_session=True,
+            )
+        finally:
+            os.close(writing)
+            os.close(output)
+        reader = asyncio.StreamReader(limit=1 << 24)
+        transport, _ = await asyncio.get_running_loop().connect_read_pipe(
+            lambda: asyncio.StreamReaderProtocol(reader), os.fdopen(reading, "rb")
+        )
+        self._closing.callback(transport.close)
+        self._reports = reader
+
+    async def read(self) -> None:
+        """Take its reports until it has ended."""
+        while line := await self._reports.readline():
+            self.reports.append(msgspec.json.decode(line, type=Report))
+
+    @property
+    def last(self) -> Report:
+        """The newest report, an empty one before the first."""
+        return self.reports[-1] if self.reports else Report()
+
+    @property
+    def started_s(self) -> float:
+        """When it had started, imports and first uses of its types included."""
+        return next((each.time_s for each in self.reports if each.ready), 0.0) + START_S
+
+    @property
+    def runs(self) -> bool:
+        """Whether it still runs."""
+        return self._process is not None and self._process.returncode is None
+
+    def send(self, number: int) -> None:
+        """Send a signal to its process group."""
+        if self._process is not None and self.runs:
+            os.killpg(self._process.pid, number)
+
+    def hush(self) -> None:
+        """Make it publish and call no more."""
+        if self._process is not None and self._process.stdin is not None and self.runs:
+            with contextlib.suppress(ConnectionError):
+                self._process.stdin.write(b"quiet\n")
+
+    async def until_ended(self) -> int:
+        """Wait for its end, and return its status."""
+        assert self._process is not None
+        return await self._process.wait()
+
+    async def end(self) -> str | None:
+        """End it with SIGTERM; return what was wrong with that."""
+        if not self.runs:
+            status = await self.until_ended()
+            return f"{self.role.name} had ended with status {status}" if status else None
+        began_s = time.monotonic()
+        self.send(signal.SIGTERM)
+        try:
+            async with asyncio.timeout(END_LIMIT_S):
+                status = await self.until_ended()
+        except TimeoutError:
+            self.end_s = END_LIMIT_S
+            return f"{self.role.name} did not end"
+        self.end_s = time.monotonic() - began_s
+        return f"{self.role.name} ended with status {status}" if status else None
+
+    async def kill(self) -> None:
+        """Kill it and whatever it started."""
+        if self._process is not None:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(self._process.pid, signal.SIGKILL)
+            await self._process.wait()
+            if self._process.stdin is not None:
+                self._process.stdin.close()
+
+    def close(self) -> None:
+        """Close what belongs to it here."""
+        self._closing.close()
+
+    def output(self) -> str:
+        """Return the end of what it wrote."""
+        return self._output.read_text(errors="replace")[-2000:] if self._output.exists() else ""
+
+
+class Stage:
+    """The processes of a case while it runs."""
+
+    def __init__(self, case: Case, tasks: asyncio.TaskGroup, folder: Path) -> None:
+        self.case = case
+        self.env = {**isolated_environment(), "XDG_RUNTIME_DIR": str(folder)}
+        self.children: dict[str, Child] = {}
+        self.former: list[Child] = []
+        self._tasks = tasks
+        self._folder = folder
+
+    async def start(self, role: Role) -> None:
+        """Start a process, also in place of one that was there under its name."""
+        if role.name in self.children:
+            self.former.append(self.children[role.name])
+        env = {key: value.format_map(self.env) for key, value in role.env.items()}
+        role = msgspec.structs.replace(role, env=env, router=role.router.format_map(self.env))
+        child = self.children[role.name] = Child(role, self.env, self._folder)
+        await child.start()
+        self._tasks.create_task(child.read())
+
+    def role(self, name: str) -> Role:
+        """Return the role of a process as its case has it."""
+        return next(role for role in self.case.roles if role.name == name)
+
+    def expected(self) -> list[tuple[Child, str]]:
+        """Return the marks that have to come again and again: with whom, and which."""
+        living = [child for child in self.children.values() if child.runs]
+        marks = [
+            (child, hear_mark(hear.topic, sender.role.name))
+            for child in living
+            for hear in child.role.hear
+            for sender in living
+            if sender is not child
+            for publish in sender.role.publish
+            if publish.topic == hear.topic and not publish.count
+        ]
+        marks += [(child, "call") for child in living if child.role.call]
+        return marks + [(child, "goal") for child in living if child.role.send]
+
+    async def until_working(self, since_s: float, limit_s: float) -> list[str]:
+        """Wait until everything that began at `since_s` or later works; return what does not."""
+        ends_s = time.monotonic() + limit_s
+        while True:
+            waiting = [
+                f"{child.role.name}: {mark}"
+                for child, mark in self.expected()
+                if child.last.marks.get(mark, 0.0) < since_s
+            ]
+            waiting += [
+                f"{child.role.name}: not ready"
+                for child in self.children.values()
+                if child.runs and not child.last.ready
+            ]
+            if not waiting or time.monotonic() > ends_s:
+                return waiting
+            await asyncio.sleep(0.02)
+
+    async def until_arrived(self) -> None:
+        """Send no more, and wait until all that is under way has arrived, or nothing moves."""
+        for child in self.children.values():
+            child.hush()
+        ends_s = time.monotonic() + QUIET_LIMIT_S
+        await asyncio.sleep(0.3)
+        before = None
+        while time.monotonic() < ends_s:
+            now = [child.last.heard for child in self.children.values()]
+            if self.lost() == 0 or (now == before and time.monotonic() > ends_s - 5.0):
+                return
+            before = now
+            await asyncio.sleep(0.5)
+
+    def streams(self) -> dict[str, int]:
+        """Return how many messages each publisher sent that was not killed."""
+        children = [*self.children.values(), *self.former]
+        return {key: number for child in children for key, number in child.last.sent.items()}
+
+    def lost(self) -> int:
+        """Return how many messages are missing at readers that live."""
+        sent = self.streams()
+        killed = {key for child in self.former if not child.last.last for key in child.last.sent}
+        return sum(
+            missing(ranges, 0 if key in killed else sent.get(key, 0))
+            for child in self.children.values()
+            for key, ranges in child.last.heard.items()
+        )
+
+    def outcome(self, steady_s: float, quiet_s: float) -> Outcome:
+        """Return what is counted."""
+        children = [*self.children.values(), *self.former]
+        last = [child.last for child in children]
+        calls = sum(report.calls for report in last)
+        failed = sum(report.failed for report in last)
+        heard = sum(
+            end - begin + 1
+            for report in last
+            for ranges in report.heard.values()
+            for begin, end in ranges
+        )
+        lost = self.lost()
+        gaps = [
+            report.gap_s
+            for child in children
+            if child.role.name not in self.case.hurt
+            for report in child.reports
+            if max(steady_s, child.started_s) < report.time_s < quiet_s
+        ]
+        return Outcome(
+            sent=heard + lost + calls,
+            lost=lost + failed,
+            told=min(lost, sum(report.told for report in last)) + failed,
+            doubled=sum(report.doubled for report in last),
+            hung=[
+                f"{child.role.name}: {child.last.hung} calls"
+                for child in children
+                if child.last.hung and child.role.name not in self.case.hurt
+            ],
+            gap_s=max(gaps, default=0.0),
+            end_s=max(child.end_s for child in children),
+        )
+
+
+@contextlib.asynccontextmanager
+async def staged(case: Case) -> AsyncIterator[Stage]:
+    """Give a case its stage, and leave nothing behind."""
+    with tempfile.TemporaryDirectory(prefix="faults-") as folder:
+        failure: Exception | None = None
+        async with asyncio.TaskGroup() as tasks:
+            stage = Stage(case, tasks, Path(folder))
+            try:
+                yield stage
+            except Exception as error:  # noqa: BLE001 - raised below, outside of the group
+                failure = error
+            finally:
+                children = [*stage.children.values(), *stage.former]
+                for child in children:
+                    await child.kill()
+        for child in children:
+            if failure is not None:
+                failure.add_note(f"{child.role.name}: {child.output()}")
+            child.close()
+        if failure is not None:
+            raise failure
+
+
+async def run_case(case: Case, barrier: asyncio.Barrier | None = None) -> Outcome:
+    """Run a case once.
+
+    Args:
+        case: The case.
+        barrier: Where it waits for the others of its batch, so that their processes, when they
+            start, take no time from its own.
+
+    Raises:
+        Skipped: The machine cannot do it.
+    """
+    async with contextlib.AsyncExitStack() as stack:
+        try:
+            stack.enter_context(case.around)
+            stage = await stack.enter_async_context(staged(case))
+            for role in case.roles:
+                await stage.start(role)
+            hung = await stage.until_working(0.001, READY_LIMIT_S)
+        finally:
+            if barrier is not None:
+                await barrier.wait()
+        await asyncio.sleep(BEFORE_S / 2)
+        steady_s = time.monotonic()
+        await asyncio.sleep(BEFORE_S / 2)
+        if hung:
+            return Outcome(hung=[f"never: {each}" for each in hung])
+        await case.strike(stage)
+        over_s = time.monotonic()
+        hung = await stage.until_working(over_s, RECOVERY_LIMIT_S)
+        recovery_s = time.monotonic() - over_s
+        await asyncio.sleep(AFTER_S)
+        quiet_s = time.monotonic()
+        await stage.until_arrived()
+        endings = await asyncio.gather(*(child.end() for child in stage.children.values()))
+        await asyncio.sleep(0.05)  # for the last reports
+        outcome = stage.outcome(steady_s, quiet_s)
+        outcome.hung = [*outcome.hung, *hung, *(text for text in endings if text)]
+        outcome.recovery_s = recovery_s
+        return outcome
+    raise AssertionError("not reached")
+
+
+async def run_together(cases: Sequence[Case]) -> list[Outcome | Skipped | Exception]:
+    """Run several cases side by side, once each; all faults strike at the same time."""
+    barrier = asyncio.Barrier(len(cases))
+    results: list[Any] = await asyncio.gather(
+        *(run_case(case, barrier) for case in cases), return_exceptions=True
+    )
+    return results

@@ -1,0 +1,331 @@
+"""The program of one process of a fault case: ``python -m tests.faults.process ROLE``.
+
+ROLE is a `Role` as JSON. A line on stdin makes it publish, call and send goals no more; SIGTERM
+ends it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import multiprocessing
+import os
+import sys
+import time
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+import aionode
+from aionode import Context, Node
+from aionode.errors import AionodeError, QueueFullError
+from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.interfaces.rcl_interfaces.msg import ParameterValue
+from aionode.interfaces.rcl_interfaces.srv import GetParameters
+from aionode.interfaces.std_msgs.msg import String
+from aionode.qos import HistoryPolicy, QoSProfile
+from aionode.transport.zenoh.session import close_session, open_router
+from tests.faults.roles import (
+    REPORTS_VARIABLE,
+    Hear,
+    Publish,
+    Report,
+    Role,
+    hear_mark,
+    note,
+    stream_key,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Coroutine
+
+__all__ = ["Reporter", "text", "told_by"]
+
+REPORT_S = 0.1
+TICK_S = 0.01
+CALL_LIMIT_S = 1.0
+GOAL_LIMIT_S = 3.0
+HUNG_S = 2.0
+"""How much longer than its limit a call or goal may take: canceling a goal waits 1 s at most."""
+
+PAUSE_S = 0.05
+"""Between two calls of one process, on average."""
+
+
+def profile(keep_all: bool, depth: int) -> QoSProfile:
+    """Return a profile for reliable messages."""
+    if keep_all:
+        return QoSProfile(history=HistoryPolicy.KEEP_ALL)
+    return QoSProfile(depth=depth)
+
+
+def text(sender: str, number: int, size: int) -> str:
+    """Return what a message says: who sent it, its number, and when."""
+    return f"{sender} {os.getpid()} {number} {time.monotonic()} {'x' * size}"
+
+
+def told_by(endpoint: Any) -> int:
+    """Return how many messages a publisher or subscription counts as lost."""
+    return int(endpoint.stats.dropped) + int(getattr(endpoint.stats, "lost", 0))
+
+
+class Reporter:
+    """Collects what a process sees, and tells it."""
+
+    def __init__(self) -> None:
+        self.report = Report()
+        self.endpoints: list[Any] = []
+        self._last_s = 0.0
+
+    def hear(self, topic: str, data: str) -> None:
+        """Take a message."""
+        sender, pid, number, sent_s, _ = data.split(" ", 4)
+        ranges = self.report.heard.setdefault(stream_key(topic, sender, int(pid)), [])
+        if not note(ranges, int(number)):
+            self.report.doubled += 1
+        mark = hear_mark(topic, sender)
+        self.report.marks[mark] = max(self.report.marks.get(mark, 0.0), float(sent_s))
+
+    def watch(self) -> None:
+        """Measure for how long the event loop does not turn, from now on."""
+        loop = asyncio.get_running_loop()
+        self._last_s = time.monotonic()
+
+        def tick() -> None:
+            now_s = time.monotonic()
+            self.report.gap_s = max(self.report.gap_s, now_s - self._last_s - TICK_S)
+            self._last_s = now_s
+            loop.call_later(TICK_S, tick)
+
+        loop.call_later(TICK_S, tick)
+
+    def tell(self) -> None:
+        """Print a report; its gap begins anew."""
+        self.report.time_s = time.monotonic()
+        self.report.told = sum(map(told_by, self.endpoints))
+        os.write(int(os.environ[REPORTS_VARIABLE]), msgspec.json.encode(self.report) + b"\n")
+        self.report.gap_s = 0.0
+
+    async def go_on(self) -> None:
+        """Print reports without end."""
+        while True:
+            self.tell()
+            await asyncio.sleep(REPORT_S)
+
+
+class Process:
+    """A node that does what its role says."""
+
+    def __init__(self, role: Role) -> None:
+        self.role = role
+        self.reporter = Reporter()
+        self.report = self.reporter.report
+        self.quiet = asyncio.Event()
+
+    async def run(self) -> None:
+        """Do everything, until the process is to end."""
+        os.set_blocking(sys.stdin.fileno(), False)
+        asyncio.get_running_loop().add_reader(sys.stdin, self.hush)
+        self.reporter.watch()
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(self.reporter.go_on())
+            if self.role.router:
+                await self.route()
+            else:
+                await self.be_node()
+
+    def hush(self) -> None:
+        """Publish and call no more."""
+        asyncio.get_running_loop().remove_reader(sys.stdin)
+        self.quiet.set()
+
+    async def route(self) -> None:
+        """Be a router."""
+        session = await open_router([self.role.router])
+        self.report.ready = True
+        try:
+            await asyncio.Event().wait()
+        finally:
+            await asyncio.shield(close_session(session))
+
+    async def be_node(self) -> None:
+        """Be a node."""
+        role = self.role
+        async with (
+            Context() as context,
+            Node(
+                role.name, context=context, enable_rosout=False, start_parameter_services=False
+            ) as node,
+        ):
+            for each in role.hear:
+                self.hear(node, each)
+            if role.serve:
+                node.create_service(GetParameters, role.serve, answer)
+            if role.act:
+                node.create_action_server(Fibonacci, role.act, count)
+            self.report.ready = True
+            work: list[Coroutine[Any, Any, None]] = [
+                self.publish(node, each) for each in role.publish
+            ]
+            if role.call:
+                work += [self.call(node) for _ in range(role.callers)]
+            if role.send:
+                work.append(self.send(node))
+            if role.noisy:
+                work.append(shout(node))
+            if role.fork:
+                work.append(fork(self.report))
+            async with asyncio.TaskGroup() as tasks:
+                for each_work in work:
+                    tasks.create_task(each_work)
+                if not any(each.count for each in role.publish):
+                    await asyncio.Event().wait()
+        # Only who sends a number of messages and ends comes here.
+        asyncio.get_running_loop().call_soon(os.kill, os.getpid(), 15)
+
+    def hear(self, node: Node, hear: Hear) -> None:
+        """Subscribe."""
+        paused = False
+
+        async def take(msg: String) -> None:
+            nonlocal paused
+            self.reporter.hear(hear.topic, msg.data)
+            if hear.slow_s:
+                await asyncio.sleep(hear.slow_s)
+            if hear.pause_s and not paused and int(msg.data.split(" ", 3)[2]) >= 50:
+                paused = True
+                await asyncio.sleep(hear.pause_s)
+
+        self.reporter.endpoints.append(
+            node.create_subscription(String, hear.topic, take, profile(hear.keep_all, hear.depth))
+        )
+
+    async def publish(self, node: Node, publish: Publish) -> None:
+        """Publish until it is to be quiet, or the last one is sent."""
+        publisher = node.create_publisher(
+            String, publish.topic, profile(publish.keep_all, publish.depth)
+        )
+        self.reporter.endpoints.append(publisher)
+        await publisher.wait_for_subscribers(publish.readers)
+        key = stream_key(publish.topic, self.role.name, os.getpid())
+        number = 1
+        while not self.quiet.is_set() and (not publish.count or number <= publish.count):
+            try:
+                publisher.publish(String(data=text(self.role.name, number, publish.size)))
+            except QueueFullError:
+                await publisher.drain()
+                continue
+            self.report.sent[key] = number
+            number += 1
+            if publish.period_s or number % 50 == 0:
+                await asyncio.sleep(publish.period_s)
+        if publish.count:
+            await publisher.drain()
+
+    async def attempt(
+        self, mark: str, limit_s: float, work: Callable[[], Coroutine[Any, Any, object]]
+    ) -> None:
+        """Call something, and note how it ends."""
+        began_s = time.monotonic()
+        self.report.calls += 1
+        try:
+            await work()
+        except (AionodeError, TimeoutError):
+            self.report.failed += 1
+        else:
+            self.report.marks[mark] = began_s
+        if time.monotonic() - began_s > limit_s + HUNG_S:
+            self.report.hung += 1
+
+    async def call(self, node: Node) -> None:
+        """Call again and again."""
+        client = node.create_client(GetParameters, self.role.call)
+        request = GetParameters.Request(names=["x" * self.role.size])
+        while not self.quiet.is_set():
+            if not await client.wait_for_service(timeout_sec=1.0):
+                continue
+            await self.attempt(
+                "call",
+                CALL_LIMIT_S,
+                lambda: client.call(request, timeout_sec=CALL_LIMIT_S),
+            )
+            await asyncio.sleep(PAUSE_S * self.role.callers)
+
+    async def send(self, node: Node) -> None:
+        """Send goals again and again."""
+        client = node.create_action_client(Fibonacci, self.role.send)
+
+        async def goal() -> None:
+            async with asyncio.timeout(GOAL_LIMIT_S):
+                await client.call(Fibonacci.Goal(order=3))
+
+        while not self.quiet.is_set():
+            if await client.wait_for_server(timeout_sec=1.0):
+                await self.attempt("goal", GOAL_LIMIT_S, goal)
+
+
+async def answer(request: GetParameters.Request) -> GetParameters.Response:
+    """Answer with what was sent."""
+    return GetParameters.Response(values=[ParameterValue(string_value=request.names[0])])
+
+
+async def count(goal: Any) -> Fibonacci.Result:
+    """Count, slowly."""
+    for number in range(goal.request.order):
+        goal.publish_feedback(Fibonacci.Feedback(sequence=[number]))
+        await asyncio.sleep(0.01)
+    goal.succeed()
+    return Fibonacci.Result(sequence=[goal.request.order])
+
+
+async def shout(node: Node) -> None:
+    """Log without end."""
+    while True:
+        node.get_logger().warning("x" * 1000)
+        await asyncio.sleep(0.001)
+
+
+def forked() -> None:
+    """Make a node in a forked process; refusing it is an answer too."""
+
+    async def main() -> None:
+        async with Node("forked"):
+            await asyncio.sleep(0.2)
+
+    with suppress(AionodeError, RuntimeError):
+        asyncio.run(main())
+    os._exit(0)
+
+
+async def fork(report: Report) -> None:
+    """Fork, and wait for the child; one that hangs or crashes is counted as hung."""
+    await asyncio.sleep(0.3)
+    child = multiprocessing.get_context("fork").Process(target=forked)
+    child.start()
+    await asyncio.to_thread(child.join, 5.0)
+    if child.exitcode != 0:
+        report.hung += 1
+        child.kill()
+
+
+def main() -> None:
+    """Run until SIGTERM, and report a last time."""
+    role = msgspec.json.decode(sys.argv[1], type=Role)
+    logging.captureWarnings(True)
+    processes: list[Process] = []
+
+    async def run() -> None:
+        processes.append(Process(role))
+        await processes[0].run()
+
+    try:
+        aionode.run(run, args=[])
+    finally:
+        for process in processes:
+            process.report.last = True
+            process.reporter.tell()
+
+
+if __name__ == "__main__":
+    main()

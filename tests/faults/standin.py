@@ -1,0 +1,126 @@
+"""A stand-in for a ROS 2 node in a fault case: a Zenoh session with rmw_zenoh's settings.
+
+``python -m tests.faults.standin ROLE``; it shares keys and encoding with aionode, but neither its
+transports nor its event loop. Its lease is 60 s, and it dials only the router.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+import time
+from contextlib import ExitStack, closing
+
+import msgspec
+import zenoh  # plays another participant, without aionode
+
+from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
+from aionode.interfaces.std_msgs.msg import String
+from aionode.message import type_name
+from aionode.qos import QoSProfile
+from aionode.wire import attachment, cdr
+from aionode.wire.keyexpr import data_key
+from aionode.wire.liveliness import endpoint_token, gid_of, node_token
+from aionode.wire.typehash import type_hash
+from tests.faults.process import REPORT_S, Reporter, text
+from tests.faults.roles import Publish, Role, stream_key
+from tests.peers import ros_session
+
+
+class StandIn:
+    """A session that publishes and hears."""
+
+    def __init__(self, role: Role, session: zenoh.Session) -> None:
+        self.role = role
+        self.session = session
+        self.domain = int(os.environ["ROS_DOMAIN_ID"])
+        self.node = NodeInfo(str(session.zid()), 0, role.name, "/", "/")
+        self.reporter = Reporter()
+        self.kept: list[object] = []
+        self.hold(node_token(self.domain, self.node))
+        for hear in role.hear:
+            self.hear(hear.topic, hear.depth)
+        self.publishers = [(each, *self.publisher(each)) for each in role.publish]
+        self.reporter.report.ready = True
+
+    def hold(self, token: str) -> None:
+        """Announce something."""
+        self.kept.append(self.session.liveliness().declare_token(token))
+
+    def endpoint(self, kind: EndpointKind, topic: str, depth: int) -> str:
+        """Announce an endpoint, and return its token."""
+        info = EndpointInfo(
+            kind,
+            self.node,
+            len(self.kept),
+            topic,
+            type_name(String),
+            type_hash(String),
+            QoSProfile(depth=depth),
+            b"",
+        )
+        token = endpoint_token(self.domain, info)
+        self.hold(token)
+        return token
+
+    def key(self, topic: str) -> str:
+        """Return the key of a topic."""
+        return data_key(self.domain, topic, type_name(String), type_hash(String))
+
+    def hear(self, topic: str, depth: int) -> None:
+        """Subscribe."""
+
+        def take(sample: zenoh.Sample) -> None:
+            self.reporter.hear(topic, cdr.decode(String, sample.payload.to_bytes()).data)
+
+        self.kept.append(self.session.declare_subscriber(self.key(topic), take))
+        self.endpoint(EndpointKind.SUBSCRIPTION, topic, depth)
+
+    def publisher(self, publish: Publish) -> tuple[zenoh.Publisher, bytes]:
+        """Return what publishes, and its gid."""
+        publisher = self.session.declare_publisher(self.key(publish.topic))
+        return publisher, gid_of(self.endpoint(EndpointKind.PUBLISHER, publish.topic, 10))
+
+    def publish(self) -> None:
+        """Publish one message on each topic."""
+        for setting, publisher, gid in self.publishers:
+            key = stream_key(setting.topic, self.role.name, os.getpid())
+            number = self.reporter.report.sent.get(key, 0) + 1
+            publisher.put(
+                cdr.encode(String(data=text(self.role.name, number, setting.size))),
+                attachment=attachment.pack(number, time.time_ns(), gid),
+            )
+            self.reporter.report.sent[key] = number
+
+
+def hush(quiet: threading.Event) -> None:
+    """Wait for a line, after which nothing is published."""
+    sys.stdin.readline()
+    quiet.set()
+
+
+def main() -> None:
+    """Run until SIGTERM, and report a last time."""
+    role = msgspec.json.decode(sys.argv[1], type=Role)
+    ended, quiet = threading.Event(), threading.Event()
+    signal.signal(signal.SIGTERM, lambda *_: ended.set())
+    threading.Thread(target=hush, args=(quiet,), daemon=True).start()
+    with ExitStack() as stack:
+        stand_in = StandIn(role, stack.enter_context(closing(ros_session())))
+        period_s = min((each.period_s for each in role.publish), default=REPORT_S)
+        told_s = 0.0
+        while not ended.wait(period_s):
+            if not quiet.is_set():
+                stand_in.publish()
+            if time.monotonic() - told_s >= REPORT_S:
+                told_s = time.monotonic()
+                stand_in.reporter.tell()
+        stand_in.reporter.report.last = True
+        stand_in.reporter.tell()
+    os._exit(0)
+
+
+if __name__ == "__main__":
+    main()
