@@ -348,6 +348,10 @@ class WriterHistory:
             if first < oldest:
                 absent = min(last, oldest - 1)
                 if absent >= first:
+                    if any(
+                        n <= absent and now_ns - at < RESEND_NS for n, at in reader.resent.items()
+                    ):
+                        return  # it was sent again before it was dropped, and may be on its way
                     self._lose(max(first, self._jumped_to), absent)
                     self._side.gap(reader, first, absent)
                 first = absent + 1
@@ -481,6 +485,21 @@ class WriterProxy:
     def lacks(self) -> bool:
         """Whether something is missing that is known of."""
         return self.next <= self.last
+
+    def takes_at_once(self, sequence: int, size: int) -> bool:
+        """Whether a message is just the next, which is then to be used at once.
+
+        That is what `take` does for most messages, in fewer calls.
+        """
+        if sequence != self.next or self._held or self._gaps or self._waiting:
+            return False
+        self.next = sequence + 1
+        self.last = max(self.last, sequence)
+        self._count += 1
+        self._bytes += size
+        if self._count >= ACK_MESSAGES or self._bytes >= ACK_BYTES:
+            self.acknowledge()
+        return True
 
     def take(self, sequence: int, item: Any, size: int) -> None:
         """Take a message, new or sent again."""

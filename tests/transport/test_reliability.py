@@ -117,7 +117,11 @@ class Wire:
             number, payload = self.topic[name].pop(0)
             proxy = self.proxies.get(name)
             if not lose and proxy is not None:
-                proxy.take(number, number, len(payload))
+                free = self.room[name] and not self.full[name]
+                if free and proxy.takes_at_once(number, len(payload)):
+                    self.heard[name].append(number)
+                else:
+                    proxy.take(number, number, len(payload))
 
     def bring_control(self, index: int = 0, *, lose: bool = False) -> None:
         """Let one of the rest arrive, or not."""

@@ -153,7 +153,10 @@ class ZenohReader(Entity):
         gid = origin.gid
         proxy = self._proxies.get(gid)
         if proxy is not None:
-            self._take_in_order(proxy, payload, origin)
+            if not self._keep_all and proxy.takes_at_once(origin.sequence, len(payload)):
+                self._hand_over(payload, origin)
+            else:
+                self._take_in_order(proxy, payload, origin)
             return
         self._last[gid] = origin.sequence
         if len(self._last) > REMEMBERED_WRITERS:
