@@ -45,9 +45,6 @@ logger = logging.getLogger("aionode.transport.zenoh")
 LOOK_IDS: Final = "a10de10c"
 """How the ids of sessions begin that are open for one look only."""
 
-START_S: Final = 2.0
-"""How long after the start we look; where many start at once, some are introduced too early."""
-
 FIRST_S: Final = 0.5
 """How long after a connection was lost, or made, we look; Zenoh needs some milliseconds."""
 
@@ -122,7 +119,6 @@ class Recovery:
             self._listener = session.info.declare_transport_events_listener(
                 direct(self._changes.put)
             )
-        self._look_in(START_S)
 
     def stop(self) -> None:
         """Watch no longer; a look that is under way ends by itself."""
