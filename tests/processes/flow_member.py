@@ -54,7 +54,8 @@ class Member(Node):
         return QoSProfile(depth=self.count or 10)
 
     def make_keeper(self) -> Any:
-        """A KEEP_ALL publisher."""
+        """A KEEP_ALL publisher, which says something else besides to the same process."""
+        self.side = self.create_publisher(String, "side", 10)
         return self.create_publisher(String, self.topic, self.profile(keep_all=True))
 
     def make_sender(self) -> Any:
@@ -65,7 +66,8 @@ class Member(Node):
     make_quitter = make_keeper
 
     def make_reader(self) -> Any:
-        """A KEEP_ALL subscription."""
+        """A KEEP_ALL subscription, and one to what is said besides."""
+        self.create_subscription(String, "side", lambda _: None, 10)
         return self.create_subscription(String, self.topic, None, self.profile(keep_all=True))
 
     def make_lister(self) -> Any:
@@ -197,6 +199,8 @@ class Member(Node):
             now_s = time.perf_counter()
             self.gap_s = max(self.gap_s, now_s - before_s - TICK_S)
             before_s = now_s
+            if self.role == "keeper":
+                self.side.publish(self.message(0))
 
     def obey(self, line: str) -> None:
         """Do what a line of stdin says."""
