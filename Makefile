@@ -50,7 +50,7 @@ docs: .venv/installed-dev
 
 fuzz: .venv/installed-dev
 	$(BIN)/python -m pytest -q -m hypothesis --hypothesis-profile=fuzz --timeout=3600
-	$(BIN)/python -m tests.fuzz_cdr --cases 3000000
+	$(BIN)/python -m tests.support.fuzz_cdr --cases 3000000
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fuzz]'
 	$(BIN)/python -m tests.fuzz --seconds $(FUZZ_SECONDS)
 

@@ -23,6 +23,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from aionode._node.end import NodeEnd
     from aionode.action import (
         ActionClient,
         ActionResult,
@@ -35,13 +36,13 @@ if TYPE_CHECKING:
     )
     from aionode.clock import Clock, ClockType, Duration, Time
     from aionode.context import Context
-    from aionode.endpoints.dispatch import CallbackContext
-    from aionode.endpoints.rate import Rate
-    from aionode.endpoints.service import Client, Service
-    from aionode.endpoints.timer import Timer, TimerInfo
-    from aionode.endpoints.topic import MessageInfo, Publisher, Subscription
+    from aionode.endpoints._core.callback_runner import CallbackContext
+    from aionode.endpoints.client import Client
+    from aionode.endpoints.publisher import Publisher
+    from aionode.endpoints.service import Service
+    from aionode.endpoints.subscription import MessageInfo, Subscription
+    from aionode.endpoints.timer import Rate, Timer, TimerInfo
     from aionode.node import Node
-    from aionode.node_end import NodeEnd
     from aionode.parameter import Parameter
     from aionode.qos import (
         DurabilityPolicy,
@@ -89,13 +90,13 @@ __all__ = [
     "run",
 ]
 
-HOMES = {
+_EXPORTS = {
     "ActionClient": "aionode.action",
     "ActionResult": "aionode.action",
     "ActionServer": "aionode.action",
-    "CallbackContext": "aionode.endpoints.dispatch",
+    "CallbackContext": "aionode.endpoints._core.callback_runner",
     "CancelResponse": "aionode.action",
-    "Client": "aionode.endpoints.service",
+    "Client": "aionode.endpoints.client",
     "ClientGoalHandle": "aionode.action",
     "Clock": "aionode.clock",
     "ClockType": "aionode.clock",
@@ -107,17 +108,17 @@ HOMES = {
     "Health": "aionode.supervisor",
     "HistoryPolicy": "aionode.qos",
     "LivelinessPolicy": "aionode.qos",
-    "MessageInfo": "aionode.endpoints.topic",
+    "MessageInfo": "aionode.endpoints.subscription",
     "Node": "aionode.node",
-    "NodeEnd": "aionode.node_end",
+    "NodeEnd": "aionode._node.end",
     "Parameter": "aionode.parameter",
-    "Publisher": "aionode.endpoints.topic",
+    "Publisher": "aionode.endpoints.publisher",
     "QoSProfile": "aionode.qos",
-    "Rate": "aionode.endpoints.rate",
+    "Rate": "aionode.endpoints.timer",
     "ReliabilityPolicy": "aionode.qos",
     "ServerGoalHandle": "aionode.action",
     "Service": "aionode.endpoints.service",
-    "Subscription": "aionode.endpoints.topic",
+    "Subscription": "aionode.endpoints.subscription",
     "Supervisor": "aionode.supervisor",
     "Time": "aionode.clock",
     "Timer": "aionode.endpoints.timer",
@@ -131,7 +132,9 @@ programs that need few of them start at once."""
 def __getattr__(name: str) -> Any:
     """Return a public name, or a module of the package, and keep it for the next time."""
     try:
-        value = getattr(import_module(HOMES[name]), name) if name in HOMES else submodule(name)
+        value = (
+            getattr(import_module(_EXPORTS[name]), name) if name in _EXPORTS else submodule(name)
+        )
     except ModuleNotFoundError as error:
         if error.name != f"{__name__}.{name}":
             raise

@@ -25,10 +25,11 @@ In aionode.errors are `GoalRejectedError`, `GoalAbortedError`, `GoalCanceledErro
 
 from __future__ import annotations
 
-from aionode.endpoints.action_client import ActionClient
-from aionode.endpoints.action_server import ActionServer
-from aionode.endpoints.client_goal import ActionResult, ClientGoalHandle
-from aionode.endpoints.server_goal import ServerGoalHandle
+from aionode.endpoints.actions._client import ActionClient
+from aionode.endpoints.actions._client_goal import ActionResult, ClientGoalHandle
+from aionode.endpoints.actions._goal import CancelResponse, GoalResponse, GoalStatus
+from aionode.endpoints.actions._server import ActionServer
+from aionode.endpoints.actions._server_goal import ServerGoalHandle
 from aionode.errors import (
     GoalAbortedError,
     GoalCanceledError,
@@ -37,7 +38,6 @@ from aionode.errors import (
     GoalRejectedError,
     GoalTransitionError,
 )
-from aionode.goal import CancelResponse, GoalResponse, GoalStatus
 
 __all__ = [
     "ActionClient",

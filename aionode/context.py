@@ -12,17 +12,17 @@ import threading
 import weakref
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+from aionode._concurrency import to_the_end
 from aionode.arguments import Arguments, Usage
 from aionode.clock import MachineTime
-from aionode.endpoints.mismatch import MismatchReport
+from aionode.endpoints._core.mismatch_report import MismatchReport
 from aionode.errors import ConfigurationError, EntityDestroyedError, ForkedProcessError, brief
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from aionode.message import type_name
-from aionode.settle import to_the_end
+from aionode.transport._zenoh_config import network_from
 from aionode.transport.base import Transport
 from aionode.transport.local import LocalTransport
-from aionode.transport.zenoh_config import network_from
-from aionode.wire.liveliness import endpoint_token, gid_of
+from aionode.wire._liveliness import endpoint_token, gid_of
 from aionode.wire.typehash import type_hash
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 __all__ = ["Context"]
 
 LINK_VARIABLE = "AIONODE_LINK"
-LINK_WORDS = {"on": True, "off": False, "": True}
+LINK_SETTINGS = {"on": True, "off": False, "": True}
 
 
 def wants_link(asked: bool | None, environ: Mapping[str, str]) -> bool:
@@ -48,12 +48,12 @@ def wants_link(asked: bool | None, environ: Mapping[str, str]) -> bool:
     """
     if asked is None:
         word = environ.get(LINK_VARIABLE, "")
-        if word not in LINK_WORDS:
+        if word not in LINK_SETTINGS:
             raise ConfigurationError(LINK_VARIABLE, word, "on and off fit")
-        asked = LINK_WORDS[word]
+        asked = LINK_SETTINGS[word]
     if not asked:
         return False
-    from aionode.transport.link import available
+    from aionode.transport.ipc import available
 
     return available()
 
@@ -155,10 +155,10 @@ class Context:
             zenoh = ZenohTransport(self.participant, self.network)
             if not wants_link(link, os.environ):
                 return (LocalTransport(), zenoh)
-            from aionode.transport.link import LinkTransport
+            from aionode.transport.ipc import IpcTransport
 
-            linked = LinkTransport(
-                self.participant, self.network.domain_id, zenoh, zenoh.neighbours
+            linked = IpcTransport(
+                self.participant, self.network.domain_id, zenoh, zenoh.peer_directory
             )
             return (LocalTransport(), linked)
         raise ValueError(

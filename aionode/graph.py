@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from aionode.qos import QoSProfile
 
-__all__ = ["EndpointInfo", "EndpointKind", "Graph", "NodeInfo"]
+__all__ = ["TOPIC_KINDS", "EndpointInfo", "EndpointKind", "Graph", "NodeInfo"]
 
 K = TypeVar("K")
 
@@ -264,3 +264,6 @@ def _take_out(index: dict[K, dict[EndpointInfo, None]], key: K, endpoint: Endpoi
     del index[key][endpoint]
     if not index[key]:
         del index[key]
+
+
+TOPIC_KINDS = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION)

@@ -30,7 +30,7 @@ from aionode.logging import get_logger
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable, Iterator, Sequence
 
-    from aionode.endpoints.topic import Subscription
+    from aionode.endpoints.subscription import Subscription
     from aionode.message import Message
     from aionode.node import Node
 

@@ -6,48 +6,51 @@ import asyncio
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar, overload
 
-from aionode import names, node_services, qos
+from aionode import names, qos
+from aionode._concurrency import to_the_end
+from aionode._node import builtin_services
+from aionode._node.actions import NodeActions
+from aionode._node.end import EndRecord, NodeEnd
+from aionode._node.graph import NodeGraphQueries
+from aionode._node.parameters import NodeParameters
 from aionode.arguments import Arguments, Usage, parse_arguments
 from aionode.clock import ROSClock
 from aionode.context import Context
-from aionode.endpoints.channel import Channel
-from aionode.endpoints.dispatch import Callbacks
-from aionode.endpoints.ending import Ending
-from aionode.endpoints.entity import EndStage
-from aionode.endpoints.home import Home
-from aionode.endpoints.no_effect import policies_without_effect
-from aionode.endpoints.rate import Rate
-from aionode.endpoints.service import Client, Service
-from aionode.endpoints.timer import Timer, to_period_ns
-from aionode.endpoints.topic import Publisher, Subscription
+from aionode.endpoints._core.callback_runner import Callbacks
+from aionode.endpoints._core.entity import EndStage
+from aionode.endpoints._core.graph_entry import GraphEntry
+from aionode.endpoints._core.loop_affinity import LoopAffinity
+from aionode.endpoints._core.shutdown import Ending
+from aionode.endpoints._core.unenforced_qos import policies_without_effect
+from aionode.endpoints.client import Client
+from aionode.endpoints.publisher import Publisher
+from aionode.endpoints.service import Service
+from aionode.endpoints.subscription import Subscription
+from aionode.endpoints.timer import Rate, Timer
+from aionode.endpoints.timer._timer import to_period_ns
 from aionode.errors import EntityDestroyedError, brief, shortened
 from aionode.graph import EndpointKind
 from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.logging import get_logger
 from aionode.message import Message, ServiceType, holds_arrays
-from aionode.node_actions import NodeActionMethods
-from aionode.node_end import EndRecord, NodeEnd
-from aionode.node_graph import NodeGraphMethods
-from aionode.node_parameters import NodeParameterMethods
 from aionode.parameter import Parameter, ParameterStore, declare_qos_overrides
-from aionode.settle import to_the_end
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from types import TracebackType
 
     from aionode.clock import Clock
-    from aionode.endpoints.dispatch import OnError
-    from aionode.endpoints.entity import Entity
+    from aionode.endpoints._core.callback_runner import OnError
+    from aionode.endpoints._core.entity import Entity
     from aionode.endpoints.service import ServiceCallback
+    from aionode.endpoints.subscription import SubscriptionCallback
     from aionode.endpoints.timer import TimerCallback
-    from aionode.endpoints.topic import SubscriptionCallback
     from aionode.graph import Graph
     from aionode.logging import RcutilsLogger
     from aionode.message import ServiceClass
     from aionode.parameter import QoSOverridingOptions
     from aionode.qos import QoSProfile
-    from aionode.transport.base import Announcement, Transport
+    from aionode.transport.base import Registration, Transport
 
 __all__ = ["Node"]
 
@@ -55,10 +58,10 @@ MsgT = TypeVar("MsgT", bound=Message)
 RequestT = TypeVar("RequestT", bound=Message)
 ResponseT = TypeVar("ResponseT", bound=Message)
 EntityT = TypeVar("EntityT", bound="Entity")
-AnnouncedT = TypeVar("AnnouncedT", bound="Announcement")
+AnnouncedT = TypeVar("AnnouncedT", bound="Registration")
 
 
-class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
+class Node(NodeActions, NodeGraphQueries, NodeParameters):
     """A participant in the system, with publishers, subscriptions, services, clients and timers.
 
     A node is made at any time, with or without a running event loop, and so are its entities. Its
@@ -141,19 +144,19 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             logger=self._logger,
             budget_ns=round(callback_budget_ms * 1e6),
         )
-        self._home = Home()
+        self._affinity = LoopAffinity()
         self._ending = Ending(self._entities, self._callbacks, self._leave)
         self._unlog: Callable[[], None] | None = None
-        self._announcements: list[Announcement] = []
+        self._registrations: list[Registration] = []
         self._info = self.context.describe_node(
             node_name, namespace, enclave=own.enclave or shared.enclave or "/"
         )
         self.context.add_node(self)
         try:
-            self._announcements = self._announced(lambda it: it.create_node(self._info))
+            self._registrations = self._announced(lambda it: it.create_node(self._info))
             self.context.graph.add_node(self._info)
             if enable_rosout and shared.rosout_logs and own.rosout_logs:
-                self._unlog = node_services.publish_log(self, rosout_qos_profile)
+                self._unlog = builtin_services.publish_log(self, rosout_qos_profile)
             full_name = self.get_fully_qualified_name()
             self._parameters = ParameterStore(
                 full_name,
@@ -163,7 +166,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
                     *(parameter_overrides or ()),
                 ],
                 allow_undeclared=allow_undeclared_parameters,
-                publish=node_services.publish_parameter_events(self),
+                publish=builtin_services.publish_parameter_events(self),
             )
             for usage in self._usages:
                 if not usage.is_over:
@@ -172,12 +175,12 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
                 dynamic = ParameterDescriptor(dynamic_typing=True)
                 for name in self._parameters.overrides:
                     self.declare_parameter(name, descriptor=dynamic)
-            node_services.TimeSource(self, self._clock)
+            builtin_services.TimeSource(self, self._clock)
             if start_parameter_services:
-                node_services.serve_parameters(self, self._parameters)
-            node_services.serve_type_descriptions(self)
+                builtin_services.serve_parameters(self, self._parameters)
+            builtin_services.serve_type_descriptions(self)
             if enable_logger_service:
-                node_services.serve_logger_levels(self)
+                builtin_services.serve_logger_levels(self)
         except BaseException:
             self.destroy_node()  # or half a node would stay in its context
             raise
@@ -206,7 +209,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         except BaseException:
             self._running = False
             raise
-        self._home.move_in()
+        self._affinity.attach()
         self._end_record.begin()
         self._tasks = await asyncio.TaskGroup().__aenter__()
         for entity in list(self._entities):
@@ -244,7 +247,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
                     raise
             finally:
                 self._running = False
-                self._home.move_out()
+                self._affinity.detach()
                 await to_the_end(self.context.release())
 
     async def run(self) -> None:
@@ -306,8 +309,8 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         """
         if self.destroyed:
             return
-        if self._home.is_elsewhere():
-            self._home.call(self.destroy_node)
+        if self._affinity.is_other_thread():
+            self._affinity.call(self.destroy_node)
             return
         self._destroyed.set()
         self._ending.begin()
@@ -317,8 +320,8 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         if self._unlog is not None:
             self._unlog()
         self._clock.destroy()
-        for announcement in self._announcements:
-            announcement.close()
+        for registration in self._registrations:
+            registration.close()
         self.context.graph.remove_node(self._info)
         self.context.remove_node(self)
         if not self._running:
@@ -326,7 +329,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
 
     def abandon(self) -> None:
         """Leave everything to the process that this one was forked from. Called by the context."""
-        self._home.move_out()
+        self._affinity.detach()
         self._destroyed = asyncio.Event()  # without those who wait for it in the parent
         self._destroyed.set()
         self._tasks = None
@@ -335,7 +338,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
 
     def call_in_loop(self, action: Callable[[], None]) -> None:
         """Do `action` in the thread of the node's loop: at once if this is it, or none runs."""
-        self._home.call(action)
+        self._affinity.call(action)
 
     # What it is
 
@@ -448,11 +451,13 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         """
         self._refuse_if_destroyed("publisher")
         expect_message_type(msg_type, f"publisher of {topic}")
-        channel = self._channel(
+        graph_entry = self._graph_entry(
             EndpointKind.PUBLISHER, topic, msg_type, qos_profile, qos_overriding_options
         )
-        writers = self._announced(lambda it: it.create_writer(channel.endpoint, msg_type))
-        return self._add(Publisher(channel, msg_type, writers, self.context.time_base), channel)
+        writers = self._announced(lambda it: it.create_writer(graph_entry.endpoint, msg_type))
+        return self._add(
+            Publisher(graph_entry, msg_type, writers, self.context.time_base), graph_entry
+        )
 
     @overload
     def create_subscription(
@@ -521,11 +526,11 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         """
         self._refuse_if_destroyed("subscription")
         expect_message_type(msg_type, f"subscription of {topic}")
-        channel = self._channel(
+        graph_entry = self._graph_entry(
             EndpointKind.SUBSCRIPTION, topic, msg_type, qos_profile, qos_overriding_options
         )
         subscription: Subscription[Any] = Subscription(
-            channel,
+            graph_entry,
             msg_type,
             callback,
             self.context.time_base,
@@ -534,10 +539,12 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             on_error=on_error,
             offload=offload,
         )
-        subscription.connect(
-            self._announced(lambda it: it.create_reader(channel.endpoint, msg_type, subscription))
+        subscription.add_registrations(
+            self._announced(
+                lambda it: it.create_reader(graph_entry.endpoint, msg_type, subscription)
+            )
         )
-        return self._add(subscription, channel)
+        return self._add(subscription, graph_entry)
 
     def create_service(
         self,
@@ -573,19 +580,21 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         """
         self._refuse_if_destroyed("service")
         expect_service_type(srv_type, f"service {srv_name}")
-        channel = self._channel(EndpointKind.SERVER, srv_name, srv_type, qos_profile)
+        graph_entry = self._graph_entry(EndpointKind.SERVER, srv_name, srv_type, qos_profile)
         service: Service[RequestT, ResponseT] = Service(
-            channel,
+            graph_entry,
             srv_type,
             callback,
             concurrent=concurrent,
             on_error=on_error,
             offload=offload,
         )
-        service.connect(
-            self._announced(lambda it: it.create_server(channel.endpoint, srv_type, service.serve))
+        service.add_registrations(
+            self._announced(
+                lambda it: it.create_server(graph_entry.endpoint, srv_type, service.serve)
+            )
         )
-        return self._add(service, channel)
+        return self._add(service, graph_entry)
 
     def create_client(
         self,
@@ -608,9 +617,11 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         """
         self._refuse_if_destroyed("client")
         expect_service_type(srv_type, f"client of {srv_name}")
-        channel = self._channel(EndpointKind.CLIENT, srv_name, srv_type, qos_profile)
-        requesters = self._announced(lambda it: it.create_requester(channel.endpoint, srv_type))
-        return self._add(Client(channel, srv_type, requesters, self.context.time_base), channel)
+        graph_entry = self._graph_entry(EndpointKind.CLIENT, srv_name, srv_type, qos_profile)
+        requesters = self._announced(lambda it: it.create_requester(graph_entry.endpoint, srv_type))
+        return self._add(
+            Client(graph_entry, srv_type, requesters, self.context.time_base), graph_entry
+        )
 
     def create_timer(
         self,
@@ -646,7 +657,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
             callback,
             to_period_ns(timer_period_sec),
             self._clock if clock is None else clock,
-            partial(self._callbacks.dispatch, on_error=on_error, offload=offload),
+            partial(self._callbacks.make_runner, on_error=on_error, offload=offload),
             autostart=autostart,
         )
         return self._add(timer)
@@ -697,14 +708,14 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         entity.destroy()
         return True
 
-    def _channel(
+    def _graph_entry(
         self,
         kind: EndpointKind,
         name: str,
         ros_type: Any,
         qos_profile: QoSProfile | int,
         overriding: QoSOverridingOptions | None = None,
-    ) -> Channel:
+    ) -> GraphEntry:
         """Return the entry of a new endpoint; it is entered into the graph by `_add`."""
         if self._made:
             load_arrays(ros_type)
@@ -726,7 +737,7 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         endpoint = self.context.describe_endpoint(
             kind, self._info, full_name, ros_type, profile.resolved()
         )
-        return Channel(endpoint, self.graph, self._callbacks, self._home)
+        return GraphEntry(endpoint, self.graph, self._callbacks, self._affinity)
 
     def _warn_of_no_effect(self, kind: EndpointKind, name: str, profile: QoSProfile) -> None:
         """Say once of each endpoint which of its policies do nothing."""
@@ -740,12 +751,12 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
                 "notice silence, let a timer look at the time of the last message"
             )
 
-    def _add(self, entity: EntityT, channel: Channel | None = None) -> EntityT:
+    def _add(self, entity: EntityT, graph_entry: GraphEntry | None = None) -> EntityT:
         """Take `entity` in: announce it, and start it if the node runs."""
         self._entities[entity] = None
         entity.adopt(self._forget)
-        if channel is not None:
-            channel.open()
+        if graph_entry is not None:
+            graph_entry.open()
         if self._tasks is not None:
             self._start(entity, self._tasks)
         return entity
@@ -762,8 +773,8 @@ class Node(NodeActionMethods, NodeGraphMethods, NodeParameterMethods):
         try:
             made.extend(map(announce, self.context.transports))
         except BaseException:
-            for announcement in made:
-                announcement.close()
+            for registration in made:
+                registration.close()
             raise
         return made
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING, Any
 
-from aionode.endpoints.future import asks
+from aionode.endpoints._core.future import asks
 from aionode.interfaces.rcl_interfaces.srv import (
     DescribeParameters,
     GetParameters,
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from pathlib import Path
 
-    from aionode.endpoints.service import Client
+    from aionode.endpoints.client import Client
     from aionode.interfaces.rcl_interfaces.msg import (
         ListParametersResult,
         ParameterDescriptor,

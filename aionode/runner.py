@@ -16,12 +16,12 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
+from aionode._streams import UnreadWatch, interrupt_main
 from aionode.arguments import Arguments, parse_arguments
 from aionode.context import Context
 from aionode.errors import AionodeError, InvalidROSArgsError
 from aionode.logging import configure, get_logger
 from aionode.node import Node
-from aionode.streams import UnreadWatch, interrupt_main
 
 __all__ = ["Runnable", "run"]
 
@@ -71,9 +71,9 @@ def run(
             "in it"
         )
     try:
-        words = sys.argv if args is None else [sys.argv[0], *args]
-        arguments = set_up(words)
-        refuse_made_before(nodes, arguments, words)
+        args = sys.argv if args is None else [sys.argv[0], *args]
+        arguments = set_up(args)
+        refuse_made_before(nodes, arguments, args)
         stop = Stop()
         # The end of the loop waits for threads, so signals are watched for until after that.
         with (
@@ -87,14 +87,14 @@ def run(
         raise SystemExit(1) from error
 
 
-def set_up(words: Sequence[str]) -> Arguments:
+def set_up(args: Sequence[str]) -> Arguments:
     """Read the arguments, and set up logging as they say.
 
     Raises:
         InvalidROSArgsError: an argument of ROS cannot be read (a ValueError).
         UnknownROSArgsError: an argument of ROS is unknown (a ValueError).
     """
-    arguments = parse_arguments(words)
+    arguments = parse_arguments(args)
     arguments.refuse_unknown()
     configure(
         level=arguments.log_level,
@@ -109,7 +109,7 @@ def set_up(words: Sequence[str]) -> Arguments:
 
 
 def refuse_made_before(
-    nodes: Sequence[Runnable], arguments: Arguments, words: Sequence[str]
+    nodes: Sequence[Runnable], arguments: Arguments, args: Sequence[str]
 ) -> None:
     """Raise if arguments that shape nodes come too late for one that exists.
 
@@ -121,7 +121,7 @@ def refuse_made_before(
         return
     for node in nodes:
         if isinstance(node, Node) and node.uses_global_arguments:
-            given = words[words.index("--ros-args") + 1 :]
+            given = args[args.index("--ros-args") + 1 :]
             raise InvalidROSArgsError(
                 " ".join(given),
                 f"too late for node {node.get_fully_qualified_name()}, which was made before `run` "

@@ -12,11 +12,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, Literal, Self, TypeVar
 
+from aionode._node.end import NodeEnd, short_text
 from aionode.clock import S_TO_NS, SteadyClock
 from aionode.errors import NodeNotRunningError
 from aionode.logging import get_logger
 from aionode.node import Node
-from aionode.node_end import NodeEnd, short_text
 
 if TYPE_CHECKING:
     from types import TracebackType

@@ -16,19 +16,19 @@ from __future__ import annotations
 import random
 from typing import TYPE_CHECKING, Any
 
+from aionode._concurrency import wait_all_tasks_blocked as settle
 from aionode.clock import MachineTime
 from aionode.clock import ManualTime as ManualClock
 from aionode.context import Context
 from aionode.message import snapshot
-from aionode.settle import settle
-from aionode.transport.base import Announcement, Origin, Requester, Transport, Writer
+from aionode.transport.base import Registration, Requester, SampleInfo, Transport, Writer
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.clock import TimeBase
     from aionode.graph import EndpointInfo, Graph, NodeInfo
-    from aionode.transport.base import Call, Linkage, Reader, ReplyTo, Serve
+    from aionode.transport.base import Call, LinkStatus, Reader, ReplyTo, Serve
 
 __all__ = ["FaultyTransport", "ManualClock", "local_context", "settle"]
 
@@ -103,15 +103,15 @@ class FaultyTransport(Transport):
         """Open the inner transport."""
         await self.inner.open(graph)
 
-    async def links(self) -> Linkage:
+    async def link_status(self) -> LinkStatus:
         """Ask through the inner transport."""
-        return await self.inner.links()
+        return await self.inner.link_status()
 
     async def close(self) -> None:
         """Close the inner transport."""
         await self.inner.close()
 
-    def create_node(self, node: NodeInfo) -> Announcement:
+    def create_node(self, node: NodeInfo) -> Registration:
         """Announce a node, without faults."""
         return self.inner.create_node(node)
 
@@ -121,11 +121,11 @@ class FaultyTransport(Transport):
 
     def create_reader(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
-    ) -> Announcement:
+    ) -> Registration:
         """Announce a subscription, without faults of its own."""
         return self.inner.create_reader(endpoint, msg_type, reader)
 
-    def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Announcement:
+    def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Registration:
         """Announce a server, without faults of its own."""
         return self.inner.create_server(endpoint, srv_type, serve)
 
@@ -140,7 +140,7 @@ class _FaultyWriter(Writer):
     def __init__(self, faults: FaultyTransport, inner: Writer) -> None:
         self._faults = faults
         self._inner = inner
-        self._held: list[tuple[Any, Origin]] = []
+        self._held: list[tuple[Any, SampleInfo]] = []
 
     @property
     def active(self) -> bool:  # type: ignore[override]  # what the inner one says
@@ -165,24 +165,26 @@ class _FaultyWriter(Writer):
         """What the inner writer has dropped; what was lost by fate, nobody counts."""
         return self._inner.dropped
 
-    def way_of(self, reader: EndpointInfo) -> str | None:
+    def route_of(self, reader: EndpointInfo) -> str | None:
         """Return the way of the inner writer."""
-        return self._inner.way_of(reader)
+        return self._inner.route_of(reader)
 
-    def write(self, msg: Any, origin: Origin) -> None:
+    def write(self, msg: Any, sample_info: SampleInfo) -> None:
         """Let fate decide about `msg`."""
         faults = self._faults
         msg = snapshot(msg)  # the caller may change it before it is sent
-        origin = Origin(origin.gid, origin.sequence, origin.source_ns, remote=True)
+        sample_info = SampleInfo(
+            sample_info.gid, sample_info.sequence, sample_info.source_ns, remote=True
+        )
         released, self._held = self._held, []
         if faults.strikes(faults.reorder):
-            self._held.append((msg, origin))
+            self._held.append((msg, sample_info))
         elif not faults.strikes(faults.drop):
             copies = 2 if faults.strikes(faults.duplicate) else 1
             for _ in range(copies):
-                faults.later(lambda: self._inner.write(msg, origin))
-        for held_msg, held_origin in released:
-            faults.later(lambda m=held_msg, o=held_origin: self._inner.write(m, o))  # type: ignore[misc]  # mypy cannot infer defaults of a lambda
+                faults.later(lambda: self._inner.write(msg, sample_info))
+        for held_msg, held_info in released:
+            faults.later(lambda m=held_msg, o=held_info: self._inner.write(m, o))  # type: ignore[misc]  # mypy cannot infer defaults of a lambda
 
     def close(self) -> None:
         """Close the inner writer; what is held back is lost."""
@@ -202,11 +204,11 @@ class _FaultyRequester(Requester):
         """How many servers are matched."""
         return self._inner.servers
 
-    def send(self, request: Any, origin: Origin, reply_to: ReplyTo) -> Call:
+    def send(self, request: Any, sample_info: SampleInfo, reply_to: ReplyTo) -> Call:
         """Let fate decide about `request`."""
         call = _FaultyCall(self._faults, reply_to)
         if not self._faults.strikes(self._faults.drop):
-            self._faults.later(lambda: call.begin(self._inner, request, origin))
+            self._faults.later(lambda: call.begin(self._inner, request, sample_info))
         return call
 
     def close(self) -> None:
@@ -223,14 +225,14 @@ class _FaultyCall:
         self._inner: Call | None = None
         self._cancelled = False
 
-    def begin(self, requester: Requester, request: Any, origin: Origin) -> None:
+    def begin(self, requester: Requester, request: Any, sample_info: SampleInfo) -> None:
         """Send the request, now that its delay has passed."""
         if not self._cancelled:
-            self._inner = requester.send(request, origin, self)
+            self._inner = requester.send(request, sample_info, self)
 
-    def reply(self, response: Any, origin: Origin) -> None:
+    def reply(self, response: Any, sample_info: SampleInfo) -> None:
         """Pass a response on, later."""
-        self._faults.later(lambda: self._reply_to.reply(response, origin))
+        self._faults.later(lambda: self._reply_to.reply(response, sample_info))
 
     def fail(self, error: Any) -> None:
         """Pass an error on, later."""

@@ -37,8 +37,9 @@ from roundtrip import (  # type: ignore[import-not-found]  # beside this file wh
 
 from aionode import Context, Node
 from aionode.interfaces.std_msgs.msg import String
-from aionode.wire import attachment, cdr
-from aionode.wire.keyexpr import data_key
+from aionode.wire import _attachment as attachment
+from aionode.wire import cdr
+from aionode.wire._key_expression import data_key
 from aionode.wire.typehash import type_hash
 
 if TYPE_CHECKING:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from aionode._concurrency import checkpoint
 from aionode.context import Context
 from aionode.errors import EntityDestroyedError, TransportError
 from aionode.node import Node
-from aionode.settle import one_turn
 from aionode.testing import local_context, settle
 from aionode.transport.local import LocalTransport
 
@@ -144,7 +144,7 @@ def test_two_loops_that_open_a_context_at_once_are_told_at_once() -> None:
         async def open(self, graph: Graph) -> None:
             opening.set()
             while not may_open.is_set():
-                await one_turn()
+                await checkpoint()
             await super().open(graph)
 
     context = Context(transport=Slow())

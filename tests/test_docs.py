@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import click
 import pytest
 
-from aionode.cli.command import root
+from aionode.cli._main import root
 from aionode.context import Context
 from docs.quotes import QUOTE, ROOT, pages, refreshed
 

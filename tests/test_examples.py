@@ -43,7 +43,7 @@ class Program:
         reading, writing = os.pipe()
         self._running = os.fdopen(reading, "rb", buffering=0)
         self.process = subprocess.Popen(
-            [sys.executable, "tests/announcing.py", str(writing), *arguments],
+            [sys.executable, "tests/support/announcing.py", str(writing), *arguments],
             cwd=ROOT,
             env=os.environ | {"PYTHONUNBUFFERED": "1"} | env,
             stdin=subprocess.DEVNULL,

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from aionode._concurrency import checkpoint
 from aionode.errors import NodeNotRunningError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
-from aionode.settle import one_turn
 from aionode.supervisor import Supervisor
 from aionode.testing import ManualClock, settle
 
@@ -286,7 +286,7 @@ async def test_a_node_that_is_destroyed_has_ended_when_its_callbacks_have(
             node.destroy_node()
             await asyncio.Event().wait()
         finally:
-            await one_turn()
+            await checkpoint()
             cleaned.append("up")
 
     node.create_subscription(String, "word", slow)

@@ -1,6 +1,6 @@
 """The arguments of a ROS program, and the parameter files that they name."""
 
-from aionode.arguments.parameter_yaml import (
+from aionode.arguments._parameter_yaml import (
     ParameterRule,
     ParameterValueType,
     matching_parameters,
@@ -9,8 +9,8 @@ from aionode.arguments.parameter_yaml import (
     parse_value,
     read_parameter_file,
 )
-from aionode.arguments.parse import Arguments, parse_arguments, remove_ros_args
-from aionode.arguments.usage import Usage
+from aionode.arguments._parse import Arguments, parse_arguments, remove_ros_args
+from aionode.arguments._usage import Usage
 
 __all__ = [
     "Arguments",

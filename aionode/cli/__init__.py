@@ -41,12 +41,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     try:
         # Imported here, so that Ctrl-C in the first moment leaves no traceback.
-        from aionode.cli import command
+        from aionode.cli import _main as command
 
         status = command.main(argv)
         # As the process's own main program. The threads of nodes that were run are the user's.
         if argv is None and sys.argv[1:2] != ["run"]:
-            from aionode.cli.ending import leave_if_busy
+            from aionode.cli._support.ending import leave_if_busy
 
             leave_if_busy(status)
     except KeyboardInterrupt:

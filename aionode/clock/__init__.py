@@ -3,11 +3,18 @@
 The only package that reads the clocks of the machine.
 """
 
-from aionode.clock.base import Alarm, MachineTime, TimeBase, perf_ns
-from aionode.clock.clocks import Clock, ROSClock, SteadyClock
-from aionode.clock.jumps import ClockChange, JumpHandle, JumpThreshold, TimeJump
-from aionode.clock.manual import ManualTime
-from aionode.clock.values import CONST_INFINITE_NS, S_TO_NS, ClockType, Duration, Infinite, Time
+from aionode.clock._clocks import (
+    Clock,
+    ClockChange,
+    JumpHandle,
+    JumpThreshold,
+    ROSClock,
+    SteadyClock,
+    TimeJump,
+)
+from aionode.clock._manual import ManualTime
+from aionode.clock._time_base import Alarm, MachineTime, TimeBase, perf_ns
+from aionode.clock._values import CONST_INFINITE_NS, S_TO_NS, ClockType, Duration, Infinite, Time
 
 __all__ = [
     "CONST_INFINITE_NS",

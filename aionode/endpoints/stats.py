@@ -207,7 +207,8 @@ class PublisherStats:
 
     def __repr__(self) -> str:
         return (
-            f"PublisherStats(published={self.published}, dropped={self.dropped}, ways={self.ways})"
+            f"PublisherStats(published={self.published}, dropped={self.dropped}, "
+            f"routes={self.routes})"
         )
 
     @property
@@ -219,7 +220,7 @@ class PublisherStats:
         return sum(writer.dropped for writer in self._writers)
 
     @property
-    def ways(self) -> dict[str, str]:
+    def routes(self) -> dict[str, str]:
         """Which way each matched subscription gets its messages now.
 
         The key is the full name of its node with the beginning of its id, as in
@@ -231,7 +232,7 @@ class PublisherStats:
             f"{reader.node.fully_qualified_name} {reader.gid.hex()[:ID_DIGITS]}": way
             for reader in self._matched()
             for writer in self._writers
-            if (way := writer.way_of(reader)) is not None
+            if (way := writer.route_of(reader)) is not None
         }
 
 

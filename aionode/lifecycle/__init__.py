@@ -19,16 +19,16 @@ be canceled. ``aionode lifecycle`` and ``ros2 lifecycle`` manage it from a termi
 from __future__ import annotations
 
 from aionode.errors import EntityInactiveError, TransitionError
-from aionode.lifecycle.managed import (
+from aionode.lifecycle._managed import (
     LifecyclePublisher,
     LifecycleTimer,
     ManagedEntity,
     SimpleManagedEntity,
 )
-from aionode.lifecycle.manager import LifecycleManager
-from aionode.lifecycle.node import LifecycleNode
-from aionode.lifecycle.runner import LifecycleEvent
-from aionode.lifecycle.states import State, TransitionCallbackReturn
+from aionode.lifecycle._manager import LifecycleManager
+from aionode.lifecycle._node import LifecycleNode
+from aionode.lifecycle._runner import LifecycleEvent
+from aionode.lifecycle._states import State, TransitionCallbackReturn
 
 __all__ = [
     "EntityInactiveError",

@@ -1,8 +1,8 @@
 """Logging: rclpy's loggers, rcutils' console, over the standard library's `logging`."""
 
-from aionode.logging.console import LogEvent, get_logging_directory
-from aionode.logging.filters import LogOptions
-from aionode.logging.loggers import (
+from aionode.logging._console import LogEvent, get_logging_directory
+from aionode.logging._filters import LogOptions
+from aionode.logging._loggers import (
     RcutilsLogger,
     clear_config,
     configure,
@@ -13,7 +13,7 @@ from aionode.logging.loggers import (
     set_logger_level,
     shutdown,
 )
-from aionode.logging.severity import LoggingSeverity, get_logging_severity_from_string
+from aionode.logging._severity import LoggingSeverity, get_logging_severity_from_string
 
 __all__ = [
     "LogEvent",

@@ -7,8 +7,15 @@ its fields and constants, as those may have any name.
 
 from __future__ import annotations
 
-from aionode.message.base import DEFAULT, Message, constants, fields, type_name
-from aionode.message.fieldtypes import (
+from aionode.message._conversion import (
+    from_builtins,
+    from_json,
+    from_yaml,
+    to_builtins,
+    to_json,
+    to_yaml,
+)
+from aionode.message._field_types import (
     DTYPES,
     Array,
     Bools,
@@ -34,24 +41,17 @@ from aionode.message.fieldtypes import (
     uint64,
     wstring,
 )
-from aionode.message.fit import fit, fit_element
-from aionode.message.plain import (
-    from_builtins,
-    from_json,
-    from_yaml,
-    to_builtins,
-    to_json,
-    to_yaml,
-)
-from aionode.message.schema import json_schema
-from aionode.message.services import (
+from aionode.message._message import DEFAULT, Message, constants, fields, type_name
+from aionode.message._schema import json_schema
+from aionode.message._service_types import (
     ActionClass,
     ActionType,
     Interface,
     ServiceClass,
     ServiceType,
 )
-from aionode.message.snapshot import check, checker, holds_arrays, snapshot, snapshotter
+from aionode.message._snapshot import check, checker, holds_arrays, snapshot, snapshotter
+from aionode.message._validation import fit, fit_element
 
 __all__ = [
     "DEFAULT",

@@ -1,8 +1,8 @@
 """Parameters: values, descriptors, the store of a node, and classes of parameters."""
 
-from aionode.parameter.qos_overrides import QoSOverridingOptions, declare_qos_overrides
-from aionode.parameter.services import ParameterService, parameter_services
-from aionode.parameter.store import (
+from aionode.parameter._qos_overrides import QoSOverridingOptions, declare_qos_overrides
+from aionode.parameter._services import ParameterService, parameter_services
+from aionode.parameter._store import (
     OnSetCallback,
     ParameterCallbacks,
     ParameterStore,
@@ -10,8 +10,8 @@ from aionode.parameter.store import (
     PreSetCallback,
     validate_parameter_name,
 )
-from aionode.parameter.struct import ParameterOwner, declare_struct
-from aionode.parameter.value import (
+from aionode.parameter._struct import ParameterOwner, declare_struct
+from aionode.parameter._value import (
     PARAMETER_SEPARATOR_STRING,
     AllowableParameterValue,
     Parameter,

@@ -25,21 +25,21 @@ if TYPE_CHECKING:
     from aionode.graph import EndpointInfo, Graph, NodeInfo
 
 __all__ = [
-    "Announcement",
     "Call",
-    "Linkage",
-    "Origin",
+    "LinkStatus",
     "Reader",
+    "Registration",
     "ReplyTo",
     "Request",
     "Requester",
+    "SampleInfo",
     "Serve",
     "Transport",
     "Writer",
 ]
 
 
-class Origin(msgspec.Struct, frozen=True, gc=False):
+class SampleInfo(msgspec.Struct, frozen=True, gc=False):
     """Where a message comes from.
 
     Attributes:
@@ -57,7 +57,7 @@ class Origin(msgspec.Struct, frozen=True, gc=False):
     arrived_ns: int = 0
 
 
-class Announcement(ABC):
+class Registration(ABC):
     """Something that was announced to a transport, until it is closed."""
 
     @abstractmethod
@@ -75,14 +75,14 @@ class Reader(Protocol):
     raw: bool
     """Whether `deliver` wants the message as CDR bytes."""
 
-    def deliver(self, msg: Any, origin: Origin, until_ns: int = 0) -> None:
+    def deliver(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
         """Take one message, which nobody may change from now on. Never raises, never waits.
 
         Args:
             msg: The message.
-            origin: Where it comes from.
-            until_ns: Until which `perf_ns` a callback may run at once, within this call. A
-                transport sets it once for each event of the loop, so that the loop has its turn.
+            sample_info: Where it comes from.
+            inline_deadline_ns: Until which `perf_ns` a callback may run at once, within this call.
+                A transport sets it once for each event of the loop, so that the loop has its turn.
                 0 means that none may: the caller is itself in a callback or in `publish`.
         """
 
@@ -99,7 +99,7 @@ class Reader(Protocol):
         """Call `callback` soon after the next message was taken, or the reader destroyed."""
 
 
-class Writer(Announcement):
+class Writer(Registration):
     """The sending end of one publisher in one transport.
 
     Attributes:
@@ -112,7 +112,7 @@ class Writer(Announcement):
     bounded: bool = False
 
     @abstractmethod
-    def write(self, msg: Any, origin: Origin) -> None:
+    def write(self, msg: Any, sample_info: SampleInfo) -> None:
         """Send `msg` to every reader matched through this transport; never blocks.
 
         The caller may change `msg` afterwards.
@@ -135,7 +135,7 @@ class Writer(Announcement):
         """How many messages were dropped on their way because it was slow."""
         return 0
 
-    def way_of(self, reader: EndpointInfo) -> str | None:  # noqa: ARG002  # knows of none
+    def route_of(self, reader: EndpointInfo) -> str | None:  # noqa: ARG002  # knows of none
         """Return in a word how messages reach a matched reader, or None if not through this."""
         return None
 
@@ -146,7 +146,7 @@ class Writer(Announcement):
 class ReplyTo(Protocol):
     """What becomes of one request, as the client's end sees it. Late calls do nothing."""
 
-    def reply(self, response: Any, origin: Origin) -> None:
+    def reply(self, response: Any, sample_info: SampleInfo) -> None:
         """Take a response."""
 
     def fail(self, error: ServiceError) -> None:
@@ -163,7 +163,7 @@ class Call(Protocol):
         """Forget it: a server that has not begun need not serve it, and a reply is dropped."""
 
 
-class Requester(Announcement):
+class Requester(Registration):
     """The sending end of one client in one transport."""
 
     @property
@@ -172,7 +172,7 @@ class Requester(Announcement):
         """How many servers are matched through this transport now."""
 
     @abstractmethod
-    def send(self, request: Any, origin: Origin, reply_to: ReplyTo) -> Call:
+    def send(self, request: Any, sample_info: SampleInfo, reply_to: ReplyTo) -> Call:
         """Send `request` to every matched server; never blocks.
 
         At least one of `reply`, `fail` and `end` is called on `reply_to`, perhaps before this
@@ -188,12 +188,12 @@ class Request(ABC):
 
     Attributes:
         message: The request itself.
-        origin: The client and its number of the request.
+        sample_info: The client and its number of the request.
         cancelled: Whether the client is known to have given up.
     """
 
     message: Any
-    origin: Origin
+    sample_info: SampleInfo
     cancelled: bool = False
 
     @abstractmethod
@@ -216,22 +216,22 @@ class Request(ABC):
 class Serve(Protocol):
     """The receiving end of a service, as a transport sees it."""
 
-    def __call__(self, request: Request, until_ns: int = 0) -> None:
-        """Take one request; see `Reader.deliver` for `until_ns`. Never raises, never waits."""
+    def __call__(self, request: Request, inline_deadline_ns: int = 0) -> None:
+        """Take one request; never raises or waits. `inline_deadline_ns` is as in `deliver`."""
 
 
 # The whole
 
 
-class Linkage(NamedTuple):
+class LinkStatus(NamedTuple):
     """What contexts of the domain say of links between them.
 
     Attributes:
-        beacons: What each of them announces so that others can link to it.
+        advertisements: What each of them announces so that others can link to it.
         pairs: The ids of each two that are linked.
     """
 
-    beacons: AbstractSet[str]
+    advertisements: AbstractSet[str]
     pairs: AbstractSet[frozenset[str]]
 
 
@@ -267,12 +267,12 @@ class Transport(ABC):
         Called in the child, which never uses this transport again.
         """
 
-    async def links(self) -> Linkage:
+    async def link_status(self) -> LinkStatus:
         """Return who of the others can be linked, and who is. For tools: everybody is asked."""
-        return Linkage(set(), set())
+        return LinkStatus(set(), set())
 
     @abstractmethod
-    def create_node(self, node: NodeInfo) -> Announcement:
+    def create_node(self, node: NodeInfo) -> Registration:
         """Announce a node."""
 
     @abstractmethod
@@ -282,11 +282,11 @@ class Transport(ABC):
     @abstractmethod
     def create_reader(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
-    ) -> Announcement:
+    ) -> Registration:
         """Announce a subscription of `msg_type`, whose messages go to `reader`."""
 
     @abstractmethod
-    def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Announcement:
+    def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Registration:
         """Announce a server of `srv_type`, whose requests go to `serve`.
 
         Closing it ends the calls of requests that it has not answered.

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from aionode.errors import ServiceError
 from aionode.message import snapshotter
 from aionode.qos import DurabilityPolicy, HistoryPolicy, ReliabilityPolicy
-from aionode.transport.base import Announcement, Origin, Request, Requester, Transport, Writer
+from aionode.transport.base import Registration, Request, Requester, SampleInfo, Transport, Writer
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -39,7 +39,7 @@ class LocalTransport(Transport):
     async def close(self) -> None:
         """There is nothing to disconnect."""
 
-    def create_node(self, node: NodeInfo) -> Announcement:  # noqa: ARG002  # nobody else to tell
+    def create_node(self, node: NodeInfo) -> Registration:  # noqa: ARG002  # nobody else to tell
         """Nodes of this context are known to its graph already."""
         return _Nothing()
 
@@ -54,7 +54,7 @@ class LocalTransport(Transport):
 
     def create_reader(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
-    ) -> Announcement:
+    ) -> Registration:
         """Connect a subscription with the publishers of its topic; late ones get the history."""
         topic = self._topic(endpoint.name)
         local_reader = LocalReader(endpoint, msg_type, reader, topic)
@@ -63,7 +63,7 @@ class LocalTransport(Transport):
             writer.meet(local_reader)
         return local_reader
 
-    def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Announcement:
+    def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Registration:
         """Connect a server with the clients of its service."""
         server = LocalServer(endpoint, srv_type, serve, self._servers)
         self._servers.setdefault(endpoint.name, []).append(server)
@@ -92,7 +92,7 @@ def _in_class(msg: Any, msg_type: type[Any]) -> Any:
     return cdr.decode(msg_type, cdr.encode(msg))
 
 
-class _Nothing(Announcement):
+class _Nothing(Registration):
     def close(self) -> None:
         pass
 
@@ -119,7 +119,7 @@ class _Topic:
                 self._forget()
 
 
-class LocalReader(Announcement):
+class LocalReader(Registration):
     """A subscription as its publishers in the same context see it."""
 
     def __init__(
@@ -134,16 +134,16 @@ class LocalReader(Announcement):
             qos.history is HistoryPolicy.KEEP_ALL and qos.reliability is ReliabilityPolicy.RELIABLE
         )
 
-    def delivery_from(self, msg_type: type[Any]) -> Callable[[Any, Origin], None]:
+    def delivery_from(self, msg_type: type[Any]) -> Callable[[Any, SampleInfo], None]:
         """Return what takes messages of `msg_type` to the reader, in the form that it wants."""
         deliver = self.reader.deliver
         if self.reader.raw:
             from aionode.wire import cdr  # nodes without raw readers need no codec
 
             encode = cdr.encoder(msg_type)
-            return lambda msg, origin: deliver(encode(msg), origin)
+            return lambda msg, sample_info: deliver(encode(msg), sample_info)
         if self.msg_type is not msg_type:
-            return lambda msg, origin: deliver(_in_class(msg, self.msg_type), origin)
+            return lambda msg, sample_info: deliver(_in_class(msg, self.msg_type), sample_info)
         return deliver
 
     def close(self) -> None:
@@ -161,9 +161,9 @@ class LocalWriter(Writer):
         self._msg_type = msg_type
         self._topic = topic
         self._snapshot = snapshotter(msg_type)
-        self._matched: dict[LocalReader, Callable[[Any, Origin], None]] = {}
-        self._deliveries: tuple[Callable[[Any, Origin], None], ...] = ()
-        self._history: deque[tuple[Any, Origin]] | None = None
+        self._matched: dict[LocalReader, Callable[[Any, SampleInfo], None]] = {}
+        self._deliveries: tuple[Callable[[Any, SampleInfo], None], ...] = ()
+        self._history: deque[tuple[Any, SampleInfo]] | None = None
         qos = endpoint.qos
         if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL:
             keeps_all = qos.history is HistoryPolicy.KEEP_ALL
@@ -180,8 +180,8 @@ class LocalWriter(Writer):
             missed = list(self._history)
             if wanted.history is not HistoryPolicy.KEEP_ALL and wanted.depth:
                 missed = missed[-wanted.depth :]
-            for msg, origin in missed:
-                deliver(msg, origin)
+            for msg, sample_info in missed:
+                deliver(msg, sample_info)
         self._matched[reader] = deliver
         self._update()
 
@@ -195,13 +195,13 @@ class LocalWriter(Writer):
         self.active = bool(self._deliveries) or self._history is not None
         self.bounded = any(reader.bounded for reader in self._matched)
 
-    def write(self, msg: Any, origin: Origin) -> None:
+    def write(self, msg: Any, sample_info: SampleInfo) -> None:
         """Give one snapshot of `msg` to all."""
         snapshot = self._snapshot(msg)
         if self._history is not None:
-            self._history.append((snapshot, origin))
+            self._history.append((snapshot, sample_info))
         for deliver in self._deliveries:
-            deliver(snapshot, origin)
+            deliver(snapshot, sample_info)
 
     def has_room(self) -> bool:
         """Whether every reliable KEEP_ALL reader can take one more message."""
@@ -214,7 +214,7 @@ class LocalWriter(Writer):
                 if reader.bounded:
                     await reader.reader.wait_for_room()
 
-    def way_of(self, reader: EndpointInfo) -> str | None:
+    def route_of(self, reader: EndpointInfo) -> str | None:
         """Return ``local`` for the subscriptions of this context."""
         return "local" if any(one.endpoint == reader for one in self._matched) else None
 
@@ -229,7 +229,7 @@ class LocalWriter(Writer):
 # Services
 
 
-class LocalServer(Announcement):
+class LocalServer(Registration):
     """A server as its clients in the same context see it."""
 
     def __init__(
@@ -259,9 +259,11 @@ class LocalServer(Announcement):
 class LocalRequest(Request):
     """One request to one server."""
 
-    def __init__(self, message: Any, origin: Origin, server: LocalServer, call: LocalCall) -> None:
+    def __init__(
+        self, message: Any, sample_info: SampleInfo, server: LocalServer, call: LocalCall
+    ) -> None:
         self.message = message
-        self.origin = origin
+        self.sample_info = sample_info
         self._server = server
         self._call = call
         self._snapshot = snapshotter(server.srv_type.Response)
@@ -279,7 +281,9 @@ class LocalRequest(Request):
         snapshot = self._snapshot(response)
         if self._finish():
             snapshot = _in_class(snapshot, self._call.srv_type.Response)
-            self._call.reply(snapshot, Origin(self._server.endpoint.gid, self.origin.sequence, 0))
+            self._call.reply(
+                snapshot, SampleInfo(self._server.endpoint.gid, self.sample_info.sequence, 0)
+            )
 
     def fail(self, error_type: str, error_text: str) -> None:
         """Give an error to the client."""
@@ -301,10 +305,10 @@ class LocalCall:
         self.requests: list[LocalRequest] = []
         self.open = 0
 
-    def reply(self, response: Any, origin: Origin) -> None:
+    def reply(self, response: Any, sample_info: SampleInfo) -> None:
         """Pass on a server's response."""
         if self._reply_to is not None:
-            self._reply_to.reply(response, origin)
+            self._reply_to.reply(response, sample_info)
 
     def fail(self, error: ServiceError) -> None:
         """Pass on a server's error."""
@@ -346,7 +350,7 @@ class LocalRequester(Requester):
         """How many servers of this context are matched."""
         return len(self._matched())
 
-    def send(self, request: Any, origin: Origin, reply_to: ReplyTo) -> Call:
+    def send(self, request: Any, sample_info: SampleInfo, reply_to: ReplyTo) -> Call:
         """Give a snapshot of `request` to every server."""
         snapshot = self._snapshot(request)
         call = LocalCall(reply_to, self._srv_type)
@@ -354,7 +358,7 @@ class LocalRequester(Requester):
         call.open = len(servers)
         for server in servers:
             message = _in_class(snapshot, server.srv_type.Request)
-            local_request = LocalRequest(message, origin, server, call)
+            local_request = LocalRequest(message, sample_info, server, call)
             call.requests.append(local_request)
             server.serve(local_request)
         return call

@@ -10,7 +10,7 @@ import json
 from functools import cache
 from typing import Any
 
-from aionode.wire.typedescription import describe
+from aionode.wire._type_description import describe
 
 __all__ = ["type_hash"]
 

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from aionode import Node
-from aionode.cli.output import Output
+from aionode.cli._support.output import Output
 from aionode.testing import settle
 
 Running = Callable[[Coroutine[Any, Any, Any]], AbstractAsyncContextManager[asyncio.Task[Any]]]

@@ -10,7 +10,7 @@ import pytest
 
 from aionode import Node
 from aionode.action import ActionServer, CancelResponse, GoalResponse
-from aionode.cli.action import find, info, list_actions, send_goal, type_of_action
+from aionode.cli._verbs.action import find, info, list_actions, send_goal, type_of_action
 from aionode.errors import CommandError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.testing import settle

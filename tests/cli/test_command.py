@@ -9,8 +9,9 @@ from collections.abc import Callable
 import click
 import pytest
 
-from aionode.cli import command
-from aionode.cli.command import NOUNS, main, one_line, root
+from aionode.cli import _main as command
+from aionode.cli._main import NOUNS, main, root
+from aionode.cli._support.error_text import one_line
 from aionode.errors import AionodeError, CommandError, InvalidTopicNameException
 
 VERBS = {
@@ -127,7 +128,7 @@ def failing(monkeypatch: pytest.MonkeyPatch) -> Callable[[BaseException], None]:
         def packages(**_: object) -> None:
             raise error
 
-        monkeypatch.setattr("aionode.cli.interface.packages", packages)
+        monkeypatch.setattr("aionode.cli._commands.interface.packages", packages)
 
     return fail_with
 

@@ -12,12 +12,12 @@ from typing import Any
 
 import pytest
 
-from aionode.cli.session import wait_until_known
+from aionode.cli._support.session import wait_until_known
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.node import Node
 from aionode.qos import qos_profile_default
-from aionode.wire.liveliness import endpoint_token
-from tests.peers import DOMAIN_ID, isolated_environment, raw_session
+from aionode.wire._liveliness import endpoint_token
+from tests.support.peers import DOMAIN_ID, isolated_environment, raw_session
 
 AIONODE = [sys.executable, "-m", "aionode"]
 TOPICS = 3000
@@ -81,7 +81,7 @@ async def test_what_takes_long_is_said_on_stderr(
     tool: Node, screen: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A second without a word is a long time, and stdout is for the answer."""
-    monkeypatch.setattr("aionode.cli.session.PROGRESS_S", 0.001)
+    monkeypatch.setattr("aionode.cli._support.session.PROGRESS_S", 0.001)
     said = asyncio.Event()
     monkeypatch.setattr(screen.stderr, "flush", said.set)
 

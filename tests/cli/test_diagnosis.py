@@ -8,13 +8,13 @@ from typing import Any
 import pytest
 
 from aionode import Node, QoSProfile, ReliabilityPolicy
-from aionode.cli.diagnosis import likeness
-from aionode.cli.doctor import doctor, network_findings
+from aionode.cli._support.diagnosis import likeness
+from aionode.cli._verbs.doctor import doctor, network_findings
 from aionode.errors import CommandError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import Int8, String
 from aionode.message import Message, int32
-from aionode.transport.zenoh_config import network_from
+from aionode.transport._zenoh_config import network_from
 
 
 @pytest.fixture

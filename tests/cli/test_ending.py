@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.peers import isolated_environment
+from tests.support.peers import isolated_environment
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="pipes whose size can be set")
 

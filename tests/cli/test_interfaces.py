@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from aionode.cli.command import main
-from aionode.cli.interface import list_interfaces, package, packages, proto, show
+from aionode.cli._main import main
+from aionode.cli._verbs.interface import list_interfaces, package, packages, proto, show
 from aionode.errors import CommandError, InterfaceNotFoundError
 
 

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from aionode import Node, Parameter
 from aionode.arguments import matching_parameters, read_parameter_file
-from aionode.cli.parameter_text import file_form, file_text
-from aionode.cli.parameters import (
+from aionode.cli._support.param_text import file_form, file_text
+from aionode.cli._verbs.param import (
     delete,
     describe,
     dump,

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from aionode.cli.command import main
-from aionode.cli.run import node_maker
+from aionode.cli._main import main
+from aionode.cli._verbs.run import node_maker
 from aionode.errors import CommandError
 
 SOURCE = """

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from aionode import Node
-from aionode.cli.service import call, find, info, list_services, type_of_service
+from aionode.cli._verbs.service import call, find, info, list_services, type_of_service
 from aionode.errors import CommandError, ServiceError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.testing import ManualClock, settle

@@ -12,8 +12,8 @@ from typing import Any
 
 import pytest
 
-from aionode.transport.link import available
-from tests.peers import isolated_environment
+from aionode.transport.ipc import available
+from tests.support.peers import isolated_environment
 
 pexpect = pytest.importorskip("pexpect", reason="pseudo-terminals are of Unix")
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from aionode import Node
-from aionode.cli.topics import find, info, list_topics, type_of_topic
+from aionode.cli._verbs.topic import find, info, list_topics, type_of_topic
 from aionode.errors import CommandError, InvalidTopicNameException
 from aionode.interfaces.std_msgs.msg import Int8, String
 

@@ -14,7 +14,7 @@ from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.node import Node
 from aionode.parameter_client import AsyncParameterClient
 from aionode.testing import settle
-from tests.actions import Goal, Worker
+from tests.support.actions import Goal, Worker
 
 if TYPE_CHECKING:
     from collections.abc import Callable

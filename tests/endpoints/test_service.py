@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from aionode._concurrency import checkpoint
 from aionode.context import Context
 from aionode.errors import (
     CallbackSignatureError,
@@ -20,7 +21,6 @@ from aionode.errors import (
 from aionode.interfaces.example_interfaces.srv import AddTwoInts, SetBool
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
-from aionode.settle import one_turn
 from aionode.testing import FaultyTransport, settle
 from aionode.transport.local import LocalTransport
 
@@ -72,7 +72,7 @@ async def test_a_handler_may_be_a_coroutine_function(node: Node) -> None:
     """It may await anything."""
 
     async def handler(request: Request, response: Response) -> Response:
-        await one_turn()
+        await checkpoint()
         return add(request, response)
 
     node.create_service(AddTwoInts, "add", handler)
@@ -168,7 +168,7 @@ async def test_requests_are_snapshots(node: Node) -> None:
     request = Request(a=1)
     async with asyncio.TaskGroup() as tasks:
         tasks.create_task(client.call(request))
-        await one_turn()
+        await checkpoint()
         request.a = 2
     assert seen == [1]
 
@@ -503,7 +503,7 @@ async def test_a_handler_that_destroys_its_server_does_not_answer(
 
         async def handler(request: Request, response: Response) -> Response:
             service.destroy()
-            await one_turn()
+            await checkpoint()
             return response
 
         service = server.create_service(AddTwoInts, "/add", handler)
@@ -523,7 +523,7 @@ async def test_nothing_is_left_of_calls_that_ended(node: Node) -> None:
     await asyncio.gather(*calls, return_exceptions=True)
     await settle()
     assert not client._answers  # what grows is the subject
-    (server,) = service._announcements  # as above
+    (server,) = service._registrations  # as above
     assert not server.unanswered  # type: ignore[attr-defined]  # the local transport's
 
 

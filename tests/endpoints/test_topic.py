@@ -29,7 +29,7 @@ from aionode.wire import cdr
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.endpoints.topic import MessageInfo
+    from aionode.endpoints.subscription import MessageInfo
 
 KEEP_ALL = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=1)
 BEST_EFFORT_KEEP_ALL = QoSProfile(
@@ -243,7 +243,7 @@ async def test_keep_all_refuses_to_publish_when_a_reliable_reader_is_full(
     node: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Nothing is lost, and nobody gets what others could not."""
-    monkeypatch.setattr("aionode.endpoints.topic.KEEP_ALL_DEPTH", 2)
+    monkeypatch.setattr("aionode.endpoints.subscription.KEEP_ALL_DEPTH", 2)
     full = node.create_subscription(String, "words", qos_profile=KEEP_ALL)
     other = node.create_subscription(String, "words", qos_profile=10)
     publisher = node.create_publisher(String, "words", KEEP_ALL)
@@ -263,7 +263,7 @@ async def test_a_best_effort_keep_all_reader_drops_the_newest(
     node: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It never holds up a publisher."""
-    monkeypatch.setattr("aionode.endpoints.topic.KEEP_ALL_DEPTH", 2)
+    monkeypatch.setattr("aionode.endpoints.subscription.KEEP_ALL_DEPTH", 2)
     reader = node.create_subscription(String, "words", qos_profile=BEST_EFFORT_KEEP_ALL)
     fill(node.create_publisher(String, "words", KEEP_ALL), "a", "b", "c")
     reader.destroy()
@@ -273,7 +273,7 @@ async def test_a_best_effort_keep_all_reader_drops_the_newest(
 
 async def test_drain_waits_for_room(node: Node, monkeypatch: pytest.MonkeyPatch) -> None:
     """A publisher that must not lose anything goes at the pace of its reader."""
-    monkeypatch.setattr("aionode.endpoints.topic.KEEP_ALL_DEPTH", 2)
+    monkeypatch.setattr("aionode.endpoints.subscription.KEEP_ALL_DEPTH", 2)
     reader = node.create_subscription(String, "words", qos_profile=KEEP_ALL)
     publisher = node.create_publisher(String, "words", KEEP_ALL)
     fill(publisher, "a", "b")
@@ -291,7 +291,7 @@ async def test_drain_ends_when_the_full_reader_goes(
     node: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """There is nobody to wait for any more."""
-    monkeypatch.setattr("aionode.endpoints.topic.KEEP_ALL_DEPTH", 1)
+    monkeypatch.setattr("aionode.endpoints.subscription.KEEP_ALL_DEPTH", 1)
     reader = node.create_subscription(String, "words", qos_profile=KEEP_ALL)
     publisher = node.create_publisher(String, "words", KEEP_ALL)
     fill(publisher, "a")
@@ -506,17 +506,17 @@ async def test_the_statistics_name_each_subscription_and_its_way(node: Node) -> 
     readers = [node.create_subscription(String, "words") for _ in range(2)]
     node.create_subscription(Int8, "words")
 
-    assert publisher.stats.ways == {
+    assert publisher.stats.routes == {
         f"/node {reader.endpoint.gid.hex()[:8]}": "local" for reader in readers
     }
     readers[0].destroy()
-    (name,) = publisher.stats.ways
+    (name,) = publisher.stats.routes
     fill(publisher, "a")
     assert repr(publisher.stats) == (
-        f"PublisherStats(published=1, dropped=0, ways={{'{name}': 'local'}})"
+        f"PublisherStats(published=1, dropped=0, routes={{'{name}': 'local'}})"
     )
     publisher.destroy()
-    assert publisher.stats.ways == {}
+    assert publisher.stats.routes == {}
 
 
 async def test_a_faulty_transport_tells_the_way_of_the_one_within() -> None:
@@ -526,7 +526,7 @@ async def test_a_faulty_transport_tells_the_way_of_the_one_within() -> None:
         node.create_subscription(String, "words")
         publisher = node.create_publisher(String, "words", 10)
         fill(publisher, "a")
-        assert list(publisher.stats.ways.values()) == ["local"]
+        assert list(publisher.stats.routes.values()) == ["local"]
         assert publisher.stats.dropped == 0
 
 

@@ -20,7 +20,7 @@ from typing import Any, Literal
 import msgspec
 
 from tests.faults.roles import REPORTS_VARIABLE, Report, Role, hear_mark, missing
-from tests.peers import isolated_environment
+from tests.support.peers import isolated_environment
 
 __all__ = ["Case", "Outcome", "Skipped", "Stage", "run_case", "run_together"]
 

@@ -25,7 +25,7 @@ from aionode.interfaces.rcl_interfaces.msg import ParameterValue
 from aionode.interfaces.rcl_interfaces.srv import GetParameters
 from aionode.interfaces.std_msgs.msg import String
 from aionode.qos import HistoryPolicy, QoSProfile
-from aionode.transport.zenoh.session import close_session, open_router
+from aionode.transport.zenoh._session import close_session, open_router
 from tests.faults.roles import (
     REPORTS_VARIABLE,
     Hear,

@@ -20,13 +20,14 @@ from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import String
 from aionode.message import type_name
 from aionode.qos import QoSProfile
-from aionode.wire import attachment, cdr
-from aionode.wire.keyexpr import data_key
-from aionode.wire.liveliness import endpoint_token, gid_of, node_token
+from aionode.wire import _attachment as attachment
+from aionode.wire import cdr
+from aionode.wire._key_expression import data_key
+from aionode.wire._liveliness import endpoint_token, gid_of, node_token
 from aionode.wire.typehash import type_hash
 from tests.faults.process import REPORT_S, Reporter, text
 from tests.faults.roles import Publish, Role, stream_key
-from tests.peers import ros_session
+from tests.support.peers import ros_session
 
 
 class StandIn:

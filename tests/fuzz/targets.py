@@ -14,7 +14,7 @@ from typing import Any, Final
 import msgspec
 
 from aionode.arguments import parse_arguments, remove_ros_args
-from aionode.arguments.parameter_yaml import parse_parameter_yaml, parse_value
+from aionode.arguments._parameter_yaml import parse_parameter_yaml, parse_value
 from aionode.errors import (
     ConfigurationError,
     DecodeError,
@@ -27,14 +27,16 @@ from aionode.errors import (
 from aionode.idl import define
 from aionode.message import Message, type_name
 from aionode.names import resolve
-from aionode.transport.link.meeting import Beacon
-from aionode.transport.zenoh.services import error_payload, parse_error
-from aionode.transport.zenoh_config import network_from
-from aionode.wire import attachment, cdr, frame
-from aionode.wire.frame import Frame, FrameParser, Kind, Place
-from aionode.wire.keyexpr import parse_data_key
-from aionode.wire.liveliness import parse_qos, parse_token
-from tests.samples import all_samples
+from aionode.transport._zenoh_config import network_from
+from aionode.transport.ipc import _protocol as protocol
+from aionode.transport.ipc._listener import Advertisement
+from aionode.transport.ipc._protocol import BufferRef, Frame, FrameParser, Kind
+from aionode.transport.zenoh._services import error_payload, parse_error
+from aionode.wire import _attachment as attachment
+from aionode.wire import cdr
+from aionode.wire._key_expression import parse_data_key
+from aionode.wire._liveliness import parse_qos, parse_token
+from tests.support.samples import all_samples
 
 __all__ = ["TARGETS", "Target", "cdr_input"]
 
@@ -108,7 +110,7 @@ def run_attachment(data: bytes) -> object:
 def run_keys(data: bytes) -> object:
     """Read the key of a message, and what a context announces."""
     text = text_of(data)
-    return parse_data_key(text), Beacon.parse(text)
+    return parse_data_key(text), Advertisement.parse(text)
 
 
 def run_tokens(data: bytes) -> object:
@@ -140,7 +142,7 @@ def run_frames(data: bytes) -> object:
             frames += parser.feed(data[at : at + step])
             if parser.missing < 1:
                 raise AssertionError(f"{parser.missing} bytes are missing")
-        return [Place.unpack(each.payload) for each in frames if each.elsewhere]
+        return [BufferRef.unpack(each.payload) for each in frames if each.in_shm]
     except FrameError as error:
         return str(error)
 
@@ -148,14 +150,18 @@ def run_frames(data: bytes) -> object:
 def frame_seeds() -> list[bytes]:
     """Return a stream of frames of every kind."""
     gid = bytes(range(16))
-    place = Place(7, 200_000).pack()
+    place = BufferRef(7, 200_000).pack()
     one = b"".join(
-        frame.pack(kind, 1, 2, gid, place, elsewhere=True)
+        protocol.pack(kind, 1, 2, gid, place, in_shm=True)
         if kind == Kind.DATA
-        else frame.pack(kind, 1, 2, gid, b"payload")
+        else protocol.pack(kind, 1, 2, gid, b"payload")
         for kind in Kind
     )
-    return [b"\xff" + one, b"\x06" + one, b"\x28" + frame.attached(frame.pack(8, 1, 2, gid, place))]
+    return [
+        b"\xff" + one,
+        b"\x06" + one,
+        b"\x28" + protocol.has_fd(protocol.pack(8, 1, 2, gid, place)),
+    ]
 
 
 # What users write

@@ -7,16 +7,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aionode.errors import IdlError
-from aionode.idl.definition import Member, TypeText
-from aionode.idl.parser import parse
+from aionode.idl._definition import MemberText, TypeText
+from aionode.idl._parser import parse
 
 
-def members(text: str) -> tuple[Member, ...]:
+def members(text: str) -> tuple[MemberText, ...]:
     """Return the members of one message."""
     return parse("tutorial/msg/Words", text).parts[0].members
 
 
-def only(text: str) -> Member:
+def only(text: str) -> MemberText:
     """Return the one member of a message."""
     (member,) = members(text)
     return member

@@ -27,7 +27,7 @@ from aionode.message import (
     int32,
     type_name,
 )
-from tests.interfaces.random_messages import shipped_names
+from tests.support.random_messages import shipped_names
 
 
 def parts(cls: type[Interface]) -> list[type[Message]]:

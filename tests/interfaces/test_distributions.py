@@ -12,7 +12,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from aionode.interfaces import get_message
 from aionode.message import FieldType, fields, type_name
-from tests.interfaces.random_messages import shipped_names
+from tests.support.random_messages import shipped_names
 
 OTHER: dict[str, set[str]] = {
     "ROS2_HUMBLE": {

@@ -22,7 +22,7 @@ from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.rcl_interfaces.msg import Log
 from aionode.interfaces.std_msgs.msg import String
 from aionode.message import type_name
-from tests.interfaces.random_messages import shipped_names
+from tests.support.random_messages import shipped_names
 
 
 def test_an_interface_is_found_by_its_name() -> None:

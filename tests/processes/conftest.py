@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.peers import isolated_environment
+from tests.support.peers import isolated_environment
 
 
 @pytest.fixture(autouse=True)

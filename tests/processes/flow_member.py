@@ -15,12 +15,12 @@ from typing import Any
 
 import aionode
 from aionode import Node
+from aionode._concurrency import checkpoint
 from aionode.errors import AionodeError, QueueFullError
 from aionode.interfaces.rcl_interfaces.msg import ParameterValue
 from aionode.interfaces.rcl_interfaces.srv import GetParameters
 from aionode.interfaces.std_msgs.msg import String
 from aionode.qos import HistoryPolicy, QoSProfile
-from aionode.settle import one_turn
 
 TICK_S = 0.002
 
@@ -110,7 +110,7 @@ class Member(Node):
                 await self.endpoint.drain()
                 self.endpoint.publish(self.message(number))
             self.seen += 1
-            await one_turn()
+            await checkpoint()
         await self.endpoint.drain()
         tell("sent", self.count, self.endpoint.stats.dropped)
 

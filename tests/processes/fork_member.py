@@ -15,7 +15,7 @@ from aionode.context import Context
 from aionode.errors import AionodeError
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
-from tests.peers import quiet_node
+from tests.support.peers import quiet_node
 
 FORK = multiprocessing.get_context("fork")
 CHILD_S = 10.0

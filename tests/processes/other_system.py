@@ -76,7 +76,7 @@ def become(system: str) -> None:
             setattr(asyncio.SelectorEventLoop, name, refuse)
         for name in NO_MODULES_ON_WINDOWS.split():
             sys.modules[name] = None  # type: ignore[assignment]
-    from aionode.clock import timerfd
+    from aionode.clock import _timerfd as timerfd
 
     timerfd.libc = no_timerfd  # type: ignore[assignment]
 

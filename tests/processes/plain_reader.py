@@ -16,11 +16,11 @@ import zenoh  # noqa: TID251  # plays another participant, without aionode's tra
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import String
 from aionode.qos import QoSProfile
-from aionode.wire import attachment
-from aionode.wire.keyexpr import data_key
-from aionode.wire.liveliness import endpoint_token, node_token
+from aionode.wire import _attachment as attachment
+from aionode.wire._key_expression import data_key
+from aionode.wire._liveliness import endpoint_token, node_token
 from aionode.wire.typehash import type_hash
-from tests.peers import raw_session
+from tests.support.peers import raw_session
 
 
 def tell(*words: object) -> None:

@@ -10,8 +10,8 @@ from contextlib import ExitStack, contextmanager
 import pytest
 import zenoh  # noqa: TID251  # plays the router and who listens behind it, without aionode
 
-from tests.peers import ros_router, zenoh_config
 from tests.processes.process import Process, member
+from tests.support.peers import ros_router, zenoh_config
 
 CONTROL = "@/control/router"
 

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.peers import ros_router, ros_session
 from tests.processes.process import Process, member
+from tests.support.peers import ros_router, ros_session
 
 ATTEMPTS = 4
 

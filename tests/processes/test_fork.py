@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.links import folder
+from tests.support.links import folder
 
 __all__ = ["folder"]  # a fixture
 

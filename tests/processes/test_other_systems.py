@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.peers import isolated_environment
 from tests.processes.process import ROOT, Process
+from tests.support.peers import isolated_environment
 
 OTHER_SYSTEM = str(Path(__file__).with_name("other_system.py"))
 MEMBER = str(Path(__file__).with_name("plain_member.py"))

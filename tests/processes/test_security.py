@@ -12,8 +12,8 @@ import psutil
 import pytest
 import trustme
 
-from tests.peers import free_ports
 from tests.processes.process import ROOT, Process, member
+from tests.support.peers import free_ports
 
 LOOPBACK = ("127.0.0.1", "::1")
 CONFIGS = ROOT / "examples" / "security"

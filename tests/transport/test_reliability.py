@@ -9,12 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.transport.reliability import (
-    RETURN_NS,
-    ReaderProxy,
-    WriterHistory,
-    WriterProxy,
-)
+from aionode.transport._reliability import RETURN_NS, ReaderProxy, WriterHistory, WriterProxy
 
 WRITER = b"w" * 16
 

@@ -9,7 +9,7 @@ import pytest
 import zenoh  # noqa: TID251  # asks Zenoh whether it knows the settings
 
 from aionode.errors import ConfigurationError
-from aionode.transport.zenoh_config import (
+from aionode.transport._zenoh_config import (
     MEETING_PORTS,
     ROUTER_PORT,
     DiscoveryRange,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.wire.acknack import MAX_RANGES, Kind, Submessage, pack, pack_ranges, unpack
+from aionode.wire._acknack import MAX_RANGES, Kind, Submessage, pack, pack_ranges, unpack
 
 NUMBERS = st.integers(-(2**63), 2**63 - 1)
 GIDS = st.binary(min_size=16, max_size=16)

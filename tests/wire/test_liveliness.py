@@ -25,7 +25,7 @@ from aionode.qos import (
     qos_profile_services_default,
     qos_profile_system_default,
 )
-from aionode.wire import liveliness
+from aionode.wire import _liveliness as liveliness
 
 VECTORS: dict[str, Any] = json.loads(
     Path(__file__).parent.parent.joinpath("vectors", "vectors.json").read_text()

@@ -1,10 +1,10 @@
 """Between processes and machines: messages travel through Zenoh, as rmw_zenoh_cpp sends them.
 
-Zenoh's threads only append what arrives to a queue and wake the event loop (`transport.wakeup`);
+Zenoh's threads only append what arrives to a queue and wake the event loop (`transport.waker`);
 everything else happens on the loop. What may block while sending goes through a thread
-(`transport.sender`).
+(`transport.send_thread`).
 """
 
-from aionode.transport.zenoh.transport import ZenohTransport
+from aionode.transport.zenoh._transport import ZenohTransport
 
 __all__ = ["ZenohTransport"]

@@ -1,0 +1,1 @@
+"""What `aionode.Node` is made of."""

@@ -1,0 +1,264 @@
+"""What every node offers by itself: its log, its parameters, its types, and the time it follows.
+
+Each part is made of a node's public methods alone, as a user would write it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from typing import TYPE_CHECKING, Any
+
+from aionode import qos
+from aionode.clock import S_TO_NS, Time
+from aionode.endpoints._core.entity import EndStage
+from aionode.errors import QueueFullError
+from aionode.interfaces.rcl_interfaces.msg import (
+    Log,
+    LoggerLevel,
+    ParameterDescriptor,
+    ParameterEvent,
+    SetLoggerLevelsResult,
+    SetParametersResult,
+)
+from aionode.interfaces.rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
+from aionode.interfaces.rosgraph_msgs.msg import Clock as ClockMsg
+from aionode.interfaces.type_description_interfaces.msg import TypeSource
+from aionode.interfaces.type_description_interfaces.srv import GetTypeDescription
+from aionode.logging import LoggingSeverity, get_logger_level, set_logger_level
+from aionode.message import type_name
+from aionode.parameter import Parameter, parameter_services
+from aionode.qos import QoSProfile, ReliabilityPolicy
+from aionode.wire._type_description import description_message, parts
+from aionode.wire.typehash import type_hash
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from aionode.clock import Clock
+    from aionode.endpoints.subscription import Subscription
+    from aionode.logging import LogEvent
+    from aionode.node import Node
+    from aionode.parameter import ParameterStore
+
+__all__ = [
+    "TimeSource",
+    "publish_log",
+    "publish_parameter_events",
+    "serve_logger_levels",
+    "serve_parameters",
+    "serve_type_descriptions",
+]
+
+CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+# Log
+
+
+def publish_log(node: Node, profile: QoSProfile | int) -> Callable[[], None]:
+    """Publish what the node logs on ``/rosout``; return what ends that.
+
+    Messages may be logged in any thread; they are published in the loop's.
+    """
+    publisher = node.create_publisher(Log, "/rosout", profile)
+
+    def publish(event: LogEvent) -> None:
+        # A full reader of the log must not make logging fail.
+        if not publisher.destroyed:
+            with contextlib.suppress(QueueFullError):
+                publisher.publish(log_message(event, node.get_clock()))
+
+    def sink(event: LogEvent) -> None:
+        node.call_in_loop(lambda: publish(event))
+
+    return node.get_logger().add_sink(sink)
+
+
+def log_message(event: LogEvent, clock: Clock) -> Log:
+    """Return what was logged as a message, with the time of the node."""
+
+    def encodable(text: str) -> str:
+        return text.encode(errors="replace").decode()
+
+    return Log(
+        stamp=clock.now().to_msg(),
+        level=event.level,
+        name=encodable(event.name),
+        msg=encodable(event.msg),
+        file=encodable(event.file),
+        function=encodable(event.function),
+        line=event.line,
+    )
+
+
+def serve_logger_levels(node: Node) -> None:
+    """Let others read and set the levels of loggers in this process."""
+
+    def get_levels(
+        request: GetLoggerLevels.Request, response: GetLoggerLevels.Response
+    ) -> GetLoggerLevels.Response:
+        response.levels = [
+            LoggerLevel(name=name, level=int(get_logger_level(name))) for name in request.names
+        ]
+        return response
+
+    def set_levels(
+        request: SetLoggerLevels.Request, response: SetLoggerLevels.Response
+    ) -> SetLoggerLevels.Response:
+        response.results = [set_level(wanted) for wanted in request.levels]
+        return response
+
+    def set_level(wanted: LoggerLevel) -> SetLoggerLevelsResult:
+        try:
+            set_logger_level(wanted.name, LoggingSeverity(wanted.level))
+        except ValueError as error:
+            return SetLoggerLevelsResult(successful=False, reason=str(error))
+        return SetLoggerLevelsResult(successful=True)
+
+    node.create_service(GetLoggerLevels, "~/get_logger_levels", get_levels)
+    node.create_service(SetLoggerLevels, "~/set_logger_levels", set_levels)
+
+
+# Parameters
+
+
+def publish_parameter_events(node: Node) -> Callable[[ParameterEvent], None]:
+    """Return what publishes changes of parameters on ``/parameter_events``."""
+    publisher = node.create_publisher(
+        ParameterEvent, "/parameter_events", qos.qos_profile_parameter_events
+    )
+
+    def publish(event: ParameterEvent) -> None:
+        event.stamp = node.get_clock().now().to_msg()
+        if not publisher.destroyed:
+            publisher.publish(event)
+
+    return publish
+
+
+def serve_parameters(node: Node, store: ParameterStore) -> None:
+    """Let others read and set the parameters of the node."""
+    for service in parameter_services(store):
+        node.create_service(
+            service.srv_type,
+            f"~/{service.name}",
+            service.callback,
+            qos_profile=qos.qos_profile_parameters,
+        )
+
+
+# Types
+
+
+def serve_type_descriptions(node: Node) -> None:
+    """Tell others what the types consist of that the node uses."""
+    name = "start_type_description_service"
+    descriptor = ParameterDescriptor(
+        description="If enabled, start the ~/get_type_description service.", read_only=True
+    )
+    if not node.declare_parameter(name, True, descriptor).value:
+        return
+
+    def describe(
+        request: GetTypeDescription.Request, response: GetTypeDescription.Response
+    ) -> GetTypeDescription.Response:
+        found = [kind for kind in types_of(node) if type_name(kind) == request.type_name]
+        if not found:
+            response.failure_reason = f"{request.type_name} is not in use by this node"
+            return response
+        known = {type_hash(kind): kind for kind in found}
+        kind = known.get(request.type_hash) if request.type_hash else found[0]
+        if kind is None:
+            response.failure_reason = (
+                f"{request.type_name} has the hash {', '.join(known)} here, not {request.type_hash}"
+            )
+            return response
+        response.successful = True
+        response.type_description = description_message(kind)
+        if request.include_type_sources:
+            response.type_sources = [source_of(part) for part in (kind, *parts(kind))]
+        return response
+
+    node.create_service(GetTypeDescription, "~/get_type_description", describe)
+
+
+def types_of(node: Node) -> Iterator[Any]:
+    """Yield the types of all endpoints of the node, and those that they use."""
+    kinds: list[Any] = [publisher.msg_type for publisher in node.publishers]
+    kinds += [subscription.msg_type for subscription in node.subscriptions]
+    kinds += [service.srv_type for service in node.services]
+    kinds += [client.srv_type for client in node.clients]
+    for kind in dict.fromkeys(kinds):
+        yield kind
+        yield from parts(kind)
+
+
+def source_of(kind: Any) -> TypeSource:
+    """Return the text that defines a type."""
+    # Rarely asked for, and the parser of definitions takes time to import.
+    from aionode.idl import definition_text
+
+    name = type_name(kind)
+    return TypeSource(
+        type_name=name,
+        encoding=name.split("/")[1],
+        raw_file_contents=definition_text(kind),
+    )
+
+
+# Time
+
+
+class TimeSource:
+    """Follows ``/clock`` while the parameter `use_sim_time` is true."""
+
+    def __init__(self, node: Node, clock: Clock) -> None:
+        self._node = node
+        self._clock = clock
+        self._subscription: Subscription[ClockMsg] | None = None
+        self._warned = False
+        node.add_on_set_parameters_callback(self._check)
+        if not node.has_parameter("use_sim_time"):
+            node.declare_parameter("use_sim_time", False)
+        node.add_post_set_parameters_callback(self._follow)
+        self._switch(active=node.get_parameter("use_sim_time").value)
+
+    def _check(self, parameters: list[Parameter]) -> SetParametersResult:
+        for parameter in parameters:
+            if parameter.name == "use_sim_time" and not isinstance(parameter.value, bool):
+                return SetParametersResult(
+                    successful=False,
+                    reason=f"use_sim_time is {parameter.value!r}; it must be true or false",
+                )
+        return SetParametersResult(successful=True)
+
+    def _follow(self, parameters: list[Parameter]) -> None:
+        for parameter in parameters:
+            if parameter.name == "use_sim_time":
+                self._switch(active=parameter.value)
+
+    def _switch(self, *, active: bool) -> None:
+        self._clock.set_ros_time_active(active)
+        if active and self._subscription is None:
+            self._subscription = self._node.create_subscription(
+                ClockMsg, "/clock", self._on_tick, CLOCK_QOS
+            )
+            self._subscription.stage = EndStage.GOALS  # callbacks that clean up may sleep
+        elif not active and self._subscription is not None:
+            self._subscription.destroy()
+            self._subscription = None
+
+    def _on_tick(self, msg: ClockMsg) -> None:
+        if msg.clock.sec >= 0 and msg.clock.nanosec < S_TO_NS:
+            self._clock.set_ros_time_override(Time.from_msg(msg.clock))
+            return
+        # Anybody may publish there, and this node is not to end for it.
+        if self._subscription is not None:
+            self._subscription.stats.errors += 1
+        if not self._warned:
+            self._warned = True
+            self._node.get_logger().warning(
+                f"/clock: a message holds no time: {msg.clock.sec} s and {msg.clock.nanosec} ns; "
+                f"0 s or more and less than {S_TO_NS} ns fit. It was left out, and more of them "
+                "are only counted; `aionode topic info -v /clock` names the publishers"
+            )

@@ -1,0 +1,274 @@
+"""What a node can ask about the system: rclpy's graph methods, over the graph of its context."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import TYPE_CHECKING
+
+from aionode import names
+from aionode.endpoints._core.future import asks
+from aionode.errors import NodeNameNonExistentError
+from aionode.graph import TOPIC_KINDS, EndpointKind
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from aionode.graph import EndpointInfo, Graph, NodeInfo
+    from aionode.qos import QoSProfile
+
+__all__ = ["NodeGraphQueries", "TopicEndpointInfo", "TopicEndpointTypeEnum"]
+
+NamesAndTypes = list[tuple[str, list[str]]]
+
+
+class TopicEndpointTypeEnum(IntEnum):
+    """What a `TopicEndpointInfo` describes, with rclpy's values."""
+
+    INVALID = 0
+    PUBLISHER = 1
+    SUBSCRIPTION = 2
+
+
+ENDPOINT_TYPES = {
+    EndpointKind.PUBLISHER: TopicEndpointTypeEnum.PUBLISHER,
+    EndpointKind.SUBSCRIPTION: TopicEndpointTypeEnum.SUBSCRIPTION,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class TopicEndpointInfo:
+    """A publisher or subscription, with rclpy's names.
+
+    Attributes:
+        node_name: Name of its node.
+        node_namespace: Namespace of its node.
+        topic_type: ROS name of its type.
+        topic_type_hash: RIHS01 hash of the type, as text.
+        endpoint_type: Whether it publishes or subscribes.
+        endpoint_gid: The 16 numbers that identify it.
+        qos_profile: Its profile.
+    """
+
+    node_name: str
+    node_namespace: str
+    topic_type: str
+    topic_type_hash: str
+    endpoint_type: TopicEndpointTypeEnum
+    endpoint_gid: list[int]
+    qos_profile: QoSProfile
+
+
+class NodeGraphQueries:
+    """The part of `Node` that asks the graph.
+
+    All answers are of this moment; ``await node.graph.changed()`` waits for the next change.
+    """
+
+    graph: Graph
+
+    def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
+        """Return the full name of a topic of this node, remapped unless `only_expand`."""
+        raise NotImplementedError
+
+    def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
+        """Return the full name of a service of this node, remapped unless `only_expand`."""
+        raise NotImplementedError
+
+    # Nodes
+
+    def get_node_names(self) -> list[str]:
+        """Return the names of all nodes, without namespaces."""
+        return [node.name for node in self.graph.nodes()]
+
+    def get_fully_qualified_node_names(self) -> list[str]:
+        """Return the full names of all nodes."""
+        return [node.fully_qualified_name for node in self.graph.nodes()]
+
+    def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
+        """Return name and namespace of all nodes."""
+        return [(node.name, node.namespace) for node in self.graph.nodes()]
+
+    def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
+        """Return name, namespace and security enclave of all nodes."""
+        return [(node.name, node.namespace, node.enclave) for node in self.graph.nodes()]
+
+    @asks
+    async def wait_for_node(
+        self,
+        fully_qualified_node_name: str,
+        timeout: float | None = None,
+        *,
+        check_interval: float = 0.1,  # noqa: ARG002  # rclpy's signature
+    ) -> bool:
+        """Wait until a node of this name is there.
+
+        Args:
+            fully_qualified_node_name: Namespace and name; a leading slash may be left out.
+            timeout: How long at most, in seconds; None waits for ever.
+            check_interval: Makes no difference: the wait ends when the graph changes.
+
+        Returns:
+            True when the node is there, False when `timeout` has passed.
+        """
+        wanted = "/" + fully_qualified_node_name.removeprefix("/")
+
+        def is_there() -> bool:
+            return any(self.graph.find_nodes(wanted))
+
+        try:
+            async with asyncio.timeout(timeout):
+                await self.graph.until(is_there)
+        except TimeoutError:
+            return is_there()
+        return True
+
+    # Topics and services by name
+
+    def get_topic_names_and_types(self, no_demangle: bool = False) -> NamesAndTypes:  # noqa: ARG002  # rclpy's signature
+        """Return every topic with its types; `no_demangle` makes no difference here."""
+        return self.graph.names_and_types(*TOPIC_KINDS)
+
+    def get_service_names_and_types(self) -> NamesAndTypes:
+        """Return every service that has a server, with its types."""
+        return self.graph.names_and_types(EndpointKind.SERVER)
+
+    def get_action_names_and_types(self) -> NamesAndTypes:
+        """Return every action, with its types."""
+        return actions_among(self.get_topic_names_and_types())
+
+    def count_publishers(self, topic_name: str) -> int:
+        """Return how many publishers `topic_name` has; relative names belong to this node."""
+        return self.graph.count(EndpointKind.PUBLISHER, self.resolve_topic_name(topic_name))
+
+    def count_subscribers(self, topic_name: str) -> int:
+        """Return how many subscriptions `topic_name` has; relative names belong to this node."""
+        return self.graph.count(EndpointKind.SUBSCRIPTION, self.resolve_topic_name(topic_name))
+
+    def count_services(self, service_name: str) -> int:
+        """Return how many servers `service_name` has; relative names belong to this node."""
+        return self.graph.count(EndpointKind.SERVER, self.resolve_service_name(service_name))
+
+    def count_clients(self, service_name: str) -> int:
+        """Return how many clients `service_name` has; relative names belong to this node."""
+        return self.graph.count(EndpointKind.CLIENT, self.resolve_service_name(service_name))
+
+    def get_publishers_info_by_topic(
+        self,
+        topic_name: str,
+        no_mangle: bool = False,  # noqa: ARG002  # rclpy's signature
+    ) -> list[TopicEndpointInfo]:
+        """Return every publisher of a topic; `no_mangle` makes no difference here."""
+        return self._topic_endpoints(EndpointKind.PUBLISHER, topic_name)
+
+    def get_subscriptions_info_by_topic(
+        self,
+        topic_name: str,
+        no_mangle: bool = False,  # noqa: ARG002  # rclpy's signature
+    ) -> list[TopicEndpointInfo]:
+        """Return every subscription of a topic; `no_mangle` makes no difference here."""
+        return self._topic_endpoints(EndpointKind.SUBSCRIPTION, topic_name)
+
+    def _topic_endpoints(self, kind: EndpointKind, topic_name: str) -> list[TopicEndpointInfo]:
+        name = self.resolve_topic_name(topic_name)
+        return [topic_endpoint_info(found) for found in self.graph.endpoints(kind, name=name)]
+
+    # By node
+
+    def get_publisher_names_and_types_by_node(
+        self,
+        node_name: str,
+        node_namespace: str,
+        no_demangle: bool = False,  # noqa: ARG002  # rclpy's signature
+    ) -> NamesAndTypes:
+        """Return what a node publishes.
+
+        Raises:
+            NodeNameNonExistentError: there is no such node.
+        """
+        return self._of_node(EndpointKind.PUBLISHER, node_name, node_namespace)
+
+    def get_subscriber_names_and_types_by_node(
+        self,
+        node_name: str,
+        node_namespace: str,
+        no_demangle: bool = False,  # noqa: ARG002  # rclpy's signature
+    ) -> NamesAndTypes:
+        """Return what a node subscribes to.
+
+        Raises:
+            NodeNameNonExistentError: there is no such node.
+        """
+        return self._of_node(EndpointKind.SUBSCRIPTION, node_name, node_namespace)
+
+    def get_service_names_and_types_by_node(
+        self, node_name: str, node_namespace: str
+    ) -> NamesAndTypes:
+        """Return the services that a node serves.
+
+        Raises:
+            NodeNameNonExistentError: there is no such node.
+        """
+        return self._of_node(EndpointKind.SERVER, node_name, node_namespace)
+
+    def get_client_names_and_types_by_node(
+        self, node_name: str, node_namespace: str
+    ) -> NamesAndTypes:
+        """Return the services that a node calls.
+
+        Raises:
+            NodeNameNonExistentError: there is no such node.
+        """
+        return self._of_node(EndpointKind.CLIENT, node_name, node_namespace)
+
+    def get_action_server_names_and_types_by_node(
+        self, node_name: str, node_namespace: str
+    ) -> NamesAndTypes:
+        """Return the actions that a node serves.
+
+        Raises:
+            NodeNameNonExistentError: there is no such node.
+        """
+        return actions_among(self._of_node(EndpointKind.PUBLISHER, node_name, node_namespace))
+
+    def get_action_client_names_and_types_by_node(
+        self, node_name: str, node_namespace: str
+    ) -> NamesAndTypes:
+        """Return the actions that a node calls.
+
+        Raises:
+            NodeNameNonExistentError: there is no such node.
+        """
+        return actions_among(self._of_node(EndpointKind.SUBSCRIPTION, node_name, node_namespace))
+
+    def _of_node(self, kind: EndpointKind, node_name: str, node_namespace: str) -> NamesAndTypes:
+        full_name = names.fully_qualified_name(node_namespace, node_name)
+        nodes: Iterator[NodeInfo] = self.graph.find_nodes(full_name)
+        found = next(nodes, None)
+        if found is None:
+            raise NodeNameNonExistentError(full_name)
+        return self.graph.names_and_types(kind, node=found)
+
+
+def topic_endpoint_info(endpoint: EndpointInfo) -> TopicEndpointInfo:
+    """Return `endpoint` with rclpy's names."""
+    return TopicEndpointInfo(
+        node_name=endpoint.node.name,
+        node_namespace=endpoint.node.namespace,
+        topic_type=endpoint.type_name,
+        topic_type_hash=endpoint.type_hash,
+        endpoint_type=ENDPOINT_TYPES[endpoint.kind],
+        endpoint_gid=list(endpoint.gid),
+        qos_profile=endpoint.qos,
+    )
+
+
+def actions_among(topics: NamesAndTypes) -> NamesAndTypes:
+    """Return the actions that are known by their feedback topics (rcl_action, graph.c)."""
+    suffix, type_suffix = "/_action/feedback", "_FeedbackMessage"
+    return [
+        (topic.removesuffix(suffix), [name.removesuffix(type_suffix) for name in types])
+        for topic, types in topics
+        if topic.endswith(suffix) and all(name.endswith(type_suffix) for name in types)
+    ]

@@ -1,0 +1,329 @@
+"""The arguments of a ROS program: what stands between ``--ros-args`` and ``--``.
+
+::
+
+    robot.py data.csv --ros-args -r chatter:=/talk -p rate:=10.0 --log-level debug -- --verbose
+
+Each such block is read by rcl's grammar; everything else is left to the program.
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import PurePath
+
+from aionode.arguments._parameter_yaml import (
+    ParameterRule,
+    ParameterValueType,
+    matching_parameters,
+    parse_value,
+    read_parameter_file,
+)
+from aionode.errors import (
+    InvalidLogLevelError,
+    InvalidRemapRuleError,
+    InvalidROSArgsError,
+    ParameterFileError,
+    UnknownROSArgsError,
+)
+from aionode.logging import LoggingSeverity, get_logging_severity_from_string
+from aionode.names import RemapRule
+
+__all__ = ["Arguments", "parse_arguments", "remove_ros_args"]
+
+START, END = "--ros-args", "--"
+VALUE = "value"  # what a value on the command line is called where a file has its path
+
+ParameterFileReader = Callable[[str], Iterable[ParameterRule]]
+
+
+@dataclass(frozen=True)
+class Arguments:
+    """What the arguments say.
+
+    Attributes:
+        remap_rules: In order; of those that match, the first wins.
+        parameter_rules: Those of files and of ``-p``, in order; the last wins.
+        params_files: Paths of the files that were read.
+        log_level: The level of loggers without one of their own.
+        log_levels: Levels of single loggers.
+        log_config_file: A file to configure logging with.
+        log_file_name: How the name of a log file is to begin.
+        enclave: The security enclave.
+        stdout_logs: Whether to log to the console.
+        rosout_logs: Whether to log to `/rosout`.
+        external_lib_logs: Whether to log to a file; None if nothing was said.
+        unparsed_ros_args: Words between ``--ros-args`` and ``--`` that are no flags of ROS.
+        non_ros_args: All words outside; the program's own.
+        warnings: What the user should be told.
+    """
+
+    remap_rules: tuple[RemapRule, ...] = ()
+    parameter_rules: tuple[ParameterRule, ...] = ()
+    params_files: tuple[str, ...] = ()
+    log_level: LoggingSeverity | None = None
+    log_levels: dict[str, LoggingSeverity] = field(default_factory=dict)
+    log_config_file: str | None = None
+    log_file_name: str | None = None
+    enclave: str | None = None
+    stdout_logs: bool = True
+    rosout_logs: bool = True
+    external_lib_logs: bool | None = None
+    unparsed_ros_args: tuple[str, ...] = ()
+    non_ros_args: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    def parameters_for(self, node_name: str) -> dict[str, ParameterValueType]:
+        """Return the parameters for the node with this full name, remapping done."""
+        return matching_parameters(self.parameter_rules, node_name)
+
+    def log_file_prefix(self) -> str | None:
+        """Return how the name of the log file is to begin, or None if there is to be none.
+
+        A file is written only when asked for: by ``--log-file-name``, or by
+        ``--enable-external-lib-logs``, which gives it the name of the program.
+        """
+        if self.external_lib_logs is None:
+            return self.log_file_name
+        if not self.external_lib_logs:
+            return None
+        program = PurePath(self.non_ros_args[0]).name if self.non_ros_args else "python"
+        return self.log_file_name or program
+
+    def refuse_unknown(self) -> None:
+        """Raise if a word between ``--ros-args`` and ``--`` is no flag of ROS.
+
+        Raises:
+            UnknownROSArgsError: There is one; the error says which flags are like it.
+        """
+        if not self.unparsed_ros_args:
+            return
+        word = self.unparsed_ros_args[0]
+        alike = difflib.get_close_matches(word.partition("=")[0], [*VALUED, *SWITCHES], n=2)
+        hint = f"did you mean {' or '.join(alike)}? " if alike else ""
+        raise UnknownROSArgsError(
+            list(self.unparsed_ros_args),
+            f"unknown; {hint}The flags are {', '.join([*VALUED, *SWITCHES])}; arguments of the "
+            f"program itself belong before {START} or after a closing {END}",
+        )
+
+
+def parse_arguments(
+    args: Sequence[str], *, read_file: ParameterFileReader = read_parameter_file
+) -> Arguments:
+    """Return what `args` say.
+
+    Args:
+        args: The words of a command line, such as `sys.argv`.
+        read_file: Reads a parameter file.
+
+    Raises:
+        InvalidROSArgsError: A flag has no value, or one that cannot be read.
+    """
+    parser = Parser(read_file)
+    remaining = list(args)
+    inside = False
+    while remaining:
+        word = remaining.pop(0)
+        if word == START:
+            inside = True
+        elif not inside:
+            parser.outside(word)
+        elif word == END:
+            inside = False
+        else:
+            parser.inside(word, remaining)
+    return parser.result()
+
+
+def remove_ros_args(args: Sequence[str]) -> list[str]:
+    """Return the words that are the program's own, in order."""
+    own: list[str] = []
+    inside = False
+    for word in args:
+        if word == START:
+            inside = True
+        elif not inside:
+            if deprecated_rule(word) is None:
+                own.append(word)
+        elif word == END:
+            inside = False
+    return own
+
+
+class Parser:
+    """Collects what the words say."""
+
+    def __init__(self, read_file: ParameterFileReader) -> None:
+        self.read_file = read_file
+        self.remap_rules: list[RemapRule] = []
+        self.parameter_rules: list[ParameterRule] = []
+        self.params_files: list[str] = []
+        self.log_level: LoggingSeverity | None = None
+        self.log_levels: dict[str, LoggingSeverity] = {}
+        self.settings: dict[str, str] = {}
+        self.switches: dict[str, bool] = {}
+        self.unparsed: list[str] = []
+        self.own: list[str] = []
+        self.warnings: list[str] = []
+
+    def outside(self, word: str) -> None:
+        """Take a word outside of all blocks."""
+        rule = deprecated_rule(word)
+        if rule is None:
+            self.own.append(word)
+            return
+        self.remap_rules.append(rule)
+        self.warnings.append(
+            f"Found remap rule '{word}'. This syntax is deprecated. "
+            f"Use '{START} --remap {word}' instead."
+        )
+
+    def inside(self, word: str, rest: list[str]) -> None:
+        """Take a word inside a block, and from `rest` its value if it has one."""
+        if word in SWITCHES:
+            setting, value = SWITCHES[word]
+            self.switches[setting] = value
+        elif word in VALUED:
+            if not rest or rest[0] in {START, END}:
+                raise InvalidROSArgsError(word, f"no value follows; it needs {FITS[word]}")
+            value_word = rest.pop(0)
+            try:
+                VALUED[word](self, value_word)
+            except InvalidRemapRuleError as error:
+                raise InvalidROSArgsError(f"{word} {value_word}", error.problem) from error
+            except ParameterFileError as error:
+                where = f"line {error.line}: " if error.line and error.source != VALUE else ""
+                problem = f"{where}{error.problem}"
+                raise InvalidROSArgsError(f"{word} {value_word}", problem) from error
+            except (InvalidLogLevelError, MalformedError) as error:
+                raise InvalidROSArgsError(f"{word} {value_word}", str(error)) from error
+        else:
+            self.unparsed.append(word)
+
+    def result(self) -> Arguments:
+        """Return what was collected."""
+        return Arguments(
+            remap_rules=tuple(self.remap_rules),
+            parameter_rules=tuple(self.parameter_rules),
+            params_files=tuple(self.params_files),
+            log_level=self.log_level,
+            log_levels=self.log_levels,
+            log_config_file=self.settings.get("log_config_file"),
+            log_file_name=self.settings.get("log_file_name"),
+            enclave=self.settings.get("enclave"),
+            stdout_logs=self.switches.get("stdout_logs", True),
+            rosout_logs=self.switches.get("rosout_logs", True),
+            external_lib_logs=self.switches.get("external_lib_logs"),
+            unparsed_ros_args=tuple(self.unparsed),
+            non_ros_args=tuple(self.own),
+            warnings=tuple(self.warnings),
+        )
+
+
+# What each flag does with its value
+
+
+class MalformedError(ValueError):
+    """A value is not of its flag's form. Becomes an InvalidROSArgsError with the flag."""
+
+
+PARAMETER = (
+    r"(?sa)(?:(?P<node>/?[A-Za-z_]\w*(?:/[A-Za-z_]\w*)*):(?!=))?"
+    r"(?P<name>[^:=\s]+):=(?P<value>.*)"
+)
+
+
+def add_remap(parser: Parser, text: str) -> None:
+    """Take the value of ``--remap``."""
+    parser.remap_rules.append(RemapRule.parse(text))
+
+
+def add_parameter(parser: Parser, text: str) -> None:
+    """Take the value of ``--param``."""
+    parts = re.fullmatch(PARAMETER, text)
+    if parts is None:
+        message = "a parameter is 'name:=value' or 'node:name:=value'"
+        raise MalformedError(message)
+    node, name, value = parts.group("node", "name", "value")
+    if node is None:
+        node = "/**"
+    elif "/" not in node:
+        node = f"/**/{node}"  # the node of this name, in whatever namespace
+    elif not node.startswith("/"):
+        node = f"/{node}"
+    parser.parameter_rules.append(ParameterRule(node, name, parse_value(value, VALUE), text))
+
+
+def add_file(parser: Parser, path: str) -> None:
+    """Take the value of ``--params-file``."""
+    parser.parameter_rules.extend(parser.read_file(path))
+    parser.params_files.append(path)
+
+
+def set_log_level(parser: Parser, text: str) -> None:
+    """Take the value of ``--log-level``."""
+    name, separator, level = text.rpartition(":=")
+    if separator and not name:
+        message = "the name of the logger is empty; a level is 'LEVEL' or 'name:=LEVEL'"
+        raise MalformedError(message)
+    severity = get_logging_severity_from_string(level)
+    if separator:
+        parser.log_levels[name] = severity
+    else:
+        parser.log_level = severity
+
+
+def setting(name: str) -> Callable[[Parser, str], None]:
+    """Return what takes the value of a flag as it is; the last one counts."""
+
+    def take(parser: Parser, value: str) -> None:
+        parser.settings[name] = value
+
+    return take
+
+
+VALUED: dict[str, Callable[[Parser, str], None]] = {
+    "--remap": add_remap,
+    "-r": add_remap,
+    "--param": add_parameter,
+    "-p": add_parameter,
+    "--params-file": add_file,
+    "--log-level": set_log_level,
+    "--log-config-file": setting("log_config_file"),
+    "--log-file-name": setting("log_file_name"),
+    "--enclave": setting("enclave"),
+    "-e": setting("enclave"),
+}
+
+FITS = {
+    "--remap": "a rule 'from:=to'",
+    "-r": "a rule 'from:=to'",
+    "--param": "a parameter 'name:=value'",
+    "-p": "a parameter 'name:=value'",
+    "--params-file": "the path of a parameter file",
+    "--log-level": "a level such as 'debug', or 'logger:=debug'",
+    "--log-config-file": "the path of a file",
+    "--log-file-name": "the beginning of a file's name",
+    "--enclave": "the path of an enclave",
+    "-e": "the path of an enclave",
+}
+
+SWITCHES = {
+    f"--{verb}-{what}-logs": (f"{what.replace('-', '_')}_logs", verb == "enable")
+    for what in ("stdout", "rosout", "external-lib")
+    for verb in ("enable", "disable")
+}
+
+
+def deprecated_rule(word: str) -> RemapRule | None:
+    """Return the remap rule that a word outside of all blocks stands for, if it does."""
+    if ":=" not in word:
+        return None
+    try:
+        return RemapRule.parse(word)
+    except InvalidRemapRuleError:
+        return None

@@ -1,0 +1,232 @@
+"""Completion: the script of a shell, and the names that it completes."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from aionode.errors import AionodeError
+from aionode.graph import TOPIC_KINDS
+
+if TYPE_CHECKING:
+    from aionode.node import Node
+
+__all__ = [
+    "complete_interfaces",
+    "complete_names",
+    "complete_parameters",
+    "complete_types_of",
+    "completion",
+]
+
+Completer = Callable[[click.Context, click.Parameter, str], list[str]]
+
+QUIET_S = 0.3
+"""How long nothing has to come before what is known is offered: somebody waits at a prompt."""
+
+ANSWER_S = 1.0
+"""How long a node may take to say which parameters it has; it takes milliseconds."""
+
+SETUP = """\
+# Put the following into {file}:
+#   {line}
+"""
+BASH = """\
+_aionode_completion() {
+    local IFS=$'\\n' response completion type value
+    response=$(env COMP_WORDS="${COMP_WORDS[*]}" COMP_CWORD=$COMP_CWORD \\
+        _AIONODE_COMPLETE=bash_complete "$1")
+    for completion in $response; do
+        IFS=',' read -r type value <<< "$completion"
+        case $type in
+            dir) COMPREPLY=(); compopt -o dirnames ;;
+            file) COMPREPLY=(); compopt -o default ;;
+            plain)
+                COMPREPLY+=("$value")
+                # The name of a package, which goes on behind its slash.
+                [[ $value == */ ]] && compopt -o nospace ;;
+        esac
+    done
+    return 0
+}
+complete -o nosort -F _aionode_completion aionode
+"""
+ZSH = """\
+#compdef aionode
+_aionode_completion() {
+    local -a response plain unfinished described
+    local type key descr
+    (( ! $+commands[aionode] )) && return 1
+    response=("${(@f)$(env COMP_WORDS="${words[*]}" COMP_CWORD=$((CURRENT-1)) \\
+        _AIONODE_COMPLETE=zsh_complete aionode)}")
+    for type key descr in ${response}; do
+        case $type in
+            dir) _path_files -/ ;;
+            file) _path_files -f ;;
+            plain)
+                if [[ $descr != _ ]]; then
+                    described+=("${key//:/\\\\:}:$descr")
+                elif [[ $key == */ ]]; then
+                    # The name of a package, which goes on behind its slash.
+                    unfinished+=("$key")
+                else
+                    plain+=("$key")
+                fi ;;
+        esac
+    done
+    (( $#described )) && _describe -V unsorted described -U
+    (( $#unfinished )) && compadd -S '' -U -V unsorted -a unfinished
+    (( $#plain )) && compadd -U -V unsorted -a plain
+    return 0
+}
+if [[ $zsh_eval_context[-1] == loadautofunc ]]; then
+    _aionode_completion "$@"
+else
+    compdef _aionode_completion aionode
+fi
+"""
+OWN_SCRIPTS = {"bash": BASH, "zsh": ZSH}
+"""In place of click's, which put a blank behind everything. fish puts none behind a slash."""
+
+SHELLS = {
+    "bash": ("~/.bashrc", 'eval "$(aionode completion bash)"'),
+    "zsh": ("~/.zshrc", 'eval "$(aionode completion zsh)"'),
+    "fish": ("~/.config/fish/completions/aionode.fish", "aionode completion fish | source"),
+}
+
+
+@click.command()
+@click.argument("shell", type=click.Choice(list(SHELLS)))
+def completion(shell: str) -> None:
+    """Print what makes SHELL complete commands, options, types and names on the network."""
+    from click.shell_completion import get_completion_class
+
+    from aionode.cli._main import root
+
+    file, line = SHELLS[shell]
+    click.echo(SETUP.format(file=file, line=line), nl=False)
+    if shell in OWN_SCRIPTS:
+        click.echo(OWN_SCRIPTS[shell], nl=False)
+        return
+    made = get_completion_class(shell)
+    assert made is not None  # noqa: S101  # click knows all of SHELLS
+    click.echo(made(root, {}, "aionode", "_AIONODE_COMPLETE").source())
+
+
+def complete_names(what: str) -> Completer:
+    """Return what completes names on the network: ``node``, ``topic``, ``service``, ``action``."""
+
+    def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+        return beginning(incomplete, now(lambda node: done(names_of(node, what))))
+
+    return complete
+
+
+def complete_types_of(what: str, kind: str) -> Completer:
+    """Return what completes the type behind the name of a ``topic``, ``service`` or ``action``.
+
+    Those that the name has on the network, or all of a kind (``msg``, ``srv``, ``action``) if it
+    has none, or none begins as what is there already.
+    """
+    any_type = complete_interfaces(kind)
+
+    def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+        name = ctx.params.get(f"{what}_name")
+        known = now(lambda node: done(types_of(node, what, name))) if name else []
+        return beginning(incomplete, known) or any_type(ctx, param, incomplete)
+
+    return complete
+
+
+def complete_parameters(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Complete the names of the parameters of the node that was named before."""
+    node_name = ctx.params.get("node_name")
+    if not node_name:
+        return []
+
+    async def names(node: Node) -> list[str]:
+        from aionode.parameter_client import AsyncParameterClient
+
+        name = node_name if node_name.startswith("/") else f"/{node_name}"
+        client = AsyncParameterClient(node, name)
+        async with asyncio.timeout(ANSWER_S):
+            await client.wait_for_services()
+            found: list[str] = (await client.list_parameters()).names
+        return found
+
+    return beginning(incomplete, sorted(now(names)))
+
+
+def beginning(incomplete: str, names: list[str]) -> list[str]:
+    """Return the names that begin as what is there already."""
+    return [name for name in names if name.startswith(incomplete)]
+
+
+def now(question: Callable[[Node], Awaitable[list[str]]]) -> list[str]:
+    """Return what the network answers at this moment; nothing after an error.
+
+    There is no place for an error in the middle of a command line.
+    """
+
+    async def ask() -> list[str]:
+        from aionode.cli._support.session import make_node
+
+        async with make_node() as node:
+            for transport in node.context.transports:
+                await transport.all_known(QUIET_S)
+            return await question(node)
+
+    try:
+        return asyncio.run(ask())
+    except (AionodeError, ExceptionGroup, TimeoutError):
+        return []
+
+
+async def done(names: list[str]) -> list[str]:
+    """Return what is known without waiting."""
+    return names
+
+
+def names_of(node: Node, what: str) -> list[str]:
+    """Return the names of one kind that are not hidden."""
+    from aionode.cli._support import lookup
+    from aionode.graph import EndpointKind
+
+    if what == "node":
+        return [info.fully_qualified_name for info in lookup.node_infos(node)]
+    if what == "service":
+        return list(lookup.names_and_types(node, EndpointKind.SERVER))
+    if what == "action":
+        return [name for name, _ in node.get_action_names_and_types()]
+    return list(lookup.names_and_types(node, *TOPIC_KINDS))
+
+
+def types_of(node: Node, what: str, name: str) -> list[str]:
+    """Return the types of a name on the network."""
+    from aionode.cli._support import lookup
+    from aionode.graph import EndpointKind
+
+    if what == "action":
+        known = dict(node.get_action_names_and_types())
+    else:
+        kinds = (EndpointKind.SERVER,) if what == "service" else TOPIC_KINDS
+        known = lookup.names_and_types(node, *kinds, hidden=True)
+    return known.get(name if name.startswith("/") else f"/{name}", [])
+
+
+def complete_interfaces(kind: str = "") -> Completer:
+    """Return what completes type names; `kind` is ``msg``, ``srv``, ``action`` or any."""
+
+    def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+        from aionode.interfaces import interface_names, shipped_packages
+
+        package, slash, _ = incomplete.partition("/")
+        if not slash:
+            return [f"{name}/" for name in sorted(shipped_packages()) if name.startswith(package)]
+        found: Any = interface_names(package)
+        return [name for name in found if name.startswith(incomplete) and f"/{kind}" in name]
+
+    return complete

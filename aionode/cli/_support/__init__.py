@@ -1,0 +1,1 @@
+"""What verbs and commands share."""

@@ -1,0 +1,38 @@
+"""Errors in one line, and the exit status they stand for."""
+
+from __future__ import annotations
+
+from aionode.errors import AionodeError, NameValidationException
+
+__all__ = ["limited", "one_line", "status_of"]
+
+
+def status_of(error: AionodeError) -> int:
+    """Return the exit status that an error stands for."""
+    status: int = getattr(error, "status", 1)
+    return status
+
+
+MOST_CHARACTERS = 1000
+"""How long an error may be: what was given may be of any length."""
+
+
+def limited(text: str) -> str:
+    """Return a text without its middle if it is too long."""
+    if len(text) <= MOST_CHARACTERS:
+        return text
+    return f"{text[: MOST_CHARACTERS // 2]} ... {text[-MOST_CHARACTERS // 2 :]}"
+
+
+def one_line(error: BaseException) -> str:
+    """Return what an error says, in one line, and not too long a one."""
+    return limited(text_of(error))
+
+
+def text_of(error: BaseException) -> str:
+    """Return what an error says, in one line."""
+    if isinstance(error, NameValidationException):
+        found = error.name[error.invalid_index : error.invalid_index + 1]
+        where = f", at character {error.invalid_index + 1} ({found!r})" if found else ""
+        return f"Invalid {error.name_type} {error.name!r}: {error.error_msg}{where}"
+    return "; ".join(line.strip() for line in str(error).splitlines() if line.strip())

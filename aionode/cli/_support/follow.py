@@ -1,0 +1,125 @@
+"""Listening to a topic whose type the network knows."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, Any
+
+from aionode.cli._support import lookup
+from aionode.errors import CommandError
+from aionode.graph import TOPIC_KINDS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.cli._support.output import Output
+    from aionode.endpoints._core.callback_runner import CallbackContext
+    from aionode.endpoints.subscription import MessageInfo, Subscription
+    from aionode.message import Message
+    from aionode.node import Node
+    from aionode.qos import QoSProfile
+
+__all__ = ["Follower", "filter_from", "wait_for_type"]
+
+
+class Follower:
+    """Hands the messages of topics to functions, until one is done or fails.
+
+    Errors of the functions come out of `finished` as they are.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+
+    def follow(
+        self,
+        msg_type: type[Message],
+        topic: str,
+        take: Callable[[Any, MessageInfo], None],
+        qos: QoSProfile,
+        *,
+        raw: bool = False,
+    ) -> Subscription[Any]:
+        """Call `take` with each message of `topic` until the end, or with its bytes if `raw`."""
+
+        def take_until_end(msg: Any, info: MessageInfo) -> None:
+            if not self._done.done():
+                take(msg, info)
+
+        subscription: Subscription[Any] = self._node.create_subscription(
+            msg_type,
+            topic,
+            take_until_end,
+            qos,
+            raw=raw,  # type: ignore[call-overload]  # known only at run time
+            on_error=self.fail,
+        )
+        return subscription
+
+    def fail(self, error: Exception, _: CallbackContext | None = None) -> None:
+        """End with an error."""
+        if not self._done.done():
+            self._done.set_exception(error)
+
+    def finish(self) -> None:
+        """End without one."""
+        if not self._done.done():
+            self._done.set_result(None)
+
+    async def finished(self, timeout_s: float | None = None) -> bool:
+        """Wait for the end; return False when `timeout_s` has passed before.
+
+        Raises:
+            Exception: what a function raised.
+        """
+        try:
+            async with asyncio.timeout(timeout_s):
+                await self._done
+        except TimeoutError:
+            return False
+        return True
+
+
+async def wait_for_type(
+    node: Node, topic: str, output: Output, given: str | None = None
+) -> type[Message]:
+    """Return the class of a topic's messages, and wait for somebody to use it if nobody does.
+
+    Raises:
+        CommandError: its type cannot be learnt.
+    """
+    found = await lookup.topic_type(node, topic, given)
+    if found is None:
+        hint = lookup.close_to(topic, lookup.names_and_types(node, *TOPIC_KINDS))
+        output.progress(f"WARNING: topic [{topic}] does not appear to be published yet{hint}")
+        with output.waiting(f"waiting for somebody to publish {topic}"):
+            await node.graph.until(lambda: bool(lookup.endpoints(node, *TOPIC_KINDS, name=topic)))
+        found = await lookup.topic_type(node, topic)
+    assert found is not None  # noqa: S101  # somebody uses it
+    return found
+
+
+def filter_from(text: str | None) -> Callable[[Any], bool]:
+    """Return whether a message fits an expression of the user, in which it is called ``m``.
+
+    Raises:
+        CommandError: it is no Python expression; the function raises it too, where it fails.
+    """
+    if text is None:
+        return lambda _: True
+    try:
+        code = compile(text, "--filter", "eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        problem = error.msg if isinstance(error, SyntaxError) else type(error).__name__
+        raise CommandError(
+            f"--filter {text!r}: no Python expression: {problem}; one such as 'm.x > 1' fits"
+        ) from error
+
+    def fits(m: Any) -> bool:
+        try:
+            return bool(eval(code, {"m": m}))  # noqa: S307  # the user's own, with their own rights
+        except Exception as error:  # an expression may raise anything
+            raise CommandError(f"--filter {text!r}: {type(error).__name__}: {error}") from error
+
+    return fits

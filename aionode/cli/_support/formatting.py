@@ -1,0 +1,171 @@
+"""Messages and endpoints as text, laid out as ros2 prints them."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from aionode.errors import CommandError
+from aionode.message import Message, fields, type_name
+from aionode.qos import HistoryPolicy
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.graph import EndpointInfo
+    from aionode.message import FieldType
+
+__all__ = ["PrintOptions", "csv_line", "endpoint_text", "field_of", "names_text", "yaml_text"]
+
+
+@dataclass(frozen=True, slots=True)
+class PrintOptions:
+    """How much of a message is shown.
+
+    Attributes:
+        limit: How many elements of an array and characters of a string; None shows all.
+        no_arr: Whether arrays are only described.
+        no_str: Whether strings are only described.
+    """
+
+    limit: int | None = None
+    no_arr: bool = False
+    no_str: bool = False
+
+    def message(self, msg: Message) -> dict[str, Any]:
+        """Return a message as plain values."""
+        return {
+            field.name: self.value(getattr(msg, field.name), field.type)
+            for field in fields(type(msg))
+        }
+
+    def value(self, value: Any, type_: FieldType | None = None) -> Any:
+        """Return a value as plain values; `type_` describes it where it is not shown."""
+        if isinstance(value, Message):
+            return self.message(value)
+        if isinstance(value, str):
+            return self._string(value)
+        if isinstance(value, bytes) and type_ is not None and type_.container == "single":
+            return value[0]
+        if isinstance(value, bool | int | float):
+            return value
+        return self._many(value, type_)
+
+    def _string(self, text: str) -> str:
+        if self.no_str:
+            return f"<string length: <{len(text)}>>"
+        if self.limit is not None and len(text) > self.limit:
+            return f"{text[: self.limit]}..."
+        return text
+
+    def _many(self, values: Any, type_: FieldType | None) -> Any:
+        if self.no_arr and type_ is not None:
+            return described(values, type_)
+        cut = self.limit is not None and len(values) > self.limit
+        shown = values[: self.limit] if cut else values
+        plain = shown.tolist() if hasattr(shown, "tolist") else list(shown)
+        plain = [v if type(v) in {int, float, bool} else self.value(v) for v in plain]
+        return [*plain, "..."] if cut else plain
+
+
+def described(values: Any, type_: FieldType) -> str:
+    """Return what an array holds without showing it."""
+    name = type_name(type_.nested) if type_.nested is not None else type_.kind
+    if type_.container == "array":
+        return f"<array type: {name}[{type_.size}]>"
+    bound = f"[{type_.size}]" if type_.container == "bounded" else ""
+    return f"<sequence type: {name}{bound}, length: {len(values)}>"
+
+
+def yaml_text(
+    plain: object, *, flow_style: bool = False, quoted: Callable[[str], bool] | None = None
+) -> str:
+    """Return plain values as YAML; strings that YAML or `quoted` takes for no string in quotes."""
+    import yaml
+
+    base: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)  # libyaml is optional
+    dumper: Any = base
+    if quoted is not None:
+        dumper = type("Quoting", (base,), {})
+
+        def represent(to: Any, text: str) -> Any:
+            style = "'" if quoted(text) else None
+            return to.represent_scalar("tag:yaml.org,2002:str", text, style)
+
+        dumper.add_representer(str, represent)
+    text: str = yaml.dump(
+        plain,
+        Dumper=dumper,
+        allow_unicode=True,
+        default_flow_style=flow_style,
+        sort_keys=False,
+        width=2**31 - 1,
+    )
+    return text
+
+
+def csv_line(plain: Any) -> str:
+    """Return all values in one line, separated by commas."""
+    if isinstance(plain, dict):
+        return ",".join(csv_line(value) for value in plain.values())
+    if isinstance(plain, list):
+        return ",".join(csv_line(value) for value in plain)
+    return str(plain)
+
+
+FIELD_PART = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)((?:\[[0-9]{1,18}\])*)")
+
+
+def field_of(msg: Message, path: str) -> tuple[Any, FieldType | None]:
+    """Return the value of a field such as ``pose.position`` or ``poses[0]``, and its type.
+
+    Raises:
+        CommandError: there is no such field.
+    """
+    value: Any = msg
+    type_: FieldType | None = None
+    for part in filter(None, path.split(".")):
+        found = FIELD_PART.fullmatch(part)
+        types = {f.name: f.type for f in fields(type(value))} if isinstance(value, Message) else {}
+        if found is None or found[1] not in types:
+            where = type_name(type(value)) if isinstance(value, Message) else "a single value"
+            has = f" has {', '.join(types)}" if types else " has no fields"
+            raise CommandError(f"Invalid field '{path}': no '{part}' in it; {where}{has}")
+        value, type_ = getattr(value, found[1]), types[found[1]]
+        for index in map(int, re.findall(r"[0-9]+", found[2])):
+            if type_.container == "single" or index >= len(value):
+                problem = f"nothing at [{index}] of {found[1]}, which is {type_}"
+                raise CommandError(f"Invalid field '{path}': {problem}")
+            value, type_ = value[index], type_.element
+            value = value.item() if hasattr(value, "item") else value
+    return value, type_
+
+
+def names_text(names: list[str]) -> str:
+    """Return one name as it is, and several as a list."""
+    return names[0] if len(names) == 1 else str(names)
+
+
+def endpoint_text(endpoint: EndpointInfo) -> str:
+    """Return all that is known of a publisher or subscription, in ros2's lines."""
+    profile = endpoint.qos
+    depth = f" ({profile.depth})" if profile.history is HistoryPolicy.KEEP_LAST else ""
+    return "\n".join(
+        (
+            f"Node name: {endpoint.node.name}",
+            f"Node namespace: {endpoint.node.namespace}",
+            f"Topic type: {endpoint.type_name}",
+            f"Topic type hash: {endpoint.type_hash}",
+            f"Endpoint type: {endpoint.kind.name}",
+            f"GID: {'.'.join(f'{byte:02x}' for byte in endpoint.gid)}",
+            "QoS profile:",
+            f"  Reliability: {profile.reliability.name}",
+            f"  History (Depth): {profile.history.name}{depth}",
+            f"  Durability: {profile.durability.name}",
+            f"  Lifespan: {profile.lifespan}",
+            f"  Deadline: {profile.deadline}",
+            f"  Liveliness: {profile.liveliness.name}",
+            f"  Liveliness lease duration: {profile.liveliness_lease_duration}",
+        )
+    )

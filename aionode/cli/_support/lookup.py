@@ -1,0 +1,187 @@
+"""What is on the network without the command itself, and the classes of its types."""
+
+from __future__ import annotations
+
+import difflib
+from typing import TYPE_CHECKING, Any
+
+from aionode.errors import CommandError, InterfaceNotFoundError
+from aionode.graph import TOPIC_KINDS, EndpointKind
+from aionode.names import is_hidden
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from aionode.graph import EndpointInfo, NodeInfo
+    from aionode.message import Message
+    from aionode.node import Node
+
+__all__ = [
+    "absolute",
+    "close_to",
+    "endpoints",
+    "interface_class",
+    "is_own",
+    "names_and_types",
+    "node_infos",
+    "topic_type",
+    "type_of",
+    "unknown",
+]
+
+
+def is_own(node: Node, info: NodeInfo) -> bool:
+    """Whether `info` is the node of the command itself."""
+    return (
+        info.participant == node.context.participant
+        and info.fully_qualified_name == node.get_fully_qualified_name()
+    )
+
+
+def node_infos(node: Node, *, hidden: bool = False) -> list[NodeInfo]:
+    """Return the other nodes, by name."""
+    found = [
+        info
+        for info in node.graph.nodes()
+        if not is_own(node, info) and (hidden or not info.name.startswith("_"))
+    ]
+    return sorted(found, key=lambda info: info.fully_qualified_name)
+
+
+def endpoints(
+    node: Node, *kinds: EndpointKind, name: str | None = None, of: NodeInfo | None = None
+) -> list[EndpointInfo]:
+    """Return the endpoints of other nodes."""
+    return [
+        found
+        for found in node.graph.endpoints(*kinds, name=name, node=of)
+        if not is_own(node, found.node)
+    ]
+
+
+def names_and_types(
+    node: Node, *kinds: EndpointKind, hidden: bool = False, of: NodeInfo | None = None
+) -> dict[str, list[str]]:
+    """Return the names that endpoints of other nodes use, sorted, each with its types."""
+    types: dict[str, set[str]] = {}
+    for endpoint in endpoints(node, *kinds, of=of):
+        if hidden or not is_hidden(endpoint.name):
+            types.setdefault(endpoint.name, set()).add(endpoint.type_name)
+    return {name: sorted(types[name]) for name in sorted(types)}
+
+
+# Errors with help
+
+
+def close_to(name: str, names: Iterable[str]) -> str:
+    """Return a hint at the name that was probably meant, or nothing."""
+    names = list(names)
+    same = [known for known in names if known.rpartition("/")[2] == name.rpartition("/")[2]]
+    close = same or difflib.get_close_matches(name, names, 1, 0.75)
+    return f". Did you mean '{close[0]}'?" if close else ""
+
+
+def unknown(text: str, name: str, names: Iterable[str], shows: str) -> CommandError:
+    """Return the error for a name that nobody uses: what was given, and where to look."""
+    hint = close_to(name, names) or f". `aionode {shows}` shows those there are"
+    return CommandError(f"{text} '{name}'{hint}")
+
+
+# Types
+
+
+def interface_class(kind: str, name: str) -> Any:
+    """Return the class that a user named.
+
+    Args:
+        kind: ``message``, ``service`` or ``action``.
+        name: Its ROS name.
+
+    Raises:
+        CommandError: there is none.
+    """
+    from aionode import interfaces
+
+    get = {
+        "message": interfaces.get_message,
+        "service": interfaces.get_service,
+        "action": interfaces.get_action,
+    }[kind]
+    try:
+        return get(name)
+    except InterfaceNotFoundError as error:
+        hint = "" if error.suggestions else "; `--interfaces PATH` loads definitions of your own"
+        raise CommandError(f"The passed {kind} type is invalid: {error}{hint}") from error
+
+
+async def topic_type(node: Node, topic: str, given: str | None = None) -> type[Message] | None:
+    """Return the class of a topic's messages, as those say who use it; None if nobody does.
+
+    Args:
+        node: The command's node.
+        topic: Full name of the topic.
+        given: What the user says it is; then nobody is asked who uses the same.
+
+    Raises:
+        CommandError: the users of the topic disagree, or the type cannot be learnt.
+    """
+    users = endpoints(node, *TOPIC_KINDS, name=topic)
+    if given is not None:
+        users = [user for user in users if user.type_name == given]
+        if not users:
+            found: type[Message] = interface_class("message", given)
+            return found
+    types = sorted({user.type_name for user in users})
+    if len(types) > 1:
+        raise CommandError(
+            f"Topic '{topic}' has more than one type: {', '.join(types)}; say which one you want "
+            "after the name of the topic"
+        )
+    if not users:
+        return None
+    learnt: type[Message] = await type_of(node, users)
+    return learnt
+
+
+async def type_of(node: Node, users: list[EndpointInfo]) -> Any:
+    """Return the class of what `users`, which all have one type, send or serve.
+
+    That is the class of aionode.interfaces if its definition is the same; otherwise one of the
+    nodes is asked for the definition.
+
+    Raises:
+        CommandError: no node tells.
+    """
+    from aionode.interfaces import get_interface
+    from aionode.wire.typehash import type_hash
+
+    name = users[0].type_name
+    try:
+        known: Any = get_interface(name)
+    except InterfaceNotFoundError:
+        known = None
+    hashes = {user.type_hash for user in users}
+    if known is not None and type_hash(known) in hashes:
+        return known
+    from aionode.cli._support.type_discovery import fetch_type
+
+    for user in users:
+        fetched = await fetch_type(node, user)
+        if fetched is not None:
+            return fetched
+    problem = (
+        f"'{name}' is not known here"
+        if known is None
+        else f"'{name}' is defined differently here ({type_hash(known)}) than there "
+        f"({', '.join(sorted(hashes))})"
+    )
+    where = ", ".join(sorted({user.node.fully_qualified_name for user in users}))
+    raise CommandError(
+        f"Type of '{users[0].name}': {problem}, and {where} does not describe it; name a folder "
+        "with its definition: --interfaces PATH (in Python: aionode.idl.load_interfaces)"
+    )
+
+
+def absolute(node_name: str) -> str:
+    """Return the full name of a node; the leading slash may be left out."""
+    return node_name if node_name.startswith("/") else f"/{node_name}"

@@ -1,0 +1,134 @@
+"""Parameters as text, in ros2's words, and as plain values."""
+
+from __future__ import annotations
+
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any
+
+from aionode.cli._support.formatting import yaml_text
+from aionode.cli._support.lookup import absolute
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
+    from aionode.parameter import Parameter
+
+__all__ = [
+    "LABELS",
+    "TYPE_NAMES",
+    "description",
+    "descriptor_record",
+    "file_form",
+    "file_text",
+    "plain",
+]
+
+TYPE_NAMES = (
+    "not set",
+    "boolean",
+    "integer",
+    "double",
+    "string",
+    "byte array",
+    "boolean array",
+    "integer array",
+    "double array",
+    "string array",
+)
+LABELS = (
+    "Parameter not set.",
+    "Boolean value is:",
+    "Integer value is:",
+    "Double value is:",
+    "String value is:",
+    "Byte values are:",
+    "Boolean values are:",
+    "Integer values are:",
+    "Double values are:",
+    "String values are:",
+)
+
+
+def plain(parameter: Parameter) -> Any:
+    """Return a value for people and YAML: bytes as numbers."""
+    value = parameter.value
+    if isinstance(value, list | tuple | bytes):
+        return [item[0] if isinstance(item, bytes) else item for item in value]
+    return value
+
+
+def description(descriptor: ParameterDescriptor) -> list[str]:
+    """Return what is known of a parameter, in ros2's lines."""
+    lines = [f"Parameter name: {descriptor.name}", f"  Type: {TYPE_NAMES[descriptor.type]}"]
+    if descriptor.description:
+        lines.append(f"  Description: {descriptor.description}")
+    lines.append("  Constraints:")
+    if descriptor.read_only:
+        lines.append("    Read only: true")
+    for limits in ranges_of(descriptor)[:1]:
+        lines.append(f"    Min value: {limits.from_value}")
+        lines.append(f"    Max value: {limits.to_value}")
+        if limits.step:
+            lines.append(f"    Step: {limits.step}")
+    if descriptor.additional_constraints:
+        lines.append(f"    Additional constraints: {descriptor.additional_constraints}")
+    return lines
+
+
+def ranges_of(descriptor: ParameterDescriptor) -> list[Any]:
+    """Return the ranges that a value has to be in: one at most."""
+    return [*descriptor.floating_point_range, *descriptor.integer_range]
+
+
+def descriptor_record(node_name: str, descriptor: ParameterDescriptor) -> dict[str, Any]:
+    """Return what is known of a parameter as plain values."""
+    ranges = ranges_of(descriptor)
+    return {
+        "node": absolute(node_name),
+        "name": descriptor.name,
+        "type": TYPE_NAMES[descriptor.type],
+        "description": descriptor.description,
+        "read_only": descriptor.read_only,
+        "dynamic_typing": descriptor.dynamic_typing,
+        "additional_constraints": descriptor.additional_constraints,
+        "min": ranges[0].from_value if ranges else None,
+        "max": ranges[0].to_value if ranges else None,
+        "step": ranges[0].step if ranges else None,
+    }
+
+
+def file_form(parameters: Iterable[Parameter]) -> dict[str, Any]:
+    """Return parameters as a parameter file holds them: sorted, nested where names have dots."""
+    values: dict[str, Any] = {}
+    # Of `a` and `a.b` the first comes first, and keeps the second one's name in one piece.
+    for parameter in sorted(parameters, key=attrgetter("name")):
+        insert(values, parameter.name, plain(parameter))
+    return ordered(values)
+
+
+def file_text(record: dict[str, Any]) -> str:
+    """Return what is in a parameter file as its text: strings are strings by its own rules, too.
+
+    Those differ from YAML's: ``INF`` is a number, for example.
+    """
+    from aionode.arguments._parameter_yaml import parse_scalar
+
+    return yaml_text(record, quoted=lambda text: parse_scalar(text) != text)
+
+
+def insert(values: dict[str, Any], name: str, value: Any) -> None:
+    """Put a value under its name, the parts of which are keys one below the other."""
+    first, dot, rest = name.partition(".")
+    if dot and isinstance(values.get(first, {}), dict):
+        insert(values.setdefault(first, {}), rest, value)
+    else:
+        values[name] = value
+
+
+def ordered(values: dict[str, Any]) -> dict[str, Any]:
+    """Return the same mapping with its keys sorted, inner ones too."""
+    return {
+        key: ordered(value) if isinstance(value, dict) else value
+        for key, value in sorted(values.items())
+    }

@@ -1,0 +1,199 @@
+"""Running a verb: a node for it, Ctrl-C, and the exit status."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from typing import TYPE_CHECKING
+
+import click
+
+from aionode.cli._support.ending import Deadline
+from aionode.cli._support.error_text import one_line, status_of
+from aionode.cli._support.output import Output
+from aionode.errors import AionodeError
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable, Callable, Coroutine
+
+    from aionode.context import Context
+    from aionode.node import Node
+    from aionode.runner import LoopFactory
+
+__all__ = ["make_node", "run_verb"]
+
+INTERRUPTED = 130
+"""The exit status of a program that Ctrl-C ended before it was done, as shells know it."""
+
+CLOSE_S = 0.9
+"""How long a command that has printed its answer may take to end, in seconds."""
+
+STOP_S = 3.5
+"""How long it may take after a signal: a goal is cancelled meanwhile, which the server answers."""
+
+QUIET_S = 2.0
+"""How long nothing has to come before what is known counts as all there is, in seconds.
+
+Zenoh has been seen to pause for so long between the first of 3000 endpoints and the rest.
+"""
+
+PROGRESS_S = 1.0
+"""How often a command says what it is waiting for, in seconds."""
+
+UNLIMITED_MS = 3_600_000.0
+"""How long a command may block its own loop: nothing else runs there, and terminals are slow."""
+
+
+def make_node(
+    context: Context | None = None, node_name: str | None = None, *, use_sim_time: bool = False
+) -> Node:
+    """Return the node of a command: hidden, and with nothing that others could use."""
+    # Imported when a command runs: its help needs none of this.
+    from aionode.node import Node
+    from aionode.parameter import Parameter
+
+    settings = {"start_type_description_service": False, "use_sim_time": use_sim_time}
+    return Node(
+        node_name or f"_aionode_cli_{os.getpid()}",
+        context=context,
+        enable_rosout=False,
+        start_parameter_services=False,
+        parameter_overrides=[Parameter(name, value=value) for name, value in settings.items()],
+        callback_budget_ms=UNLIMITED_MS,
+    )
+
+
+def run_verb(
+    verb: Callable[[Node, Output], Awaitable[int | None]],
+    *,
+    json: bool = False,
+    node_name: str | None = None,
+    use_sim_time: bool = False,
+    endless: bool = False,
+    busy: bool = False,
+    asks: bool = True,
+) -> None:
+    """Run `verb` with a node, until it returns or Ctrl-C; then end the command.
+
+    Args:
+        verb: Called with a running node and the output; it may return an exit status.
+        json: Whether to print records.
+        node_name: Name of the node; a hidden one without it.
+        use_sim_time: Whether the node's time is that of ``/clock``.
+        endless: Whether Ctrl-C is the usual end, with status 0, and not an interruption (130).
+        busy: Whether many messages are expected, so that the faster loop is worth its import.
+        asks: Whether its answer is made of what is on the network, and all of that is waited for.
+
+    Raises:
+        click.exceptions.Exit: always, with the status.
+        AionodeError: the command cannot do what was asked.
+    """
+    from aionode.runner import best_loop_factory
+
+    output = Output(json=json)
+    stopped_status = 0 if endless else INTERRUPTED
+    deadline = Deadline()
+
+    async def work() -> int | None:
+        async with make_node(node_name=node_name, use_sim_time=use_sim_time) as node:
+            try:
+                if asks:
+                    await wait_until_known(node, output)
+                status = await verb(node, output)
+            except AionodeError as error:
+                text, status = f"{one_line(error)}\n", status_of(error)
+                deadline.set(CLOSE_S, status, text)
+                raise
+            except asyncio.CancelledError:
+                deadline.set(CLOSE_S, stopped_status)
+                raise
+            deadline.set(CLOSE_S, status or 0)
+            return status
+
+    try:
+        status = run_until_stopped(
+            work(),
+            loop_factory=best_loop_factory() if busy else None,
+            on_stop=lambda: deadline.set(STOP_S, stopped_status),
+        )
+    finally:
+        deadline.cancel()
+    raise click.exceptions.Exit(stopped_status if status is None else status)
+
+
+async def wait_until_known(node: Node, output: Output) -> None:
+    """Wait until all who can be reached have said what there is; say so if it takes long.
+
+    As long as something comes it is waited for. If somebody does not answer, there is a warning
+    that the answer may be incomplete.
+    """
+    transports = node.context.transports
+    asked = asyncio.gather(*(transport.all_known(QUIET_S) for transport in transports))
+    while not (await asyncio.wait((asked,), timeout=PROGRESS_S))[0]:
+        count = len(node.graph.nodes()) + len(node.graph.endpoints())
+        output.warn(f"Waiting for what there is to be known: {count} nodes and endpoints so far")
+    if not all(await asked):
+        output.warn(
+            "WARNING: somebody who can be reached has not said what there is (frozen, overloaded "
+            "or far away?): this may be incomplete"
+        )
+
+
+def run_until_stopped(
+    work: Coroutine[None, None, int | None],
+    loop_factory: LoopFactory | None = None,
+    on_stop: Callable[[], object] = lambda: None,
+) -> int | None:
+    """Return the exit status of `work`, or None if a signal ended it.
+
+    Args:
+        work: Cancelled at the first signal.
+        loop_factory: Makes the event loop; asyncio's own without it.
+        on_stop: Called at the first signal, whatever the loop is doing.
+
+    Raises:
+        BaseException: what `work` raised; the first error where it raised several.
+    """
+    try:
+        with asyncio.Runner(loop_factory=loop_factory) as runner:
+            return runner.run(stoppable(work, on_stop))
+    except BaseExceptionGroup as group:
+        raise first_error(group) from None
+
+
+async def stoppable(
+    work: Coroutine[None, None, int | None], on_stop: Callable[[], object]
+) -> int | None:
+    """Await `work`, and cancel it at the first SIGINT or SIGTERM."""
+    from aionode.runner import signals_to
+
+    loop = asyncio.get_running_loop()
+    task = asyncio.current_task()
+    assert task is not None  # noqa: S101  # a coroutine runs in a task
+    stopped = False
+
+    def stop() -> None:
+        nonlocal stopped
+        stopped = True
+        task.cancel()
+
+    def on_signal() -> None:
+        on_stop()
+        loop.call_soon_threadsafe(stop)
+
+    with signals_to(on_signal):
+        try:
+            return await work or 0
+        except asyncio.CancelledError:
+            if stopped:
+                return None
+            raise
+
+
+def first_error(group: BaseExceptionGroup[BaseException]) -> BaseException:
+    """Return the error of a group that tells most: one of aionode's own if there is one."""
+    known, _ = group.split((AionodeError, BrokenPipeError))
+    error: BaseException = known or group
+    while isinstance(error, BaseExceptionGroup):
+        error = error.exceptions[0]
+    return error

@@ -1,0 +1,1 @@
+"""What commands do: a coroutine for each verb, with plain arguments."""

@@ -1,0 +1,239 @@
+"""``aionode doctor``: what is on the network, and why two endpoints do not talk."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from typing import TYPE_CHECKING, Any
+
+from aionode.cli._support import lookup
+from aionode.cli._support.diagnosis import Finding, diagnose
+from aionode.cli._support.routes import link_findings, pairs_of, query_links
+from aionode.clock import perf_ns
+from aionode.graph import EndpointKind
+from aionode.transport._zenoh_config import DiscoveryRange
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from aionode.cli._support.output import Output
+    from aionode.graph import EndpointInfo, NodeInfo
+    from aionode.node import Node
+    from aionode.transport._zenoh_config import Network
+
+__all__ = ["doctor", "network_findings"]
+
+PROBE_S = 0.2
+"""How long a router on this machine may take to accept a connection; it takes 0.1 ms."""
+
+DOMAINS_S = 1.0
+"""How long nodes of other domains are looked for if there are none of this one."""
+
+DOMAINS_AGAIN_S = 0.02
+
+ZENOH = "rmw_zenoh_cpp"
+
+
+async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> int:
+    """Print what is on the network and what looks wrong; return 1 if something does not work.
+
+    Args:
+        node: The command's node.
+        names: Look only at these nodes, topics and services, and show which way messages take.
+        output: Where to print.
+
+    Raises:
+        CommandError: one of the names is not there.
+    """
+    network = node.context.network
+    has_router = await answers(network.router_port)
+    nodes, endpoints = chosen(node, names)
+    links = await query_links(node)
+    domains = await other_domains(node, patient=not nodes)
+    wanted = full_names(names)
+    pairs = [
+        pair
+        for pair in pairs_of(endpoints, links)
+        if not wanted or wanted & {pair.publisher.name, *pair.nodes}
+    ]
+    record = {
+        "domain_id": network.domain_id,
+        "other_domains": domains,
+        "discovery_range": network.discovery_range.value,
+        "static_peers": list(network.static_peers),
+        "router": has_router,
+        "participants": len({one.participant for one in nodes}),
+        "nodes": len(nodes),
+        "topics": count(endpoints, EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION),
+        "services": count(endpoints, EndpointKind.SERVER, EndpointKind.CLIENT),
+        "links": len(links.pairs),
+        "pairs": [pair.record() for pair in pairs],
+    }
+    lines = summary(record, network.router_port)
+    if names:
+        lines += [f"  {pair.text()}" for pair in pairs]
+    output.item("\n".join(lines), record)
+    found = diagnose(nodes, endpoints)
+    found += link_findings(pairs)
+    found += network_findings(
+        network, os.environ, has_router=has_router, domains=domains, alone=not nodes
+    )
+    for finding in found:
+        output.item(
+            f"\n{finding.severity}: {finding.subject}: {finding.text}\n  -> {finding.remedy}",
+            {
+                "severity": finding.severity,
+                "subject": finding.subject,
+                "text": finding.text,
+                "remedy": finding.remedy,
+            },
+        )
+    problems = sum(finding.severity == "problem" for finding in found)
+    output.text(f"\n{problems} problem(s), {len(found) - problems} hint(s)")
+    return 1 if problems else 0
+
+
+def summary(record: Mapping[str, Any], router_port: int) -> list[str]:
+    """Return what is on the network in a few lines."""
+    router = "answers" if record["router"] else "none"
+    return [
+        f"Domain: {record['domain_id']}",
+        f"Discovery range: {record['discovery_range']}",
+        f"Static peers: {', '.join(record['static_peers']) or 'none'}",
+        f"Router on this machine (port {router_port}): {router}",
+        f"Other processes: {record['participants']}",
+        f"Nodes: {record['nodes']}",
+        f"Topics: {record['topics']}",
+        f"Services: {record['services']}",
+        f"Pairs of linked processes: {record['links']}",
+    ]
+
+
+def count(endpoints: Sequence[EndpointInfo], *kinds: EndpointKind) -> int:
+    """Return how many names the endpoints of some kinds use."""
+    return len({endpoint.name for endpoint in endpoints if endpoint.kind in kinds})
+
+
+def chosen(node: Node, names: Sequence[str]) -> tuple[list[NodeInfo], list[EndpointInfo]]:
+    """Return nodes and endpoints; only those that have, or belong to, one of `names` if given."""
+    nodes = lookup.node_infos(node)
+    endpoints = [e for e in lookup.endpoints(node) if not e.node.name.startswith("_")]
+    if not names:
+        return nodes, endpoints
+    wanted = full_names(names)
+    known = {one.fully_qualified_name for one in nodes} | {one.name for one in endpoints}
+    for name in sorted(wanted - known):
+        raise lookup.unknown("No node, topic or service", name, known, "node list")
+    # A partner may have another name, so whoever looks like one stays in.
+    of_nodes = {one.name for one in endpoints if one.node.fully_qualified_name in wanted}
+    near = {
+        name
+        for name in {one.name for one in endpoints}
+        if any(lookup.close_to(name, [each]) for each in wanted | of_nodes)
+    }
+    return (
+        [one for one in nodes if one.fully_qualified_name in wanted] or nodes,
+        [one for one in endpoints if one.name in wanted | of_nodes | near],
+    )
+
+
+def full_names(names: Sequence[str]) -> set[str]:
+    """Return names as they are in the graph."""
+    return {name if name.startswith("/") else f"/{name}" for name in names}
+
+
+async def other_domains(node: Node, *, patient: bool) -> list[int]:
+    """Return the domains of nodes that can be reached but not heard, as far as is known.
+
+    Args:
+        node: The command's node.
+        patient: Whether to look for a second: where nothing else is seen, they are the news, and
+            on a busy machine it takes time.
+    """
+    ends_ns = perf_ns() + int(DOMAINS_S * 1e9)
+    while True:
+        found: set[int] = set()
+        for transport in node.context.transports:
+            found |= set(getattr(transport, "other_domains", ()))
+        if found or not patient or perf_ns() >= ends_ns:
+            return sorted(found)
+        await node.get_clock().sleep(DOMAINS_AGAIN_S)
+
+
+async def answers(port: int) -> bool:
+    """Whether somebody listens on a port of this machine."""
+    try:
+        async with asyncio.timeout(PROBE_S):
+            _, writer = await asyncio.open_connection("127.0.0.1", port)
+    except (OSError, TimeoutError):
+        return False
+    writer.close()
+    return True
+
+
+def network_findings(
+    network: Network,
+    environ: Mapping[str, str],
+    *,
+    has_router: bool,
+    domains: Sequence[int],
+    alone: bool,
+) -> list[Finding]:
+    """Return what keeps nodes from being found at all."""
+    found = []
+    if domains:
+        others = ", ".join(map(str, domains))
+        found.append(
+            Finding(
+                "problem" if alone else "hint",
+                "domain",
+                f"there are nodes in domain {others}, and this is domain {network.domain_id}: "
+                "they do not hear each other",
+                f"ROS_DOMAIN_ID={domains[0]} for those that should",
+            )
+        )
+    wide = network.discovery_range
+    if wide is DiscoveryRange.OFF and not network.static_peers:
+        found.append(
+            Finding(
+                "problem",
+                "discovery range",
+                "it is OFF, so nobody is looked for",
+                "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST or SUBNET",
+            )
+        )
+    elif wide is DiscoveryRange.SYSTEM_DEFAULT and not has_router:
+        found.append(
+            Finding(
+                "problem",
+                "router",
+                "others are found through a router only, and none answers on port "
+                f"{network.router_port}",
+                "start one: aionode router, or ros2 run rmw_zenoh_cpp rmw_zenohd",
+            )
+        )
+    elif wide is DiscoveryRange.LOCALHOST and alone and not network.static_peers and not domains:
+        found.append(
+            Finding(
+                "hint",
+                "discovery range",
+                "nobody is on this machine, and other machines are not looked for",
+                "ROS_STATIC_PEERS=<host>, ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET, or a router",
+            )
+        )
+    return [*found, *rmw_findings(environ)]
+
+
+def rmw_findings(environ: Mapping[str, str]) -> list[Finding]:
+    """Return what is wrong with the ROS 2 nodes that are started from here."""
+    rmw = environ.get("RMW_IMPLEMENTATION", "")
+    if rmw in {"", ZENOH}:
+        return []
+    return [
+        Finding(
+            "hint",
+            "RMW_IMPLEMENTATION",
+            f"it is {rmw}, so ROS 2 nodes started from here are not heard",
+            f"RMW_IMPLEMENTATION={ZENOH}",
+        )
+    ]

@@ -1,0 +1,159 @@
+"""The verbs of ``aionode lifecycle``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeVar
+
+from aionode.cli._support import lookup
+from aionode.errors import CommandError
+from aionode.graph import EndpointKind
+from aionode.interfaces.lifecycle_msgs.msg import Transition
+from aionode.interfaces.lifecycle_msgs.srv import ChangeState, GetAvailableTransitions, GetState
+from aionode.message import Message
+
+if TYPE_CHECKING:
+    from aionode.cli._support.output import Output
+    from aionode.interfaces.lifecycle_msgs.msg import TransitionDescription
+    from aionode.message import ServiceClass
+    from aionode.node import Node
+
+__all__ = ["get_state", "list_nodes", "list_transitions", "set_state", "transitions"]
+
+RequestT = TypeVar("RequestT", bound=Message)
+
+ResponseT = TypeVar("ResponseT", bound=Message)
+
+ANSWER_S = 10.0
+"""How long a node may take to answer what needs no work."""
+
+# Verbs
+
+
+def managed_nodes(node: Node, *, hidden: bool = False) -> list[str]:
+    """Return the full names of the managed nodes: those that serve `get_state`."""
+    names = {
+        server.node.fully_qualified_name
+        for server in lookup.endpoints(node, EndpointKind.SERVER)
+        if server.type_name == GetState.__ros_type__
+        and server.name == f"{server.node.fully_qualified_name}/get_state"
+        and (hidden or not server.node.name.startswith("_"))
+    }
+    return sorted(names)
+
+
+async def list_nodes(
+    node: Node, *, output: Output, hidden: bool = False, count: bool = False
+) -> None:
+    """Print the full name of every managed node."""
+    names = managed_nodes(node, hidden=hidden)
+    if count:
+        output.item(str(len(names)), {"nodes": len(names)})
+        return
+    for name in names:
+        output.item(name, {"name": name})
+
+
+async def get_state(
+    node: Node, node_name: str | None, *, output: Output, hidden: bool = False
+) -> None:
+    """Print the state of one managed node, or of each.
+
+    Raises:
+        CommandError: there is no such node.
+        RequestTimeoutError: a node does not answer.
+    """
+    names = [known(node, node_name)] if node_name else managed_nodes(node, hidden=hidden)
+    for name in names:
+        response = await ask(node, name, "get_state", GetState, GetState.Request())
+        state = response.current_state
+        text = f"{state.label} [{state.id}]"
+        output.item(
+            text if node_name else f"{name}: {text}",
+            {"name": name, "state": state.label, "id": state.id},
+        )
+
+
+async def list_transitions(
+    node: Node, node_name: str, *, output: Output, every: bool = False
+) -> None:
+    """Print the transitions that a managed node can make now, or all that there are.
+
+    Raises:
+        CommandError: there is no such node.
+        RequestTimeoutError: it does not answer.
+    """
+    name = known(node, node_name)
+    for one in await transitions(node, name, every=every):
+        output.item(
+            f"- {one.transition.label} [{one.transition.id}]\n"
+            f"\tStart: {one.start_state.label}\n\tGoal: {one.goal_state.label}",
+            {
+                "label": one.transition.label,
+                "id": one.transition.id,
+                "start": one.start_state.label,
+                "goal": one.goal_state.label,
+            },
+        )
+
+
+async def set_state(node: Node, node_name: str, transition: str, *, output: Output) -> None:
+    """Have a managed node make a transition, named by its label or number.
+
+    It waits as long as the transition takes.
+
+    Raises:
+        CommandError: there is no such node or transition, or the node refused or failed.
+    """
+    name = known(node, node_name)
+    available = await transitions(node, name)
+    chosen = next(
+        (
+            one.transition
+            for one in available
+            if transition in {one.transition.label, str(one.transition.id)}
+        ),
+        None,
+    )
+    if chosen is None and transition == "shutdown":
+        chosen = Transition(label=transition)  # cancels what the node is doing, and is not listed
+    if chosen is None:
+        lines = [f"- {one.transition.label} [{one.transition.id}]" for one in available]
+        raise CommandError("\n".join(["Unknown transition requested, available ones are:", *lines]))
+    client = node.create_client(ChangeState, f"{name}/change_state")
+    response = await client.call(ChangeState.Request(transition=chosen))
+    if not response.success:
+        raise CommandError("Transitioning failed")
+    output.item("Transitioning successful", {"name": name, "transition": chosen.label})
+
+
+def known(node: Node, node_name: str) -> str:
+    """Return the full name of a managed node; the leading slash may be left out.
+
+    Raises:
+        CommandError: there is no such node.
+    """
+    name = node_name if node_name.startswith("/") else f"/{node_name}"
+    names = managed_nodes(node, hidden=True)
+    if name not in names:
+        raise CommandError(f"Node not found{lookup.close_to(name, names)}")
+    return name
+
+
+async def transitions(node: Node, name: str, *, every: bool = False) -> list[TransitionDescription]:
+    """Return the transitions of a managed node."""
+    service = "get_transition_graph" if every else "get_available_transitions"
+    request = GetAvailableTransitions.Request()
+    response = await ask(node, name, service, GetAvailableTransitions, request)
+    return list(response.available_transitions)
+
+
+async def ask(
+    node: Node,
+    name: str,
+    service: str,
+    srv_type: ServiceClass[RequestT, ResponseT],
+    request: RequestT,
+) -> ResponseT:
+    """Ask a service of a managed node that answers at once."""
+    client = node.create_client(srv_type, f"{name}/{service}")
+    return await client.call(request, timeout_sec=ANSWER_S)

@@ -1,0 +1,86 @@
+"""The verbs of ``aionode node``."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from aionode._node.graph import actions_among
+from aionode.cli._support import lookup
+from aionode.cli._support.lookup import absolute
+from aionode.graph import EndpointKind
+
+if TYPE_CHECKING:
+    from aionode.cli._support.output import Output
+    from aionode.graph import NodeInfo
+    from aionode.node import Node
+
+__all__ = ["info", "list_nodes"]
+
+Offer = dict[str, list[str]]
+
+
+async def list_nodes(
+    node: Node, *, output: Output, hidden: bool = False, count: bool = False
+) -> None:
+    """Print the full name of every node."""
+    names = [info.fully_qualified_name for info in lookup.node_infos(node, hidden=hidden)]
+    if count:
+        output.item(str(len(names)), {"nodes": len(names)})
+        return
+    if len(set(names)) < len(names):
+        output.warn(
+            "WARNING: Be aware that there are nodes in the graph that share an exact name, which "
+            "can have unintended side effects."
+        )
+    for name in names:
+        output.item(name, {"name": name})
+
+
+async def info(node: Node, node_name: str, *, output: Output, hidden: bool = False) -> None:
+    """Print what a node publishes, subscribes to, serves and calls."""
+    name = absolute(node_name)
+    nodes = lookup.node_infos(node, hidden=True)
+    times = Counter(one.fully_qualified_name for one in nodes)
+    if not times[name]:
+        raise lookup.unknown("Unable to find node", node_name, times, "node list")
+    if times[name] > 1:
+        output.warn(
+            f'There are {times[name]} nodes in the graph with the exact name "{name}". '
+            "You are seeing information about only one of them."
+        )
+    found = next(one for one in nodes if one.fully_qualified_name == name)
+    offers = offers_of(node, found, hidden=hidden)
+    if output.json:
+        output.item("", {"name": name, **{key(title): of for title, of in offers.items()}})
+        return
+    output.text(name)
+    for title, of in offers.items():
+        output.text(f"  {title}:")
+        lines = [f"    {used}: {', '.join(types)}" for used, types in of.items()]
+        output.text("\n".join(lines))
+
+
+def key(title: str) -> str:
+    """Return the name of a heading in a record."""
+    return title.lower().replace(" ", "_")
+
+
+def offers_of(node: Node, found: NodeInfo, *, hidden: bool) -> dict[str, Offer]:
+    """Return what a node offers and uses, under ros2's headings."""
+
+    def offer(kind: EndpointKind) -> Offer:
+        return lookup.names_and_types(node, kind, hidden=hidden, of=found)
+
+    def actions(kind: EndpointKind) -> Offer:
+        topics = lookup.names_and_types(node, kind, hidden=True, of=found)
+        return dict(actions_among(list(topics.items())))
+
+    return {
+        "Subscribers": offer(EndpointKind.SUBSCRIPTION),
+        "Publishers": offer(EndpointKind.PUBLISHER),
+        "Service Servers": offer(EndpointKind.SERVER),
+        "Service Clients": offer(EndpointKind.CLIENT),
+        "Action Servers": actions(EndpointKind.PUBLISHER),
+        "Action Clients": actions(EndpointKind.SUBSCRIPTION),
+    }

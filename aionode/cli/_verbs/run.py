@@ -1,0 +1,101 @@
+"""``aionode run``: node classes composed into one process, without code."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from aionode.errors import CommandError
+from aionode.node import Node
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import ModuleType
+
+__all__ = ["FITS", "ROS_ARGS", "node_maker"]
+
+ROS_ARGS = "--ros-args"
+
+FITS = "MODULE:CLASS fits, such as my_robot.nodes:Talker or talker.py:Talker"
+
+
+def node_maker(spec: str) -> Callable[[], Any]:
+    """Return the class or function that ``module:name`` or ``file.py:name`` stands for.
+
+    The name may be left out if the module has just one node class of its own.
+
+    Raises:
+        CommandError: there is no such module, or nothing of that name that makes a node.
+    """
+    source, _, name = spec.partition(":")
+    module = module_of(source, spec)
+    if not name:
+        return only_node_class(module, spec)
+    made: Any = module
+    for part in name.split("."):
+        made = getattr(made, part, None)
+    if not callable(made) or (isinstance(made, type) and not issubclass(made, Node)):
+        known = ", ".join(node_classes(module)) or "none"
+        what = "nothing of that name" if made is None else "no node class, and no function"
+        raise CommandError(f"{spec}: {what} in {source}; its node classes: {known}")
+    return made  # type: ignore[no-any-return]  # callable was asked above
+
+
+def module_of(source: str, spec: str) -> ModuleType:
+    """Return the module of this name, or in this file."""
+    if not source:
+        raise CommandError(f"{spec!r}: no module; {FITS}")
+    if source.endswith(".py"):
+        return module_in_file(Path(source), spec)
+    try:
+        return importlib.import_module(source)
+    except ModuleNotFoundError as error:
+        if error.name is None or not f"{source}.".startswith(f"{error.name}."):
+            raise CommandError(
+                f"{spec}: {source} needs {error.name}, which is not there"
+            ) from error
+        where = f"here ({Path.cwd()}) or installed"
+        raise CommandError(f"{spec}: no module {error.name} {where}; {FITS}") from error
+
+
+def module_in_file(path: Path, spec: str) -> ModuleType:
+    """Return the module that a file makes; it may import its neighbours, as a program may."""
+    if not path.is_file():
+        raise CommandError(f"{spec}: no file {path} here ({Path.cwd()}); {FITS}")
+    loaded = sys.modules.get(path.stem)
+    if loaded is not None and loaded.__spec__ is not None:
+        origin = loaded.__spec__.origin
+        if origin is not None and Path(origin).resolve() == path.resolve():
+            return loaded
+    sys.path.insert(0, str(path.parent.resolve()))
+    found = importlib.util.spec_from_file_location(path.stem, path)
+    assert found is not None  # noqa: S101  # its name ends in .py
+    assert found.loader is not None  # noqa: S101  # as above
+    module = importlib.util.module_from_spec(found)
+    sys.modules[path.stem] = module
+    found.loader.exec_module(module)
+    return module
+
+
+def node_classes(module: ModuleType) -> dict[str, type[Node]]:
+    """Return the node classes that a module defines itself."""
+    return {
+        name: value
+        for name, value in vars(module).items()
+        if isinstance(value, type)
+        and issubclass(value, Node)
+        and value.__module__ == module.__name__
+    }
+
+
+def only_node_class(module: ModuleType, spec: str) -> type[Node]:
+    """Return the one node class of a module."""
+    known = node_classes(module)
+    if len(known) != 1:
+        raise CommandError(
+            f"{spec}: say which class: {spec}:NAME; there are {', '.join(known) or 'none'}"
+        )
+    return next(iter(known.values()))

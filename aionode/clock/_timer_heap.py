@@ -1,0 +1,96 @@
+"""Callbacks in the order of their times: a heap that forgets what was cancelled."""
+
+from __future__ import annotations
+
+from collections import deque
+from heapq import heapify, heappop, heappush
+from itertools import count
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["Entry", "TimerHeap"]
+
+SMALL = 64  # up to this many cancelled entries are not worth a clean-up
+
+
+class Entry:
+    """One callback waiting for its time; `cancel()` takes it off the agenda."""
+
+    __slots__ = ("callback", "heap")
+
+    def __init__(self, heap: TimerHeap, callback: Callable[[], None]) -> None:
+        self.heap: TimerHeap | None = heap  # None once it is off the heap
+        self.callback: Callable[[], None] | None = callback
+
+    def cancel(self) -> None:
+        """Make sure that the callback is not called; doing it twice does no harm."""
+        if self.callback is not None:
+            self.callback = None
+            if self.heap is not None:
+                self.heap.note_cancelled()
+
+
+class TimerHeap:
+    """What is to be called when: earliest first, and first come first served at one time."""
+
+    __slots__ = ("_cancelled", "_heap", "_order")
+
+    def __init__(self) -> None:
+        self._heap: list[tuple[int, int, Entry]] = []
+        self._order = count()
+        self._cancelled = 0
+
+    def __len__(self) -> int:
+        return len(self._heap) - self._cancelled
+
+    def add(self, when_ns: int, callback: Callable[[], None]) -> Entry:
+        """Have `callback` called by the first `fire()` at or after `when_ns`."""
+        entry = Entry(self, callback)
+        heappush(self._heap, (when_ns, next(self._order), entry))
+        return entry
+
+    def first_ns(self) -> int | None:
+        """Return the time of the earliest callback, or None when there is none."""
+        heap = self._heap
+        while heap:
+            if heap[0][2].callback is not None:
+                return heap[0][0]
+            heappop(heap)
+            self._cancelled -= 1
+        return None
+
+    def fire(self, now_ns: int) -> None:
+        """Call everything due at `now_ns`; what these callbacks add has to wait for the next.
+
+        An exception of a callback comes out; the others are called the next time.
+        """
+        heap = self._heap
+        due: deque[Entry] = deque()
+        while heap and heap[0][0] <= now_ns:
+            entry = heappop(heap)[2]
+            entry.heap = None
+            if entry.callback is None:
+                self._cancelled -= 1
+            else:
+                due.append(entry)
+        try:
+            while due:
+                entry = due.popleft()
+                callback = entry.callback
+                if callback is not None:  # an earlier one of this round may have cancelled it
+                    entry.callback = None
+                    callback()
+        finally:
+            for entry in due:
+                entry.heap = self
+                heappush(self._heap, (now_ns, next(self._order), entry))
+
+    def note_cancelled(self) -> None:
+        """Count one more dead entry, and sweep when most are dead."""
+        self._cancelled += 1
+        if self._cancelled > SMALL and self._cancelled * 2 > len(self._heap):
+            self._heap = [item for item in self._heap if item[2].callback is not None]
+            heapify(self._heap)
+            self._cancelled = 0

@@ -1,0 +1,150 @@
+"""Alarms that ring within 0.1 ms, from a timer of the kernel (Linux).
+
+Event loops count in milliseconds: uvloop is up to 1 ms late, and asyncio up to 2, because it rounds
+up before `epoll` rounds up again. A timer of 1 kHz loses ticks by that. A `timerfd` is a file that
+becomes readable at a time given in nanoseconds, and loops wait for files without rounding.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import sys
+import time
+import weakref
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from aionode.clock._timer_heap import TimerHeap
+
+if TYPE_CHECKING:
+    import asyncio
+    from collections.abc import Callable
+
+    from aionode.clock._timer_heap import Entry
+
+__all__ = ["KernelAlarms"]
+
+# From <time.h> and <sys/timerfd.h>.
+CLOCK_MONOTONIC = 1
+TFD_TIMER_ABSTIME = 1
+
+
+class KernelAlarms(TimerHeap):
+    """The alarms of one event loop, all on one `timerfd`.
+
+    The file is open only while an alarm is waiting, so nothing is left behind in the process.
+
+    Raises:
+        OSError: The system has no `timerfd`, or no file to spare.
+        NotImplementedError: The loop cannot wait for files.
+    """
+
+    __slots__ = ("__weakref__", "_fd", "_loop", "_set_ns", "_spec")
+
+    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+        super().__init__()
+        self._loop = weakref.ref(loop)  # whose registry holds this object
+        self._fd = -1
+        self._set_ns = 0  # when the file will become readable; 0 when it will not
+        self._spec = itimerspec()
+        self._open(loop)
+
+    def add(self, when_ns: int, callback: Callable[[], None]) -> Entry:
+        """Have `callback` called when the steady clock is at `when_ns`."""
+        loop = self._loop()
+        if self._fd < 0 and loop is not None:
+            self._open(loop)
+        entry = super().add(when_ns, callback)
+        self._set_for(when_ns)
+        return entry
+
+    def note_cancelled(self) -> None:
+        """Let the file go with the last alarm."""
+        super().note_cancelled()
+        if not len(self):
+            self._close_soon()
+
+    def _open(self, loop: asyncio.AbstractEventLoop) -> None:
+        fd = open_timer()
+        try:
+            loop.add_reader(fd, self._ring)
+        except BaseException:
+            os.close(fd)
+            raise
+        self._fd = fd
+        self._set_ns = 0
+
+    def _set_for(self, when_ns: int) -> None:
+        if not 0 < self._set_ns <= when_ns:
+            self._set_ns = max(when_ns, 1)  # 0 would switch it off
+            set_timer(self._fd, self._set_ns, self._spec)
+
+    def _ring(self) -> None:
+        """Call what is due: the file became readable."""
+        try:
+            os.read(self._fd, 8)  # a count, which has to be read to make it wait again
+        except BlockingIOError:
+            return  # it was set to an earlier time just when it rang, and will ring again
+        self._set_ns = 0
+        try:
+            self.fire(time.monotonic_ns())
+        finally:
+            next_ns = self.first_ns()
+            if next_ns is None:
+                self._close_soon()
+            else:
+                self._set_for(next_ns)
+
+    def _close_soon(self) -> None:
+        """Close the file unless an alarm comes from those who were woken just now."""
+        loop = self._loop()
+        if loop is None or loop.is_closed():
+            self._close()
+        else:
+            loop.call_soon(self._close_if_idle, loop)
+
+    def _close_if_idle(self, loop: asyncio.AbstractEventLoop) -> None:
+        if self._fd >= 0 and not len(self):
+            loop.remove_reader(self._fd)
+            self._close()
+
+    def _close(self) -> None:
+        if self._fd >= 0:
+            os.close(self._fd)
+            self._fd = -1
+
+    __del__ = _close  # a loop that was closed over a waiting alarm takes this object with it
+
+
+@cache
+def libc() -> Any:
+    """Return the C library; Python has these functions itself from 3.13 on."""
+    if sys.platform != "linux" or sys.maxsize < 2**32:
+        raise OSError(errno.ENOSYS, "timerfd: only used on Linux with 64 bits")
+    import ctypes
+
+    return ctypes.CDLL(None, use_errno=True)
+
+
+def open_timer() -> int:
+    """Return the file descriptor of a new `timerfd`."""
+    fd: int = libc().timerfd_create(CLOCK_MONOTONIC, os.O_NONBLOCK | os.O_CLOEXEC)
+    if fd < 0:
+        import ctypes
+
+        raise OSError(ctypes.get_errno(), "timerfd_create failed")
+    return fd
+
+
+def itimerspec() -> Any:
+    """Return a ``struct itimerspec`` of zeros: an interval and a time, in s and ns each."""
+    import ctypes
+
+    return (ctypes.c_long * 4)()
+
+
+def set_timer(fd: int, when_ns: int, spec: Any) -> None:
+    """Let `fd` become readable when the monotonic clock is at `when_ns`; `spec` is written to."""
+    spec[2], spec[3] = divmod(when_ns, 1_000_000_000)
+    libc().timerfd_settime(fd, TFD_TIMER_ABSTIME, spec, None)

@@ -1,0 +1,1 @@
+"""The machinery behind every endpoint: queue, callbacks, entry in the graph. Private."""

@@ -1,0 +1,508 @@
+"""Running callbacks: measured, fair to the rest of the loop, and with a policy for errors.
+
+Every callback of every entity runs through `CallbackRunner`, and every queue is emptied by
+`consume`, or passed by with a `InlineRunner`; there is no other place that decides what happens
+around a callback.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import inspect
+import traceback
+from collections.abc import Awaitable, Callable, Coroutine, Generator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
+
+from aionode._concurrency import SLICE_NS, checkpoint, run_in_thread
+from aionode.clock import perf_ns
+from aionode.errors import CallbackCancelledError, CallbackSignatureError, brief
+
+if TYPE_CHECKING:
+    from aionode.endpoints._core.entity import Entity
+    from aionode.endpoints._core.inline_runner import InlineRunner
+    from aionode.endpoints._core.message_queue import MessageQueue
+    from aionode.endpoints.stats import CallbackStats
+    from aionode.logging import RcutilsLogger
+
+__all__ = [
+    "CallbackContext",
+    "CallbackRunner",
+    "Callbacks",
+    "OnError",
+    "accepts",
+    "checked_concurrency",
+    "consume",
+    "is_unfinished",
+]
+
+T = TypeVar("T")
+
+
+REPORT_INTERVAL_NS = 1_000_000_000
+"""How often at most one entity's slow callbacks are reported."""
+
+
+@dataclass(frozen=True, slots=True)
+class CallbackContext:
+    """Where a callback failed, for an `on_error` function.
+
+    Attributes:
+        node: Full name of the node.
+        subject: What failed, such as ``subscription of /chatter (callback on_text)``.
+        entity: The entity itself.
+    """
+
+    node: str
+    subject: str
+    entity: object
+
+
+OnError = Literal["raise", "log"] | Callable[[Exception, CallbackContext], None]
+
+
+class CallbackRunner:
+    """Runs the callback of one entity.
+
+    Args:
+        callback: A function or coroutine function.
+        context: The entity, for errors and reports.
+        stats: Where counts and durations go.
+        on_error: What becomes of an exception: see `fail`.
+        offload: Whether a sync callback runs in a thread.
+        budget_ns: How long a callback may block the loop before that is reported.
+        logger: The node's logger.
+        waiting: The callbacks of the node that have begun and wait for something.
+
+    Raises:
+        TypeError: `callback` or `on_error` is of a wrong kind.
+        ValueError: `on_error` is an unknown word, or a coroutine function is to be offloaded.
+
+    Attributes:
+        is_sync: Whether a call is expected to end without a wait, in the loop's own thread.
+    """
+
+    def __init__(
+        self,
+        callback: Callable[..., Any],
+        context: CallbackContext,
+        stats: CallbackStats,
+        *,
+        on_error: OnError = "raise",
+        offload: bool = False,
+        budget_ns: int,
+        logger: RcutilsLogger,
+        waiting: set[object] | None = None,
+    ) -> None:
+        if isinstance(on_error, str):
+            if on_error not in ("raise", "log"):
+                raise ValueError(
+                    f"{context.subject}: on_error={brief(on_error)} is unknown; "
+                    'use "raise", "log" or a function (exception, context)'
+                )
+        elif not callable(on_error):
+            raise TypeError(
+                f"{context.subject}: on_error is {brief(on_error)}; "
+                'use "raise", "log" or a function (exception, context)'
+            )
+        if offload and inspect.iscoroutinefunction(callback):
+            raise ValueError(
+                f"{context.subject}: offload=True runs a sync callback in a thread, and this one "
+                "is a coroutine function; use `await asyncio.to_thread(...)` inside it"
+            )
+        self.callback = callback
+        self.stats = stats
+        self._context = context
+        self._on_error = on_error
+        self._offload = offload
+        self.is_sync = not offload and not _is_async(callback)
+        self.budget_ns = budget_ns
+        self._logger = logger
+        self.waiting: set[object] = set() if waiting is None else waiting
+        self._last_report_ns = -REPORT_INTERVAL_NS
+
+    def run(self, *args: Any) -> Coroutine[Any, Any, None] | None:
+        """Run the callback, errors and all; return what is left to await, None if nothing is.
+
+        Raises:
+            Exception: what the callback raised, where `on_error` says so.
+        """
+        if self._offload:
+            return self._finish(_Offloaded(self, args))
+        # `enter` written out: a call less for each message
+        began_ns = perf_ns()
+        try:
+            outcome = self.callback(*args)
+        except Exception as error:  # noqa: BLE001  # the policy decides, see `fail`
+            self._record_sync(perf_ns() - began_ns)
+            self.fail(error)
+            return None
+        if outcome is not None and isinstance(outcome, Awaitable):
+            return self._finish(_Measured(self, outcome))
+        self._record_sync(perf_ns() - began_ns)
+        return None
+
+    def receive(self, entered_ns: int, *args: Any) -> Coroutine[Any, Any, None] | None:
+        """Do `run` for a message that arrived at `entered_ns`; count it, and what it waited.
+
+        Raises:
+            Exception: what the callback raised, where `on_error` says so.
+        """
+        stats = self.stats
+        stats.received += 1
+        began_ns = perf_ns()
+        if self._offload:
+            stats.queue_wait.record(began_ns - entered_ns)
+            return self._finish(_Offloaded(self, args))
+        # `run` written out, so that one call records everything, after the callback.
+        try:
+            outcome = self.callback(*args)
+        except Exception as error:  # noqa: BLE001  # the policy decides, see `fail`
+            stats.queue_wait.record(began_ns - entered_ns)
+            self._record_sync(perf_ns() - began_ns)
+            self.fail(error)
+            return None
+        if outcome is not None and isinstance(outcome, Awaitable):
+            stats.queue_wait.record(began_ns - entered_ns)
+            return self._finish(_Measured(self, outcome))
+        took_ns = perf_ns() - began_ns
+        stats.record_call(began_ns - entered_ns, took_ns)
+        if took_ns > self.budget_ns:
+            self.report_blocking(took_ns)
+        return None
+
+    async def _finish(self, outcome: Any) -> None:
+        try:
+            await self.outcome(outcome)
+        except Exception as error:  # noqa: BLE001  # the policy decides, see `fail`
+            self.fail(error)
+
+    def enter(self, *args: Any) -> Any:
+        """Run the callback up to its first wait; the result goes into `outcome`.
+
+        Raises:
+            Exception: what a sync callback raised.
+        """
+        if self._offload:
+            return _Offloaded(self, args)
+        began_ns = perf_ns()
+        try:
+            outcome = self.callback(*args)
+        except BaseException:
+            self._record_sync(perf_ns() - began_ns)
+            raise
+        if outcome is not None and isinstance(outcome, Awaitable):
+            return _Measured(self, outcome)
+        self._record_sync(perf_ns() - began_ns)
+        return outcome
+
+    async def outcome(self, entered: Any) -> Any:
+        """Return the result of a callback that was entered, waiting for it where needed.
+
+        Raises:
+            CallbackCancelledError: something that the callback waited for was cancelled.
+            Exception: what the callback raised.
+        """
+        if not is_unfinished(entered):
+            return entered
+        try:
+            return await entered
+        except asyncio.CancelledError as error:
+            task = asyncio.current_task()
+            if task is not None and task.cancelling():
+                raise
+            # Nobody cancelled this task: it would end without a word, and its entity with it.
+            raise CallbackCancelledError(self._context.subject) from error
+
+    async def call(self, *args: Any) -> Any:
+        """Run the callback and return its result; see `enter` and `outcome` for the errors."""
+        return await self.outcome(self.enter(*args))
+
+    def fail(self, error: Exception) -> None:
+        """Apply the policy for errors: count, then raise it, log it, or hand it on.
+
+        Raises:
+            Exception: `error` itself with ``on_error="raise"``.
+        """
+        self.stats.errors += 1
+        if self._on_error == "raise":
+            error.add_note(f"in {self._context.subject} of node {self._context.node}")
+            raise error
+        if self._on_error == "log":
+            trace = "".join(traceback.format_exception(error))
+            self._logger.error(f"{self._context.subject} failed:\n{trace}")
+        else:
+            self._on_error(error, self._context)
+
+    @property
+    def subject(self) -> str:
+        """What is called, such as ``subscription of /chatter (callback on_text)``."""
+        return self._context.subject
+
+    def _record_sync(self, took_ns: int) -> None:
+        self.stats.record_took(took_ns)
+        if took_ns > self.budget_ns:
+            self.report_blocking(took_ns)
+
+    def report_blocking(self, took_ns: int) -> None:
+        """Warn that the loop was blocked too long, once per second at most."""
+        now_ns = perf_ns()
+        if now_ns - self._last_report_ns < REPORT_INTERVAL_NS:
+            return
+        self._last_report_ns = now_ns
+        self._logger.warning(
+            f"{self._context.subject} blocked the event loop for {took_ns / 1e6:.1f} ms "
+            f"(budget {self.budget_ns / 1e6:g} ms): nothing else could run. Move the work off the "
+            "loop: offload=True runs a sync callback in a thread, a coroutine can await "
+            "asyncio.to_thread(...)"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Callbacks:
+    """How the callbacks of one node are run.
+
+    Attributes:
+        node: Full name of the node.
+        logger: Its logger.
+        budget_ns: How long a callback may block the loop before that is reported.
+        waiting: Those that have begun and wait for something; each says as a string what it is.
+    """
+
+    node: str
+    logger: RcutilsLogger
+    budget_ns: int
+    waiting: set[object] = field(default_factory=set)
+
+    def make_runner(
+        self,
+        callback: Callable[..., Any],
+        entity: Entity,
+        stats: CallbackStats,
+        *,
+        on_error: OnError,
+        offload: bool,
+    ) -> CallbackRunner:
+        """Return what runs `callback` for `entity`.
+
+        Raises:
+            TypeError: `on_error` is of a wrong kind.
+            ValueError: `on_error` is an unknown word, or a coroutine function is to be offloaded.
+        """
+        name = getattr(callback, "__qualname__", repr(callback))
+        subject = f"{entity.subject} (callback {name})"
+        return CallbackRunner(
+            callback,
+            CallbackContext(self.node, subject, entity),
+            stats,
+            on_error=on_error,
+            offload=offload,
+            budget_ns=self.budget_ns,
+            logger=self.logger,
+            waiting=self.waiting,
+        )
+
+
+class _Measured:
+    """A callback that can wait: notes the longest stretch between two waits."""
+
+    __slots__ = ("_awaitable", "_runner")
+
+    def __init__(self, runner: CallbackRunner, awaitable: Awaitable[Any]) -> None:
+        self._runner = runner
+        self._awaitable: Any = awaitable  # None once it was begun
+
+    def __del__(self) -> None:
+        # The task was cancelled before it came to this: nobody will await it.
+        awaitable = self._awaitable
+        if awaitable is not None:
+            give_up = getattr(awaitable, "close", None) or getattr(awaitable, "cancel", None)
+            if give_up is not None:
+                give_up()
+
+    def __str__(self) -> str:
+        return self._runner.subject
+
+    def __await__(self) -> Generator[Any, Any, Any]:
+        runner = self._runner
+        awaitable, self._awaitable = self._awaitable, None
+        steps = awaitable.__await__()
+        runner.waiting.add(self)
+        began_ns = perf_ns()
+        longest_ns = 0
+        thrown: BaseException | None = None
+        try:
+            while True:
+                step_ns = perf_ns()
+                try:
+                    # asyncio only ever sends None into a coroutine, or throws into it.
+                    waits_for = next(steps) if thrown is None else steps.throw(thrown)
+                finally:
+                    longest_ns = max(longest_ns, perf_ns() - step_ns)
+                thrown = None
+                try:
+                    yield waits_for
+                except BaseException as error:  # noqa: BLE001  # handed on to the callback
+                    thrown = error
+        except StopIteration as stop:
+            return stop.value
+        finally:
+            runner.waiting.discard(self)
+            runner.stats.run_time.record(perf_ns() - began_ns)
+            runner.stats.blocking.record(longest_ns)
+            if longest_ns > runner.budget_ns:
+                runner.report_blocking(longest_ns)
+
+
+class _Offloaded:
+    """A sync callback on its way into a thread."""
+
+    __slots__ = ("_args", "_runner")
+
+    def __init__(self, runner: CallbackRunner, args: tuple[Any, ...]) -> None:
+        self._runner = runner
+        self._args = args
+
+    def __str__(self) -> str:
+        return f"{self._runner.subject} in a thread, which cannot be cancelled"
+
+    def __await__(self) -> Generator[Any, Any, Any]:
+        return self._run().__await__()
+
+    async def _run(self) -> Any:
+        stats = self._runner.stats
+        waiting = self._runner.waiting
+        began_ns = perf_ns()
+        waiting.add(self)
+        try:
+            return await run_in_thread(self._runner.callback, *self._args)
+        finally:
+            waiting.discard(self)
+            stats.run_time.record(perf_ns() - began_ns)
+            stats.blocking.record(0)
+
+
+def is_unfinished(entered: object) -> bool:
+    """Whether `CallbackRunner.outcome` has to wait for what `CallbackRunner.enter` returned."""
+    return isinstance(entered, _Measured | _Offloaded)
+
+
+# Queues
+
+
+async def consume(
+    message_queue: MessageQueue[T],
+    handle: Callable[[int, T], Coroutine[Any, Any, None] | None],
+    concurrent: bool | int,  # a number, where True and False are numbers too
+    inline_runner: InlineRunner[T] | None = None,
+) -> None:
+    """Hand everything that arrives in `message_queue` to `handle`, until cancelled.
+
+    `handle` runs what can run at once and returns what is left to await, if anything. With
+    `concurrent` that runs beside the next items: in a TaskGroup, any number at once or at most so
+    many, while the others wait in the inbox. Without it, a `inline_runner` past the inbox is open
+    while there is nothing to do.
+    """
+    if concurrent is False:
+        await _consume_in_order(
+            message_queue, handle, message_queue if inline_runner is None else inline_runner
+        )
+    else:
+        limit = None if concurrent is True else concurrent
+        async with asyncio.TaskGroup() as tasks:
+            await _consume_concurrently(message_queue, handle, tasks, limit)
+
+
+async def _consume_in_order(
+    message_queue: MessageQueue[T],
+    handle: Callable[[int, T], Coroutine[Any, Any, None] | None],
+    signal: MessageQueue[T] | InlineRunner[T],
+) -> None:
+    queue = message_queue.items  # asking the inbox itself costs a call for each item
+    while True:
+        await signal.wait()
+        turn_ends_ns = perf_ns() + SLICE_NS
+        while queue:
+            rest = handle(*message_queue.pop())
+            if rest is not None:
+                await rest
+            if perf_ns() >= turn_ends_ns:
+                await checkpoint()
+                turn_ends_ns = perf_ns() + SLICE_NS
+
+
+async def _consume_concurrently(
+    message_queue: MessageQueue[T],
+    handle: Callable[[int, T], Coroutine[Any, Any, None] | None],
+    tasks: asyncio.TaskGroup,
+    limit: int | None,
+) -> None:
+    running: set[asyncio.Task[None]] = set()
+    turn_ends_ns = 0
+    while True:
+        while limit is not None and len(running) >= limit:
+            await asyncio.wait(running, return_when=asyncio.FIRST_COMPLETED)
+        await message_queue.wait()
+        if not message_queue:
+            continue
+        rest = handle(*message_queue.pop())
+        if rest is not None:
+            task = tasks.create_task(rest)
+            running.add(task)
+            task.add_done_callback(running.discard)
+        if perf_ns() >= turn_ends_ns:
+            await checkpoint()
+            turn_ends_ns = perf_ns() + SLICE_NS
+
+
+# Arguments
+
+
+def _is_async(callback: Callable[..., Any]) -> bool:
+    return inspect.iscoroutinefunction(callback) or inspect.iscoroutinefunction(
+        type(callback).__call__
+    )
+
+
+def accepts(callback: Callable[..., Any], *counts: int, subject: str, wanted: str) -> int:
+    """Return the first of `counts` that `callback` can be called with, as positional arguments.
+
+    Raises:
+        TypeError: `callback` cannot be called at all.
+        CallbackSignatureError: it takes another number of arguments; `wanted` says what fits.
+    """
+    if not callable(callback):
+        raise TypeError(f"{subject}: {brief(callback)} cannot be called; give a function {wanted}")
+    try:
+        signature = inspect.signature(callback)
+    except ValueError:  # a builtin that does not tell
+        return counts[0]
+    for count in counts:
+        try:
+            signature.bind(*(None,) * count)
+        except TypeError:
+            continue
+        return count
+    name = getattr(callback, "__qualname__", repr(callback))
+    raise CallbackSignatureError(subject, f"{name}{signature}", wanted)
+
+
+def checked_concurrency(concurrent: bool | int, subject: str) -> bool | int:  # as in `consume`
+    """Return `concurrent` if it is False, True or a positive number.
+
+    Raises:
+        TypeError: it is something else.
+        ValueError: it is a number below 1.
+    """
+    if isinstance(concurrent, bool):
+        return concurrent
+    if not isinstance(concurrent, int):
+        raise TypeError(
+            f"{subject}: concurrent={brief(concurrent)}; use False (one at a time), True (any "
+            "number) or a number (at most so many at once)"
+        )
+    if concurrent < 1:
+        raise ValueError(
+            f"{subject}: concurrent={concurrent}; at least 1 callback must be able to run"
+        )
+    return concurrent

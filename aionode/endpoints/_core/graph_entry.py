@@ -1,0 +1,79 @@
+"""What ties an entity to its node: its entry in the graph, and the node's way of calling back."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.endpoints._core.callback_runner import Callbacks
+    from aionode.endpoints._core.loop_affinity import LoopAffinity
+    from aionode.graph import EndpointInfo, EndpointKind, Graph
+
+__all__ = ["GraphEntry"]
+
+
+class GraphEntry:
+    """One endpoint in the graph.
+
+    Attributes:
+        endpoint: The endpoint.
+        callbacks: How its node runs callbacks.
+        affinity: Where its node runs.
+    """
+
+    def __init__(
+        self, endpoint: EndpointInfo, graph: Graph, callbacks: Callbacks, affinity: LoopAffinity
+    ) -> None:
+        self.endpoint = endpoint
+        self.callbacks = callbacks
+        self.affinity = affinity
+        self._graph = graph
+        self._waits: set[asyncio.Future[None]] = set()
+        self._closed = False
+
+    def open(self) -> None:
+        """Enter the endpoint into the graph. Called when its transports know it."""
+        self._graph.add_endpoint(self.endpoint)
+
+    def close(self) -> None:
+        """Take the endpoint out of the graph, and cancel every `until`."""
+        self._closed = True
+        for wait in list(self._waits):  # first, as the change below would wake them
+            wait.cancel(f"{self.endpoint.kind.value} of {self.endpoint.name}: destroyed")
+        self._graph.remove_endpoint(self.endpoint)
+
+    def matched(self) -> list[EndpointInfo]:
+        """Return the endpoints of the opposite kind that this one reaches; none when closed."""
+        if self._closed:
+            return []
+        opposite = self.endpoint.kind.opposite
+        return [
+            other
+            for other in self._graph.endpoints(opposite, name=self.endpoint.name)
+            if self.endpoint.matches(other)
+        ]
+
+    def count_matched(self, kind: EndpointKind) -> int:
+        """Return how many endpoints of the opposite `kind` this one reaches."""
+        return sum(
+            self.endpoint.matches(other)
+            for other in self._graph.endpoints(kind, name=self.endpoint.name)
+        )
+
+    async def until(self, condition: Callable[[], bool]) -> None:
+        """Wait until `condition()` is true; it is asked again when the graph changes.
+
+        Raises:
+            CancelledError: the endpoint was closed meanwhile.
+        """
+        while not condition():
+            if self._closed:
+                # A change in the same turn as `close` had ended the wait already.
+                raise asyncio.CancelledError(f"{self.endpoint.name}: destroyed")
+            wait = self._graph.changed()
+            self._waits.add(wait)
+            wait.add_done_callback(self._waits.discard)
+            await wait

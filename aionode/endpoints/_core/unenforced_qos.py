@@ -1,0 +1,42 @@
+"""Policies that are accepted, announced to others, and without effect here."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from aionode.qos import DeadlineBestAvailable, LivelinessPolicy, is_unlimited
+from aionode.qos._profile import duration_text
+
+if TYPE_CHECKING:
+    from aionode.clock import Duration
+    from aionode.qos import QoSProfile
+
+__all__ = ["policies_without_effect"]
+
+
+def policies_without_effect(profile: QoSProfile, *, sends: bool) -> list[str]:
+    """Return the policies of `profile` that nothing watches or enforces, such as ``deadline=1 s``.
+
+    Args:
+        profile: What the user asked for.
+        sends: Whether the endpoint is one that lifespan is a promise of.
+    """
+    policies = [f"{name}={duration_text(value)}" for name, value in durations(profile, sends=sends)]
+    if profile.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC:
+        policies.append("liveliness=manual_by_topic")
+    return policies
+
+
+def durations(profile: QoSProfile, *, sends: bool) -> list[tuple[str, Duration]]:
+    """Return the durations that somebody has set."""
+    given = [
+        ("deadline", profile.deadline),
+        ("liveliness_lease_duration", profile.liveliness_lease_duration),
+    ]
+    if sends:
+        given.append(("lifespan", profile.lifespan))
+    return [
+        (name, value)
+        for name, value in given
+        if not is_unlimited(value) and value != DeadlineBestAvailable
+    ]

@@ -1,0 +1,1 @@
+"""Action servers and clients; their public names are in `aionode.action`."""

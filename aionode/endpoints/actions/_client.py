@@ -1,0 +1,535 @@
+"""Action clients: they send goals, and tell what becomes of them."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable, Coroutine
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
+from uuid import uuid4
+
+from aionode._concurrency import checkpoint
+from aionode.endpoints._core.callback_runner import accepts, consume
+from aionode.endpoints._core.entity import EndStage, Entity
+from aionode.endpoints._core.future import Futures, asks
+from aionode.endpoints._core.message_queue import MessageQueue
+from aionode.endpoints.actions._client_goal import ActionResult, ClientGoalHandle
+from aionode.endpoints.actions._common import expect_action_type, reason_id
+from aionode.endpoints.actions._goal import GoalStatus
+from aionode.endpoints.actions._withdrawal import Withdrawal
+from aionode.endpoints.stats import CallbackStats
+from aionode.errors import (
+    GoalAbortedError,
+    GoalCanceledError,
+    GoalLostError,
+    GoalRejectedError,
+    RequestTimeoutError,
+    ServiceError,
+    ServiceUnavailableError,
+)
+from aionode.graph import EndpointKind
+from aionode.message import Message, checker, type_name
+from aionode.qos import (
+    QoSProfile,
+    qos_profile_action_status_default,
+    qos_profile_services_default,
+)
+
+if TYPE_CHECKING:
+    from aionode.message import ActionClass
+    from aionode.node import Node
+
+__all__ = ["ActionClient"]
+
+T = TypeVar("T")
+GoalT = TypeVar("GoalT", bound=Message)
+ResultT = TypeVar("ResultT", bound=Message)
+FeedbackT = TypeVar("FeedbackT", bound=Message)
+
+ANSWER_LIMIT_S = 1.0
+"""How long an answer is waited for that should come at once, in seconds of the machine."""
+
+UNLIMITED = 2**63 - 1
+
+LAST_FEEDBACK_S = 0.02
+"""How long feedback is listened for after the result came from another process, in seconds.
+
+Zenoh lets a reply overtake the samples before it: in 3 to 7 of 100 goals that sent feedback just
+before their end it came after the result, by less than a millisecond.
+"""
+
+TURNS_FOR_FEEDBACK = 10
+"""For how many turns of the loop what has arrived may wait in the queue of a subscription."""
+
+FEEDBACK_QOS = QoSProfile(depth=1000)
+"""The feedback of all goals shares a queue: ten of them may get as much at once as one keeps."""
+
+
+class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
+    """Sends goals to an action server. Works while its node runs.
+
+    ::
+
+        client = ActionClient(node, Fibonacci, "fibonacci")
+        await client.wait_for_server()
+        result = await client.call(Fibonacci.Goal(order=5))      # the whole in one, or
+
+        goal = await client.send_goal(Fibonacci.Goal(order=5))
+        async for feedback in goal:
+            ...
+        outcome = await goal.result()
+
+    Args:
+        node: Whose it is.
+        action_type: An action class.
+        action_name: Name of the action; a relative one gets the node's namespace.
+        goal_service_qos_profile: Profile of the service that takes goals.
+        result_service_qos_profile: Profile of the service that gives results.
+        cancel_service_qos_profile: Profile of the service that takes cancel requests.
+        feedback_sub_qos_profile: Profile of the feedback topic.
+        status_sub_qos_profile: Profile of the status topic.
+
+    Attributes:
+        action_type: The action type.
+        action_name: The full name of the action.
+
+    Raises:
+        TypeError: an argument is of a wrong kind.
+        InvalidTopicNameException: `action_name` is invalid (a ValueError).
+        EntityDestroyedError: the node was destroyed (a RuntimeError).
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        action_type: ActionClass[GoalT, ResultT, FeedbackT],
+        action_name: str,
+        *,
+        goal_service_qos_profile: QoSProfile | int = qos_profile_services_default,
+        result_service_qos_profile: QoSProfile | int = qos_profile_services_default,
+        cancel_service_qos_profile: QoSProfile | int = qos_profile_services_default,
+        feedback_sub_qos_profile: QoSProfile | int = FEEDBACK_QOS,
+        status_sub_qos_profile: QoSProfile | int = qos_profile_action_status_default,
+    ) -> None:
+        expect_action_type(action_type, f"action client of {action_name}")
+        self.action_type = cast("Any", action_type)
+        self.action_name = node.resolve_topic_name(action_name)
+        super().__init__(f"action client of {self.action_name}", EndStage.GOALS)
+        self._check = checker(self.action_type.Goal)
+        self._graph = node.graph
+        self._participant = node.context.participant
+        self._goals: dict[bytes, ClientGoalHandle[ResultT, FeedbackT]] = {}
+        self._accepted: MessageQueue[Any] = MessageQueue(UNLIMITED, CallbackStats(), keep_all=True)
+        self._waits: set[asyncio.Future[Any]] = set()
+        self._futures = Futures(self.subject)
+        self._withdrawals: dict[Withdrawal, None] = {}
+        self._expect_at_end = node.expect_at_end
+
+        impl = self.action_type.Impl
+        hidden = f"{self.action_name}/_action"
+        self._parts: list[Entity] = []
+        try:
+            self._send_goal = self._part(
+                node.create_client(
+                    impl.SendGoalService,
+                    f"{hidden}/send_goal",
+                    qos_profile=goal_service_qos_profile,
+                )
+            )
+            self._cancel_goal = self._part(
+                node.create_client(
+                    impl.CancelGoalService,
+                    f"{hidden}/cancel_goal",
+                    qos_profile=cancel_service_qos_profile,
+                )
+            )
+            self._get_result = self._part(
+                node.create_client(
+                    impl.GetResultService,
+                    f"{hidden}/get_result",
+                    qos_profile=result_service_qos_profile,
+                )
+            )
+            self._feedback = self._part(
+                node.create_subscription(
+                    impl.FeedbackMessage,
+                    f"{hidden}/feedback",
+                    self._on_feedback,
+                    feedback_sub_qos_profile,
+                )
+            )
+            self._status = self._part(
+                node.create_subscription(
+                    impl.GoalStatusMessage,
+                    f"{hidden}/status",
+                    self._on_status,
+                    status_sub_qos_profile,
+                )
+            )
+        except BaseException:
+            self._close_parts()
+            raise
+        node.add_entity(self)
+
+    def _part(self, part: Any) -> Any:
+        self._parts.append(part)
+        return part
+
+    def __repr__(self) -> str:
+        return (
+            f"<ActionClient {self.action_name} {type_name(self.action_type)} "
+            f"goals={len(self._goals)}>"
+        )
+
+    # The server
+
+    def server_is_ready(self) -> bool:
+        """Whether a server is matched now, with all its three services and two topics."""
+        return bool(
+            self._send_goal.service_is_ready()
+            and self._cancel_goal.service_is_ready()
+            and self._get_result.service_is_ready()
+            and self._feedback.get_publisher_count() > 0
+            and self._status.get_publisher_count() > 0
+        )
+
+    @asks
+    async def wait_for_server(self, timeout_sec: float | None = None) -> bool:
+        """Wait until a server is matched.
+
+        Args:
+            timeout_sec: How long at most, in seconds; None waits for ever.
+
+        Returns:
+            True when a server is there, False when `timeout_sec` has passed.
+
+        Raises:
+            EntityDestroyedError: the client was destroyed before.
+            CancelledError: the client was destroyed while it waited.
+        """
+        self.refuse_if_destroyed()
+        try:
+            async with asyncio.timeout(timeout_sec):
+                while not self.server_is_ready():
+                    await self._change()
+        except TimeoutError:
+            return self.server_is_ready()
+        return True
+
+    async def _change(self) -> None:
+        """Wait until endpoints come or go.
+
+        Raises:
+            CancelledError: the client was destroyed meanwhile.
+        """
+        wait = self._graph.changed()
+        self._waits.add(wait)
+        wait.add_done_callback(self._waits.discard)
+        await wait
+        if self.destroyed:  # in the same moment as the change, too late to cancel the wait
+            raise asyncio.CancelledError(f"{self.subject}: destroyed")
+
+    # Goals
+
+    async def call(
+        self,
+        goal: GoalT,
+        feedback_callback: Callable[[Any], Any] | None = None,
+    ) -> ResultT:
+        """Send `goal`, wait for its end, and return the result message.
+
+        Cancelling cancels the goal, by `asyncio.timeout` too; see `ClientGoalHandle`.
+
+        Args:
+            goal: An instance of ``action_type.Goal``.
+            feedback_callback: Called with each feedback message, as in rclpy: the feedback itself
+                is its field ``feedback``. Sync or async.
+
+        Raises:
+            GoalRejectedError: the server did not accept the goal.
+            GoalAbortedError: the server gave the goal up; with what is known of the reason.
+            GoalCanceledError: the goal was canceled by a request that was not the caller's.
+            GoalLostError: the server went away, or forgot the goal.
+            TypeError, MessageError, ServiceError, EntityDestroyedError, CancelledError: as
+                `send_goal`.
+        """
+        handle = await self.send_goal(goal, feedback_callback)
+        outcome = await handle.result()
+        if feedback_callback is not None:
+            await handle.heard_out()
+        if outcome.status is GoalStatus.SUCCEEDED:
+            return outcome.result
+        if outcome.status is GoalStatus.CANCELED:
+            raise GoalCanceledError(self.action_name, handle.text, outcome.result)
+        if outcome.status is GoalStatus.ABORTED:
+            raise GoalAbortedError(
+                self.action_name, handle.text, outcome.result, outcome.error_text
+            )
+        raise GoalLostError(self.action_name, handle.text, "the server does not know it any more")
+
+    async def send_goal(
+        self,
+        goal: GoalT,
+        feedback_callback: Callable[[Any], Any] | None = None,
+        goal_uuid: Any = None,
+    ) -> ClientGoalHandle[ResultT, FeedbackT]:
+        """Send `goal`, and return its handle when the server has accepted it.
+
+        Without a server nothing answers, so `wait_for_server` first, or limit the wait with
+        `asyncio.timeout`. Cancelling cancels the goal, whether the server has accepted it by then,
+        accepts it later, or never.
+
+        Args:
+            goal: An instance of ``action_type.Goal``; it may be changed after the call began.
+            feedback_callback: Called with each feedback message, as in rclpy: the feedback itself
+                is its field ``feedback``. Sync or async. Without it, iterate over the handle.
+            goal_uuid: The id as unique_identifier_msgs/msg/UUID; a random one without it.
+
+        Raises:
+            GoalRejectedError: the server did not accept the goal.
+            TypeError: `goal` is of another type.
+            MessageError: a value does not fit its field.
+            ServiceError: the server's goal_callback failed, or the server went away.
+            EntityDestroyedError: the client was destroyed before (a RuntimeError).
+            CancelledError: the client was destroyed meanwhile.
+        """
+        handle = await self._send(goal, feedback_callback, goal_uuid)
+        if not handle.accepted:
+            raise GoalRejectedError(self.action_name, handle.text)
+        return handle
+
+    def send_goal_async(
+        self,
+        goal: GoalT,
+        feedback_callback: Callable[[Any], Any] | None = None,
+        goal_uuid: Any = None,
+    ) -> asyncio.Future[ClientGoalHandle[ResultT, FeedbackT]]:
+        """Send `goal`, and return a future of its handle, as in rclpy.
+
+        A goal that is refused is a handle whose `accepted` is False, as there. For all else see
+        `send_goal`, and `Client.call_async` for the future.
+
+        Raises:
+            EntityDestroyedError: the client was destroyed (a RuntimeError).
+            RuntimeError: no event loop runs.
+        """
+        self.refuse_if_destroyed("given a goal")
+        return self._futures.begin(self._send(goal, feedback_callback, goal_uuid))
+
+    def in_future(self, work: Coroutine[Any, Any, T]) -> asyncio.Future[T]:
+        """Return the outcome of `work` as a future. For goal handles."""
+        return self._futures.begin(work)
+
+    def start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:
+        """Begin with the goals that were sent before the node ran."""
+        task = super().start(tasks)
+        self._futures.start(tasks)
+        return task
+
+    async def _send(
+        self, goal: GoalT, feedback_callback: Callable[[Any], Any] | None, goal_uuid: Any
+    ) -> ClientGoalHandle[ResultT, FeedbackT]:
+        self.refuse_if_destroyed("given a goal")
+        self._check(goal)
+        if feedback_callback is not None:
+            accepts(feedback_callback, 1, subject=self.subject, wanted="(feedback_message)")
+        handle: ClientGoalHandle[ResultT, FeedbackT] = ClientGoalHandle(
+            self, uuid_message(uuid4().bytes) if goal_uuid is None else goal_uuid, feedback_callback
+        )
+        # Entered first, because feedback may be faster than the answer.
+        self._goals.setdefault(handle.key, handle)
+        try:
+            handle.sending = self._send_goal.begin(
+                self.action_type.Impl.SendGoalService.Request(goal_id=handle.goal_id, goal=goal)
+            )
+            # It goes on when the caller is cancelled, so that `Withdrawal` knows what became of it.
+            response = await self.awaiting(handle, self._kept(handle.sending.answer))
+        except BaseException:
+            self._forget(handle)
+            raise
+        handle.sending.cancel()  # has ended
+        if not response.accepted:
+            self._forget(handle)
+            handle.end(lost=GoalLostError(self.action_name, handle.text, "the server refused it"))
+            return handle
+        handle.accepted = True
+        handle.stamp = response.stamp
+        handle.tell(GoalStatus.ACCEPTED)
+        self._accepted.put(handle)
+        return handle
+
+    def _forget(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
+        if self._goals.get(goal.key) is goal:
+            del self._goals[goal.key]
+
+    async def _kept(self, answer: asyncio.Future[T]) -> T:
+        """Wait for `answer`, which goes on when the wait is cancelled; by `_close`, too."""
+        wait = asyncio.shield(answer)
+        self._waits.add(wait)
+        wait.add_done_callback(self._waits.discard)
+        return await wait
+
+    async def awaiting(self, goal: ClientGoalHandle[ResultT, FeedbackT], wait: Awaitable[T]) -> T:
+        """Return what `wait` returns; if cancelled, cancel `goal` as well. For its handle."""
+        goal.waiting += 1
+        try:
+            return await wait
+        except asyncio.CancelledError:
+            if not (self.destroyed or goal.done):
+                self.withdraw(goal)
+            raise
+        finally:
+            goal.waiting -= 1
+
+    def withdraw(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
+        """Have `goal` cancelled at the server, without waiting. For its handle."""
+        if goal.sending is not None and not goal.sending.calls:
+            goal.sending.cancel()  # there was no server that could have got it
+        elif not goal.withdrawn:
+            goal.withdrawn = True  # one request is enough, however many wait
+
+            def over(_: asyncio.Future[Any]) -> None:
+                goal.withdrawn = False
+
+            self._begin_to_cancel(goal).answer.add_done_callback(over)
+
+    def _begin_to_cancel(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> Withdrawal:
+        withdrawal = Withdrawal(self._cancel_goal, goal, self._on_withdrawn)
+        self._withdrawals[withdrawal] = None
+        self._expect_at_end(withdrawal.answer)
+        return withdrawal
+
+    def _on_withdrawn(self, withdrawal: Withdrawal) -> None:
+        self._withdrawals.pop(withdrawal, None)
+        if self.destroyed:
+            self._close_parts()
+
+    async def cancel_goal(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> Any:
+        """Ask the server to cancel `goal`. For its handle."""
+        self.refuse_if_destroyed("asked to cancel a goal")
+        if not self._cancel_goal.service_is_ready():  # it was, so it has gone
+            raise ServiceUnavailableError(self._cancel_goal.srv_name)
+        return await self._kept(self._begin_to_cancel(goal).answer)
+
+    # What the server says
+
+    def _on_feedback(self, message: Any) -> Any:
+        goal = self._goals.get(message.goal_id.uuid.tobytes())
+        if goal is None:
+            return None  # of another client, or late
+        if goal.feedback_callback is not None:
+            return goal.feedback_callback(message)
+        goal.take(message.feedback)
+        return None
+
+    def _on_status(self, message: Any) -> None:
+        if not self._goals:
+            return
+        for each in message.status_list:
+            goal = self._goals.get(each.goal_info.goal_id.uuid.tobytes())
+            if goal is not None:
+                goal.tell(GoalStatus(each.status))
+
+    async def run(self) -> None:
+        """Wait for the results of all goals, until cancelled."""
+        await consume(self._accepted, self._follow, concurrent=True)
+
+    def _follow(
+        self, _entered_ns: int, goal: ClientGoalHandle[ResultT, FeedbackT]
+    ) -> Coroutine[Any, Any, None]:
+        return self._until_end(goal)
+
+    async def _until_end(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
+        if self.destroyed:
+            return
+        try:
+            await self._until_askable()
+            response = await self._ask(goal.goal_id)
+            status = GoalStatus(response.status)
+            text = await self._reason(goal) if status is GoalStatus.ABORTED else ""
+        except ServiceUnavailableError:
+            problem = "the server went away before it ended"
+            goal.end(lost=GoalLostError(self.action_name, goal.text, problem))
+        except ServiceError as error:
+            problem = f"the server could not tell its result ({error})"
+            goal.end(lost=GoalLostError(self.action_name, goal.text, problem))
+        else:
+            goal.end(ActionResult(status, response.result, text))
+            if status is not GoalStatus.UNKNOWN:
+                await self._hear_out()
+            goal.end_feedback()
+        finally:
+            self._forget(goal)
+
+    async def _hear_out(self) -> None:
+        """Wait for feedback that the result of its goal has overtaken."""
+        if self._is_remote():
+            with suppress(TimeoutError):
+                async with asyncio.timeout(LAST_FEEDBACK_S):
+                    await asyncio.Event().wait()
+        for _ in range(TURNS_FOR_FEEDBACK):
+            await checkpoint()
+
+    def _is_remote(self) -> bool:
+        """Whether a server of another process may have had the goal."""
+        servers = self._graph.endpoints(EndpointKind.SERVER, name=self._get_result.srv_name)
+        return any(server.node.participant != self._participant for server in servers)
+
+    async def _until_askable(self) -> None:
+        """Wait for the server's other half, which may be found later than its first.
+
+        Raises:
+            ServiceUnavailableError: the server has gone since it accepted the goal.
+        """
+        while not self._get_result.service_is_ready():
+            if not self._send_goal.service_is_ready():
+                raise ServiceUnavailableError(self._get_result.srv_name)
+            await self._change()
+
+    async def _ask(self, goal_id: Any, timeout_sec: float | None = None) -> Any:
+        request = self.action_type.Impl.GetResultService.Request(goal_id=goal_id)
+        return await self._get_result.call(request, timeout_sec)
+
+    async def _reason(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> str:
+        """Return why `goal` was aborted, if the server is one of aionode and knows."""
+        try:
+            await self._ask(uuid_message(reason_id(goal.key)), ANSWER_LIMIT_S)
+        except ServiceError as error:
+            return error.error_text if error.error_type == "AbortReason" else ""
+        except RequestTimeoutError:
+            return ""
+        return ""
+
+    # The end
+
+    def _close(self) -> None:
+        """Withdraw the client, and cancel what waits, and so the goals that somebody awaits.
+
+        The other goals go on at the server.
+        """
+        for goal in self._goals.values():
+            if goal.waiting and not goal.done:
+                self.withdraw(goal)
+        for withdrawal in list(self._withdrawals):
+            withdrawal.end_with_answer()
+        for wait in list(self._waits):  # first, as the end of the parts is a change of the graph
+            wait.cancel(f"{self.subject}: destroyed")
+        self._futures.close()
+        self._close_parts()
+        goals, self._goals = self._goals, {}
+        for goal in goals.values():
+            goal.end()
+
+    def _close_parts(self) -> None:
+        """Destroy all parts; those that cancel goals when that is done."""
+        for part in self._parts:
+            if not (self._withdrawals and part in (self._send_goal, self._cancel_goal)):
+                part.destroy()
+
+
+def uuid_message(goal_id: bytes) -> Any:
+    """Return 16 bytes as unique_identifier_msgs/msg/UUID."""
+    # Imported here, because whoever imports aionode need not know this message.
+    from aionode.interfaces.unique_identifier_msgs.msg import UUID
+
+    return UUID(uuid=list(goal_id))

@@ -1,0 +1,102 @@
+"""What action servers and clients share: arguments, stamps, and reasons of aborted goals."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from collections.abc import Awaitable
+from typing import TYPE_CHECKING, Any
+
+from aionode.errors import brief, shortened
+from aionode.message import ActionType
+
+if TYPE_CHECKING:
+    from aionode.endpoints._core.callback_runner import CallbackContext
+
+__all__ = [
+    "AbortReason",
+    "awaited",
+    "expect_action_type",
+    "in_event_loop",
+    "pass_reason",
+    "reason_id",
+    "seconds_to_ns",
+    "stamp_ns",
+]
+
+
+# Why a goal was aborted
+
+
+class AbortReason(Exception):  # noqa: N818  # a message to the client, which reads its name
+    """Why a goal was aborted: how the reason travels, see `reason_id`."""
+
+
+def reason_id(goal_id: bytes) -> bytes:
+    """Return the id under which an aionode server tells why a goal was aborted.
+
+    ROS's result has no room for it, so an aionode client asks ``get_result`` once more, for the id
+    with all its bits inverted, and gets the reason as an error. The id belongs to no goal (it is no
+    version 4 UUID), so any other server answers that it does not know it. In this way the reason
+    needs no endpoint that ROS does not have, and goes through every transport.
+    """
+    return bytes(byte ^ 0xFF for byte in goal_id)
+
+
+def pass_reason(error: Exception, context: CallbackContext) -> None:  # noqa: ARG001  # an OnError
+    """Let a reason go to the client, and raise anything else.
+
+    Raises:
+        Exception: `error`, if it is no reason.
+    """
+    if not isinstance(error, AbortReason):
+        raise error
+
+
+# Arguments
+
+
+def expect_action_type(action_type: object, subject: str) -> None:
+    """Raise TypeError unless `action_type` is an action class."""
+    if not (isinstance(action_type, type) and issubclass(action_type, ActionType)):
+        raise TypeError(
+            f"{shortened(subject)}: {brief(action_type)} is no action class; use one such as "
+            "aionode.interfaces.example_interfaces.action.Fibonacci, or derive from "
+            "aionode.message.ActionType"
+        )
+
+
+def seconds_to_ns(seconds: float, subject: str) -> int:
+    """Return seconds, 0 or more, in nanoseconds.
+
+    Raises:
+        TypeError: `seconds` is no number.
+        ValueError: it is negative, or not finite.
+    """
+    if not isinstance(seconds, int | float):
+        raise TypeError(f"{subject}={brief(seconds)}; a number of seconds is needed")
+    if not (math.isfinite(seconds) and seconds >= 0):
+        raise ValueError(f"{subject}={seconds}; it must be finite, and 0 or more seconds")
+    return round(seconds * 1e9)
+
+
+def stamp_ns(stamp: Any) -> int:
+    """Return a builtin_interfaces/msg/Time in nanoseconds."""
+    return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
+
+
+# Callbacks
+
+
+async def awaited(outcome: Any) -> Any:
+    """Return what a callback, sync or async, came to."""
+    return await outcome if isinstance(outcome, Awaitable) else outcome
+
+
+def in_event_loop() -> bool:
+    """Whether this is the thread of an event loop, not one beside it."""
+    try:
+        asyncio.get_running_loop()
+    except RuntimeError:
+        return False
+    return True

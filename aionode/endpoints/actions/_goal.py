@@ -1,0 +1,186 @@
+"""The life of an action's goal: its states, the moves between them, and whom a request means.
+
+One table says everything: from which state which event leads where. The server asks it before
+every change, so no goal can end twice, and none can be cancelled after its end::
+
+    ACCEPTED --EXECUTE--> EXECUTING --SUCCEED--> SUCCEEDED
+        |                  |     |
+   CANCEL_GOAL    CANCEL_GOAL   ABORT----------> ABORTED
+        |                  |                        ^
+        +---> CANCELING <--+------ABORT-------------+
+                  |------SUCCEED--> SUCCEEDED
+                  +------CANCELED-> CANCELED
+
+A goal that is refused has no state: nobody keeps it. ``UNKNOWN`` is what a server says of a goal
+that it does not know, or knows no more.
+"""
+
+from __future__ import annotations
+
+from enum import Enum, IntEnum
+from typing import TYPE_CHECKING, NamedTuple
+
+from aionode.errors import GoalTransitionError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+__all__ = [
+    "ALL_GOALS",
+    "TRANSITIONS",
+    "CancelCode",
+    "CancelResponse",
+    "GoalEvent",
+    "GoalKey",
+    "GoalResponse",
+    "GoalStatus",
+    "candidates",
+    "next_status",
+]
+
+ALL_GOALS = bytes(16)
+"""The goal id that means no goal in particular."""
+
+
+class GoalStatus(IntEnum):
+    """The state of a goal, with the numbers of action_msgs/msg/GoalStatus.
+
+    Each is known by its name there, too: ``GoalStatus.STATUS_SUCCEEDED``.
+    """
+
+    UNKNOWN = 0
+    ACCEPTED = 1
+    EXECUTING = 2
+    CANCELING = 3
+    SUCCEEDED = 4
+    CANCELED = 5
+    ABORTED = 6
+    STATUS_UNKNOWN = 0
+    STATUS_ACCEPTED = 1
+    STATUS_EXECUTING = 2
+    STATUS_CANCELING = 3
+    STATUS_SUCCEEDED = 4
+    STATUS_CANCELED = 5
+    STATUS_ABORTED = 6
+
+    @classmethod
+    def _missing_(cls, value: object) -> GoalStatus | None:
+        """Read a number that a later version of ROS may send as unknown."""
+        return cls.UNKNOWN if isinstance(value, int) else None
+
+    @property
+    def is_active(self) -> bool:
+        """Whether the goal can still change: it was accepted and has not ended."""
+        return self in {GoalStatus.ACCEPTED, GoalStatus.EXECUTING, GoalStatus.CANCELING}
+
+
+class GoalEvent(Enum):
+    """What can happen to a goal."""
+
+    EXECUTE = 1
+    CANCEL_GOAL = 2
+    SUCCEED = 3
+    ABORT = 4
+    CANCELED = 5
+
+
+class GoalResponse(Enum):
+    """What a `goal_callback` says to a new goal."""
+
+    REJECT = 1
+    ACCEPT = 2
+
+
+class CancelResponse(Enum):
+    """What a `cancel_callback` says to a request to cancel a goal."""
+
+    REJECT = 1
+    ACCEPT = 2
+
+
+class CancelCode(IntEnum):
+    """What a server says to a cancel request, as in action_msgs/srv/CancelGoal."""
+
+    NONE = 0
+    REJECTED = 1
+    UNKNOWN_GOAL_ID = 2
+    GOAL_TERMINATED = 3
+
+
+TRANSITIONS: dict[tuple[GoalStatus, GoalEvent], GoalStatus] = {
+    (GoalStatus.ACCEPTED, GoalEvent.EXECUTE): GoalStatus.EXECUTING,
+    (GoalStatus.ACCEPTED, GoalEvent.CANCEL_GOAL): GoalStatus.CANCELING,
+    (GoalStatus.EXECUTING, GoalEvent.CANCEL_GOAL): GoalStatus.CANCELING,
+    (GoalStatus.EXECUTING, GoalEvent.SUCCEED): GoalStatus.SUCCEEDED,
+    (GoalStatus.EXECUTING, GoalEvent.ABORT): GoalStatus.ABORTED,
+    (GoalStatus.CANCELING, GoalEvent.SUCCEED): GoalStatus.SUCCEEDED,
+    (GoalStatus.CANCELING, GoalEvent.ABORT): GoalStatus.ABORTED,
+    (GoalStatus.CANCELING, GoalEvent.CANCELED): GoalStatus.CANCELED,
+}
+"""Every move that there is; anything else is an error."""
+
+
+def next_status(status: GoalStatus, event: GoalEvent, goal_id: str = "") -> GoalStatus:
+    """Return the state after `event`.
+
+    Raises:
+        GoalTransitionError: `event` cannot happen in `status` (a RuntimeError).
+    """
+    after = TRANSITIONS.get((status, event))
+    if after is None:
+        fits = [each.name for state, each in TRANSITIONS if state is status]
+        raise GoalTransitionError(goal_id, status.name, event.name, fits)
+    return after
+
+
+# Cancelling
+
+
+class GoalKey(NamedTuple):
+    """What tells goals apart in a cancel request.
+
+    Attributes:
+        goal_id: Its 16 bytes; all zero in a request that means no goal in particular.
+        stamp_ns: When the goal was accepted; 0 in a request that means no time in particular.
+        status: Its state.
+    """
+
+    goal_id: bytes
+    stamp_ns: int
+    status: GoalStatus = GoalStatus.UNKNOWN
+
+
+def candidates(goals: Iterable[GoalKey], asked: GoalKey) -> tuple[CancelCode, list[bytes]]:
+    """Return which goals a cancel request means, and the code if none of them is refused.
+
+    ======== ========= ===============================================
+    id       time      meaning
+    ======== ========= ===============================================
+    given    0         that goal
+    0        0         all goals
+    0        given     all accepted at that time or before
+    given    given     that goal, and all accepted then or before
+    ======== ========= ===============================================
+
+    Only goals that can still be cancelled are meant. A request for one goal says why it cannot be.
+    """
+    if asked.goal_id != ALL_GOALS and asked.stamp_ns == 0:
+        for goal in goals:
+            if goal.goal_id == asked.goal_id:
+                if is_cancelable(goal.status):
+                    return CancelCode.NONE, [goal.goal_id]
+                return CancelCode.GOAL_TERMINATED, []  # rcl says so while CANCELING, too
+        return CancelCode.UNKNOWN_GOAL_ID, []
+    everything = asked.goal_id == ALL_GOALS and asked.stamp_ns == 0
+    meant = [
+        goal.goal_id
+        for goal in goals
+        if is_cancelable(goal.status)
+        and (everything or goal.stamp_ns <= asked.stamp_ns or goal.goal_id == asked.goal_id)
+    ]
+    return CancelCode.NONE, meant
+
+
+def is_cancelable(status: GoalStatus) -> bool:
+    """Whether a cancel request can change anything."""
+    return (status, GoalEvent.CANCEL_GOAL) in TRANSITIONS

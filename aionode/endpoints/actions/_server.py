@@ -1,0 +1,596 @@
+"""Action servers: three services and two topics of a node, and the goals between them."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Coroutine
+from concurrent.futures import Future as ThreadFuture
+from contextlib import suppress
+from functools import partial
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
+
+from aionode.clock import perf_ns
+from aionode.endpoints._core.callback_runner import accepts, checked_concurrency, consume
+from aionode.endpoints._core.entity import Entity
+from aionode.endpoints._core.message_queue import MessageQueue
+from aionode.endpoints.actions._common import (
+    AbortReason,
+    awaited,
+    expect_action_type,
+    in_event_loop,
+    pass_reason,
+    reason_id,
+    seconds_to_ns,
+    stamp_ns,
+)
+from aionode.endpoints.actions._goal import (
+    CancelCode,
+    CancelResponse,
+    GoalKey,
+    GoalResponse,
+    GoalStatus,
+    candidates,
+    is_cancelable,
+)
+from aionode.endpoints.actions._server_goal import ServerGoalHandle
+from aionode.endpoints.stats import CallbackStats
+from aionode.errors import CallbackCancelledError, QueueFullError, brief
+from aionode.message import Message, snapshotter, type_name
+from aionode.qos import (
+    qos_profile_action_status_default,
+    qos_profile_default,
+    qos_profile_services_default,
+)
+
+if TYPE_CHECKING:
+    from aionode.clock._time_base import Alarm
+    from aionode.endpoints._core.callback_runner import CallbackRunner, OnError
+    from aionode.message import ActionClass
+    from aionode.node import Node
+    from aionode.qos import QoSProfile
+
+__all__ = ["ActionServer"]
+
+GoalT = TypeVar("GoalT", bound=Message)
+ResultT = TypeVar("ResultT", bound=Message)
+FeedbackT = TypeVar("FeedbackT", bound=Message)
+
+UNLIMITED = 2**63 - 1
+"""Depth of the queues of goals: `goal_callback` decides how many there are."""
+
+WITHDRAWN_NS = 10_000_000_000
+REMEMBERED_WITHDRAWN = 1000
+"""How long, and how many, ids of goals are remembered that were cancelled before they came."""
+
+DRAIN_LIMIT_S = 1.0
+"""How long a result waits for the last feedback to be sent, in seconds of the machine."""
+
+
+class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
+    """Executes goals that clients send, reports progress, and can be asked to stop.
+
+    ::
+
+        async def execute(goal_handle):
+            for step in range(goal_handle.request.order):
+                await work(step)
+                goal_handle.publish_feedback(Fibonacci.Feedback(...))
+            goal_handle.succeed()
+            return Fibonacci.Result(...)
+
+        ActionServer(node, Fibonacci, "fibonacci", execute)
+
+    A coroutine is cancelled by an accepted cancel request: it may clean up in
+    ``except asyncio.CancelledError`` and end with ``goal_handle.canceled()`` or `succeed()`;
+    letting the error through makes the goal CANCELED. A cancellation for another reason (the node
+    stops) makes it ABORTED. A sync callback looks at ``goal_handle.is_cancel_requested`` itself; it
+    runs in the event loop as every sync callback does, so a long one belongs in a thread:
+    ``offload=True``.
+
+    An exception in `execute_callback` aborts the goal. It is logged with its traceback and counted;
+    the client gets an empty result, and a client of aionode gets the text.
+
+    Args:
+        node: Whose it is.
+        action_type: An action class.
+        action_name: Name of the action; a relative one gets the node's namespace.
+        execute_callback: Called with a `ServerGoalHandle` for each goal; returns the result. Sync
+            or async.
+        goal_callback: Called with a goal message, says `GoalResponse.ACCEPT` or ``REJECT``; one
+            goal after the other. Without it all are accepted. Sync or async.
+        handle_accepted_callback: Called with the handle of each accepted goal, after the client was
+            told; calls ``goal_handle.execute()`` when it sees fit. Without it, at once. Sync or
+            async.
+        cancel_callback: Called with the handle of a goal that is to be cancelled, says
+            `CancelResponse.ACCEPT` or ``REJECT``. Without it none is cancelled. Sync or async.
+        result_timeout: How long a result is kept after the goal's end, in seconds. With 0 only
+            those get it who asked before the end.
+        concurrent: True executes all accepted goals at once, False one after the other, a number at
+            most so many at once; the others wait as ACCEPTED.
+        on_error: What becomes of an exception in the other callbacks, once the client was told (a
+            failing `goal_callback` or `cancel_callback` is a `ServiceError` there, a failing
+            `handle_accepted_callback` aborts the goal): ``"log"`` logs it with its traceback,
+            counts it and goes on, ``"raise"`` ends the node, a function gets (exception,
+            CallbackContext).
+        offload: Whether to run a sync `execute_callback` in a thread, where it may use its handle.
+        goal_service_qos_profile: Profile of the service that takes goals.
+        result_service_qos_profile: Profile of the service that gives results.
+        cancel_service_qos_profile: Profile of the service that takes cancel requests.
+        feedback_pub_qos_profile: Profile of the feedback topic.
+        status_pub_qos_profile: Profile of the status topic.
+
+    Attributes:
+        action_type: The action type.
+        action_name: The full name of the action.
+        stats: What became of the goals: `received` counts those whose execution began.
+
+    Raises:
+        TypeError: an argument is of a wrong kind, or a callback takes other arguments.
+        ValueError: `concurrent`, `on_error` or `result_timeout` has an impossible value.
+        InvalidTopicNameException: `action_name` is invalid (a ValueError).
+        EntityDestroyedError: the node was destroyed (a RuntimeError).
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        action_type: ActionClass[GoalT, ResultT, FeedbackT],
+        action_name: str,
+        execute_callback: Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any],
+        *,
+        goal_callback: Callable[[GoalT], Any] | None = None,
+        handle_accepted_callback: (
+            Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any] | None
+        ) = None,
+        cancel_callback: (
+            Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any] | None
+        ) = None,
+        result_timeout: float = 10.0,
+        concurrent: bool | int = True,
+        on_error: OnError = "log",
+        offload: bool = False,
+        goal_service_qos_profile: QoSProfile | int = qos_profile_services_default,
+        result_service_qos_profile: QoSProfile | int = qos_profile_services_default,
+        cancel_service_qos_profile: QoSProfile | int = qos_profile_services_default,
+        feedback_pub_qos_profile: QoSProfile | int = qos_profile_default,
+        status_pub_qos_profile: QoSProfile | int = qos_profile_action_status_default,
+    ) -> None:
+        expect_action_type(action_type, f"action server {action_name}")
+        self.action_type = cast("Any", action_type)
+        self.action_name = node.resolve_topic_name(action_name)
+        super().__init__(f"action server {self.action_name}")
+        self.stats = CallbackStats()
+        self._clock = node.get_clock()
+        self._time_base = node.context.time_base
+        self._callbacks = node.callbacks
+        self._logger = node.get_logger()
+        self._timeout_ns = seconds_to_ns(result_timeout, f"{self.subject}: result_timeout")
+        self._concurrent = checked_concurrency(concurrent, self.subject)
+        self._offload = offload
+        self._checked_result = snapshotter(self.action_type.Result)
+        self._goals: dict[bytes, ServerGoalHandle[GoalT, ResultT, FeedbackT]] = {}
+        self._withdrawn: dict[bytes, int] = {}  # and when, by the steady clock
+        self._alarms: dict[bytes, Alarm] = {}
+        self._accepted: MessageQueue[Any] = MessageQueue(UNLIMITED, CallbackStats(), keep_all=True)
+        self._waiting: MessageQueue[Any] = MessageQueue(UNLIMITED, self.stats, keep_all=True)
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._status_due = False
+        self._hand_over = self._callbacks.make_runner(
+            self._call_handle_accepted, self, CallbackStats(), on_error=on_error, offload=False
+        )
+        self.register_execute_callback(execute_callback)
+        self.register_goal_callback(goal_callback)
+        self.register_handle_accepted_callback(handle_accepted_callback)
+        self.register_cancel_callback(cancel_callback)
+
+        impl = self.action_type.Impl
+        hidden = f"{self.action_name}/_action"
+        self._parts: list[Entity] = []
+        try:
+            self._feedback = self._part(
+                node.create_publisher(
+                    impl.FeedbackMessage, f"{hidden}/feedback", feedback_pub_qos_profile
+                )
+            )
+            self._status = self._part(
+                node.create_publisher(
+                    impl.GoalStatusMessage, f"{hidden}/status", status_pub_qos_profile
+                )
+            )
+            for srv_type, name, callback, qos_profile, options in (
+                # One decision after the other: "only one goal at a time" must not race with itself.
+                (
+                    impl.SendGoalService,
+                    "send_goal",
+                    self._on_goal,
+                    goal_service_qos_profile,
+                    {"on_error": on_error},
+                ),
+                (
+                    impl.CancelGoalService,
+                    "cancel_goal",
+                    self._on_cancel,
+                    cancel_service_qos_profile,
+                    {"on_error": on_error},
+                ),
+                # A request stays open until its goal ends, so they are all open at once.
+                (
+                    impl.GetResultService,
+                    "get_result",
+                    self._on_result,
+                    result_service_qos_profile,
+                    {"on_error": pass_reason, "concurrent": True},
+                ),
+            ):
+                self._part(
+                    node.create_service(
+                        srv_type, f"{hidden}/{name}", callback, qos_profile=qos_profile, **options
+                    )
+                )
+        except BaseException:
+            self._close_parts()
+            raise
+        node.add_entity(self)
+
+    def _part(self, part: Any) -> Any:
+        self._parts.append(part)
+        return part
+
+    def __repr__(self) -> str:
+        active = sum(goal.is_active for goal in self._goals.values())
+        return (
+            f"<ActionServer {self.action_name} {type_name(self.action_type)} active={active} "
+            f"kept={len(self._goals) - active} received={self.stats.received} "
+            f"errors={self.stats.errors}>"
+        )
+
+    # Callbacks, as in rclpy
+
+    def register_execute_callback(
+        self, execute_callback: Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any]
+    ) -> None:
+        """Call another function for goals whose execution begins from now on.
+
+        Raises:
+            TypeError: it cannot be called with a goal handle.
+            ValueError: it is a coroutine function, and the server offloads.
+        """
+        self._execute = self._executing(execute_callback)
+
+    def _executing(self, callback: Callable[..., Any]) -> CallbackRunner:
+        accepts(callback, 1, subject=self.subject, wanted="(goal_handle)")
+        return self._callbacks.make_runner(
+            callback, self, self.stats, on_error="log", offload=self._offload
+        )
+
+    def register_goal_callback(self, goal_callback: Callable[[GoalT], Any] | None) -> None:
+        """Ask another function about new goals; None accepts all."""
+        if goal_callback is not None:
+            accepts(goal_callback, 1, subject=self.subject, wanted="(goal)")
+        self._goal_callback = goal_callback
+
+    def register_handle_accepted_callback(
+        self,
+        handle_accepted_callback: (
+            Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any] | None
+        ),
+    ) -> None:
+        """Hand goals over to another function; None executes them at once."""
+        if handle_accepted_callback is not None:
+            accepts(handle_accepted_callback, 1, subject=self.subject, wanted="(goal_handle)")
+        self._handle_accepted_callback = handle_accepted_callback
+
+    def register_cancel_callback(
+        self,
+        cancel_callback: Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any] | None,
+    ) -> None:
+        """Ask another function about cancel requests; None rejects all."""
+        if cancel_callback is not None:
+            accepts(cancel_callback, 1, subject=self.subject, wanted="(goal_handle)")
+        self._cancel_callback = cancel_callback
+
+    # New goals
+
+    async def _on_goal(self, request: Any) -> Any:
+        response = self.action_type.Impl.SendGoalService.Response()
+        goal_id = request.goal_id.uuid.tobytes()
+        if self._is_refused(goal_id) or not await self._welcomes(request.goal):
+            return response
+        if self._is_refused(goal_id):  # while the callback was thinking
+            return response
+        response.accepted = True
+        response.stamp = self._clock.now().to_msg()
+        goal = self._accept(goal_id, request, response.stamp)
+        # Both ways lead through a queue, so that the client is told first.
+        if self._handle_accepted_callback is None:
+            goal.execute()
+        else:
+            self._accepted.put(goal)
+        return response
+
+    def _is_refused(self, goal_id: bytes) -> bool:
+        """Whether there is such a goal already, or its client has cancelled it before."""
+        return goal_id in self._goals or goal_id in self._withdrawn
+
+    def _note_withdrawn(self, goal_id: bytes) -> None:
+        """Remember for a while that a goal was cancelled before it was accepted.
+
+        Its request waits in the queue, or its `goal_callback` is thinking.
+        """
+        now_ns = self._time_base.steady_ns()
+        for known, since_ns in list(self._withdrawn.items()):
+            if now_ns - since_ns > WITHDRAWN_NS or len(self._withdrawn) >= REMEMBERED_WITHDRAWN:
+                del self._withdrawn[known]
+        self._withdrawn[goal_id] = now_ns
+
+    async def _welcomes(self, goal: GoalT) -> bool:
+        if self._goal_callback is None:
+            return True
+        answer = await awaited(self._goal_callback(goal))
+        if not isinstance(answer, GoalResponse):
+            self.warn(
+                f"goal_callback returned {brief(answer)}, no GoalResponse; the goal is rejected"
+            )
+        return answer is GoalResponse.ACCEPT
+
+    def _accept(
+        self, goal_id: bytes, request: Any, stamp: Any
+    ) -> ServerGoalHandle[GoalT, ResultT, FeedbackT]:
+        # Imported here, because whoever imports aionode need not know these messages.
+        from aionode.interfaces.action_msgs.msg import GoalInfo
+
+        goal: ServerGoalHandle[GoalT, ResultT, FeedbackT] = ServerGoalHandle(
+            self,
+            request.goal,
+            GoalInfo(goal_id=request.goal_id, stamp=stamp),
+            GoalKey(goal_id, stamp_ns(stamp)),
+        )
+        self._goals[goal_id] = goal
+        self.publish_status()
+        return goal
+
+    async def _call_handle_accepted(self, goal: Any) -> None:
+        callback = self._handle_accepted_callback
+        try:
+            if callback is None:
+                goal.execute()
+            else:
+                await awaited(callback(goal))
+        except Exception as error:
+            goal.failed(error)  # or its client would wait for ever
+            raise
+
+    # Execution
+
+    async def run(self) -> None:
+        """Hand over and execute goals, until cancelled."""
+        self._loop = asyncio.get_running_loop()
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(
+                consume(self._accepted, lambda _, goal: self._hand_over.run(goal), concurrent=True)
+            )
+            tasks.create_task(consume(self._waiting, self._begin, self._concurrent))
+
+    def enqueue(
+        self,
+        goal: ServerGoalHandle[GoalT, ResultT, FeedbackT],
+        execute_callback: Callable[..., Any] | None,
+    ) -> None:
+        """Have `goal` executed in its turn. For its handle."""
+        runner = None if execute_callback is None else self._executing(execute_callback)
+        self._waiting.put((goal, runner))
+
+    def _begin(
+        self, entered_ns: int, item: tuple[ServerGoalHandle[Any, Any, Any], CallbackRunner | None]
+    ) -> Coroutine[Any, Any, None] | None:
+        goal, runner = item
+        if not goal.is_active:  # cancelled while it waited
+            self.stats.dropped += 1
+            return None
+        return self._run_goal(entered_ns, goal, runner or self._execute)
+
+    async def _run_goal(
+        self, entered_ns: int, goal: ServerGoalHandle[Any, Any, Any], runner: CallbackRunner
+    ) -> None:
+        if not goal.is_active:  # cancelled before this task had its first turn
+            self.stats.dropped += 1
+            return
+        self.stats.received += 1
+        self.stats.queue_wait.record(perf_ns() - entered_ns)
+        goal.begin()
+        try:
+            async with asyncio.TaskGroup() as tasks:  # a cancelled goal cancels only its own task
+                tasks.create_task(
+                    self._call_execute(goal, runner), name=f"{self.subject} goal {goal.text}"
+                )
+        finally:
+            if goal.is_active:  # the node stopped before the callback began
+                goal.stopped()
+
+    async def _call_execute(
+        self, goal: ServerGoalHandle[Any, Any, Any], runner: CallbackRunner
+    ) -> None:
+        if not self._offload:  # a thread cannot be cancelled, so it has to look for itself
+            goal.run_in(asyncio.current_task())
+        try:
+            goal.returned(await runner.call(goal))
+        except asyncio.CancelledError:
+            goal.stopped()
+            raise
+        except Exception as error:  # noqa: BLE001  # logged and counted, and told to the client
+            if self.destroyed and isinstance(error, CallbackCancelledError):
+                goal.stopped()  # the node ends, and its clock has ended just before this task
+                return
+            runner.fail(error)
+            goal.failed(error)
+
+    def in_loop(self, action: Callable[..., None], *args: Any) -> None:
+        """Do `action` in the event loop, and wait for it if this is a thread. For goal handles.
+
+        Raises:
+            Exception: what `action` raised.
+        """
+        loop = self._loop
+        if loop is None or self.destroyed or in_event_loop():
+            action(*args)
+            return
+        done: ThreadFuture[None] = ThreadFuture()
+
+        def act() -> None:
+            try:
+                action(*args)
+            except Exception as error:  # noqa: BLE001  # raised in the thread
+                done.set_exception(error)
+            else:
+                done.set_result(None)
+
+        loop.call_soon_threadsafe(act)
+        done.result()
+
+    # Cancel requests
+
+    async def _on_cancel(self, request: Any) -> Any:
+        info = request.goal_info
+        asked = GoalKey(info.goal_id.uuid.tobytes(), stamp_ns(info.stamp))
+        code, meant = candidates([goal.key for goal in self._goals.values()], asked)
+        response = self.action_type.Impl.CancelGoalService.Response()
+        if code is CancelCode.UNKNOWN_GOAL_ID:
+            self._note_withdrawn(asked.goal_id)
+        refused = False
+        for goal_id in meant:
+            goal = self._goals.get(goal_id)
+            if goal is None or not is_cancelable(goal.status):
+                continue  # it ended while another was asked about
+            if not await self._yields(goal):
+                refused = True
+            elif is_cancelable(goal.status):
+                goal.cancel()
+                response.goals_canceling.append(goal.info)
+        if meant and not response.goals_canceling:
+            code = CancelCode.REJECTED if refused else CancelCode.GOAL_TERMINATED
+        response.return_code = int(code)
+        return response
+
+    async def _yields(self, goal: ServerGoalHandle[GoalT, ResultT, FeedbackT]) -> bool:
+        if self._cancel_callback is None:
+            return False
+        answer = await awaited(self._cancel_callback(goal))
+        if not isinstance(answer, CancelResponse):
+            self.warn(
+                f"cancel_callback returned {brief(answer)}, no CancelResponse; "
+                "the request is rejected"
+            )
+        return answer is CancelResponse.ACCEPT
+
+    # Results
+
+    async def _on_result(self, request: Any) -> Any:
+        goal_id = request.goal_id.uuid.tobytes()
+        response = self.action_type.Impl.GetResultService.Response()
+        goal = self._goals.get(goal_id)
+        if goal is None:
+            aborted = self._goals.get(reason_id(goal_id))
+            if aborted is not None and aborted.error_text:
+                raise AbortReason(aborted.error_text)
+            return response
+        status, result = await goal.outcome()
+        await self._send_feedback_first()
+        response.status = int(status)
+        if result is not None:
+            response.result = result
+        return response
+
+    async def _send_feedback_first(self) -> None:
+        """Let feedback out before the result: clients stop to listen when they have that."""
+        with suppress(TimeoutError):  # a full KEEP_ALL reader must not hold results back
+            async with asyncio.timeout(DRAIN_LIMIT_S):
+                await self._feedback.drain()
+
+    def checked_result(self, result: ResultT) -> ResultT:
+        """Return a copy of `result` that nobody changes. For goal handles.
+
+        Raises:
+            TypeError: it is not of the action's Result type.
+            MessageError: a value does not fit its field.
+        """
+        checked: ResultT = self._checked_result(result)
+        return checked
+
+    def keep(self, goal: ServerGoalHandle[GoalT, ResultT, FeedbackT]) -> None:
+        """Keep the result of `goal`, which has ended, for a while. For its handle."""
+        goal_id = goal.key.goal_id
+        if self.destroyed or goal_id not in self._goals:
+            return
+        if self._timeout_ns == 0:  # after the status, which is sent in the next turn
+            asyncio.get_running_loop().call_soon(self._forget, goal_id)
+        else:
+            due_ns = self._time_base.steady_ns() + self._timeout_ns
+            self._alarms[goal_id] = self._time_base.call_at(due_ns, partial(self._forget, goal_id))
+
+    def _forget(self, goal_id: bytes) -> None:
+        self._goals.pop(goal_id, None)
+        self._alarms.pop(goal_id, None)
+
+    # Topics
+
+    def publish_feedback(
+        self, goal: ServerGoalHandle[GoalT, ResultT, FeedbackT], feedback: FeedbackT
+    ) -> None:
+        """Send `feedback` of `goal`. For its handle."""
+        if not isinstance(feedback, self.action_type.Feedback):
+            raise TypeError(
+                f"{self.subject}: feedback is a {type(feedback).__name__}; a "
+                f"{type_name(self.action_type.Feedback)} is needed"
+            )
+        if not self.destroyed:
+            message = self.action_type.Impl.FeedbackMessage(goal_id=goal.goal_id, feedback=feedback)
+            with suppress(QueueFullError):  # the goal goes on, whoever does not read
+                self._feedback.publish(message)
+
+    def publish_status(self) -> None:
+        """Send the states of all goals soon: once for all changes of one turn of the loop.
+
+        The list holds every goal that is active or kept, so a message for each change of each of
+        many goals would cost more than the goals do. For goal handles.
+        """
+        if not (self._status_due or self.destroyed):
+            self._status_due = True
+            asyncio.get_running_loop().call_soon(self._send_status)
+
+    def _send_status(self) -> None:
+        self._status_due = False
+        if self.destroyed:
+            return
+        from aionode.interfaces.action_msgs.msg import GoalStatus as GoalStatusMessage
+
+        message = self.action_type.Impl.GoalStatusMessage(
+            status_list=[
+                GoalStatusMessage(goal_info=goal.info, status=int(goal.status))
+                for goal in self._goals.values()
+            ]
+        )
+        with suppress(QueueFullError):  # as above
+            self._status.publish(message)
+
+    def warn(self, text: str) -> None:
+        """Log what a callback did wrong. For goal handles."""
+        self._logger.warning(f"{self.subject}: {text}")
+
+    # The end
+
+    def _close(self) -> None:
+        """Withdraw the server: clients are told at once that their goals are lost."""
+        self._close_parts()
+        for alarm in self._alarms.values():
+            alarm.cancel()
+        self._alarms.clear()
+        goals, self._goals = self._goals, {}
+        for goal in goals.values():
+            if goal.status is GoalStatus.ACCEPTED:  # those that are executed end by themselves
+                goal.stopped()
+        self._accepted.discard()
+        self._waiting.discard()
+
+    def _close_parts(self) -> None:
+        for part in self._parts:
+            part.destroy()

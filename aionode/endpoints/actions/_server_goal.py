@@ -1,0 +1,247 @@
+"""One goal at the server that executes it."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from aionode.endpoints.actions._goal import TRANSITIONS, GoalEvent, GoalKey, GoalStatus, next_status
+from aionode.errors import GoalTransitionError
+from aionode.message import Message
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.endpoints.actions._server import ActionServer
+
+__all__ = ["ServerGoalHandle"]
+
+GoalT = TypeVar("GoalT", bound=Message)
+ResultT = TypeVar("ResultT", bound=Message)
+FeedbackT = TypeVar("FeedbackT", bound=Message)
+
+NO_END_TEXT = "execute_callback returned without calling succeed(), abort() or canceled()"
+STOPPED_TEXT = "the action server stopped"
+
+
+class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
+    """A goal that an action server has accepted: given to its callbacks.
+
+    An `execute_callback` that runs in a thread (``offload=True``) may use it there.
+
+    Attributes:
+        request: The goal message.
+        status: The state of the goal.
+        info: Id and time of acceptance, as action_msgs/msg/GoalInfo.
+    """
+
+    def __init__(
+        self,
+        server: ActionServer[GoalT, ResultT, FeedbackT],
+        request: GoalT,
+        info: Any,
+        key: GoalKey,
+    ) -> None:
+        self.request = request
+        self.info = info
+        self.status = GoalStatus.ACCEPTED
+        self._key = key
+        self._server = server
+        self._queued = False
+        self._running = False
+        self._task: asyncio.Task[Any] | None = None
+        self._result: ResultT | None = None
+        self._error_text = ""
+        self._known = asyncio.Event()
+
+    def __repr__(self) -> str:
+        return f"<ServerGoalHandle {self._server.action_name} {self.text} {self.status.name}>"
+
+    @property
+    def goal_id(self) -> Any:
+        """The id that the client gave it, as unique_identifier_msgs/msg/UUID."""
+        return self.info.goal_id
+
+    @property
+    def text(self) -> str:
+        """The id in 32 hexadecimal digits."""
+        return self._key.goal_id.hex()
+
+    @property
+    def key(self) -> GoalKey:
+        """What cancel requests go by."""
+        return self._key._replace(status=self.status)
+
+    @property
+    def is_active(self) -> bool:
+        """Whether the goal has not ended yet."""
+        return self.status.is_active
+
+    @property
+    def is_cancel_requested(self) -> bool:
+        """Whether the goal is to be cancelled: `cancel_callback` has accepted a request."""
+        return self.status is GoalStatus.CANCELING
+
+    # What callbacks do
+
+    def execute(self, execute_callback: Callable[..., Any] | None = None) -> None:
+        """Have the goal executed, as soon as there is room for it.
+
+        For a `handle_accepted_callback` that decides when; without one, goals are executed at once.
+
+        Args:
+            execute_callback: What to call in place of the server's own.
+
+        Raises:
+            GoalTransitionError: it is or was executed already, or has ended (a RuntimeError).
+        """
+        self._server.in_loop(self._execute, execute_callback)
+
+    def _execute(self, execute_callback: Callable[..., Any] | None) -> None:
+        if self._server.destroyed:
+            return
+        if self._queued or not self.is_active:
+            raise GoalTransitionError(self.text, self.status.name, GoalEvent.EXECUTE.name, [])
+        self._queued = True
+        self._server.enqueue(self, execute_callback)
+
+    def publish_feedback(self, feedback: FeedbackT) -> None:
+        """Tell the client how far the goal is; never blocks and never waits.
+
+        Raises:
+            TypeError: `feedback` is not of the action's Feedback type.
+            MessageError: a value does not fit its field.
+        """
+        self._server.in_loop(self._server.publish_feedback, self, feedback)
+
+    def succeed(self, result: ResultT | None = None) -> None:
+        """End the goal as SUCCEEDED.
+
+        Args:
+            result: What the client gets; without it, what `execute_callback` returns.
+
+        Raises:
+            GoalTransitionError: the goal is not being executed, or has ended (a RuntimeError).
+            TypeError: `result` is not of the action's Result type.
+            MessageError: a value does not fit its field.
+        """
+        self._server.in_loop(self._end, GoalEvent.SUCCEED, result)
+
+    def abort(self, result: ResultT | None = None, *, error_text: str = "") -> None:
+        """End the goal as ABORTED. See `succeed` for `result` and the errors.
+
+        Args:
+            result: What the client gets; without it, what `execute_callback` returns.
+            error_text: Why, for clients that can be told: those of aionode.
+        """
+        self._server.in_loop(self._end, GoalEvent.ABORT, result, error_text)
+
+    def canceled(self, result: ResultT | None = None) -> None:
+        """End the goal as CANCELED, which it can after an accepted cancel request only.
+
+        See `succeed` for `result` and the errors.
+        """
+        self._server.in_loop(self._end, GoalEvent.CANCELED, result)
+
+    def _end(self, event: GoalEvent, result: ResultT | None, error_text: str = "") -> None:
+        if self._server.destroyed:
+            # Nobody can be told any more, and a callback that cleans up should not fail for that.
+            self.status = TRANSITIONS.get((self.status, event), self.status)
+            return
+        checked = None if result is None else self._server.checked_result(result)
+        self.move(event)
+        self._error_text = error_text
+        if checked is not None or not self._running:
+            self._set_result(checked)
+
+    # What the server does
+
+    def move(self, event: GoalEvent) -> None:
+        """Change the state, and tell everybody.
+
+        Raises:
+            GoalTransitionError: the table does not have that move.
+        """
+        self.status = next_status(self.status, event, self.text)
+        self._server.publish_status()
+
+    def begin(self) -> None:
+        """Note that its callback is called now."""
+        self._running = True
+        if not self.is_cancel_requested:
+            self.move(GoalEvent.EXECUTE)
+
+    def run_in(self, task: asyncio.Task[Any] | None) -> None:
+        """Note the task that a cancel request cancels; at once if the request was earlier.
+
+        The callback runs up to its first wait then, so that it can see that it has been cancelled.
+        """
+        self._task = task
+        if task is not None and self.is_cancel_requested:
+            task.cancel()
+
+    def cancel(self) -> None:
+        """Carry out an accepted cancel request."""
+        self.move(GoalEvent.CANCEL_GOAL)
+        if self._task is not None:
+            self._task.cancel()
+        elif self._queued and not self._running:
+            self.stopped()  # nothing was begun, so there is nothing to clean up
+
+    def returned(self, result: ResultT | None) -> None:
+        """Take what the callback returned.
+
+        Raises:
+            TypeError: it is no result.
+            MessageError: a value of it does not fit its field.
+        """
+        checked = None if result is None else self._server.checked_result(result)
+        if self.is_active:
+            self._server.warn(f"goal {self.text}: {NO_END_TEXT}; it counts as aborted")
+            self._error_text = NO_END_TEXT
+            self.move(GoalEvent.ABORT)
+        elif checked is None and not self._known.is_set():
+            self._server.warn(
+                f"goal {self.text}: execute_callback returned no result, so the client gets an "
+                "empty one; `return` a Result, or give it to succeed()"
+            )
+        self._set_result(checked)
+
+    def failed(self, error: Exception) -> None:
+        """Take an exception of the callback: the goal is aborted, unless it has ended before."""
+        if self.is_active:
+            self._error_text = f"{type(error).__name__}: {error}"
+            if self.status is GoalStatus.ACCEPTED:
+                self.move(GoalEvent.EXECUTE)
+            self.move(GoalEvent.ABORT)
+        self._set_result(None)
+
+    def stopped(self) -> None:
+        """Note that the callback was cancelled: on request, or because the server stops."""
+        if self.status is GoalStatus.CANCELING:
+            self.move(GoalEvent.CANCELED)
+        elif self.is_active:
+            self._error_text = STOPPED_TEXT
+            if self.status is GoalStatus.ACCEPTED:
+                self.move(GoalEvent.EXECUTE)
+            self.move(GoalEvent.ABORT)
+        self._set_result(None)
+
+    def _set_result(self, result: ResultT | None) -> None:
+        """Make the result known, once; an empty one stands for None."""
+        self._running = False
+        self._task = None
+        if not self._known.is_set():
+            self._result = result
+            self._known.set()
+            self._server.keep(self)
+
+    async def outcome(self) -> tuple[GoalStatus, ResultT | None]:
+        """Wait until the result is known."""
+        await self._known.wait()
+        return self.status, self._result
+
+    @property
+    def error_text(self) -> str:
+        """Why the goal was aborted, if anybody said so."""
+        return self._error_text

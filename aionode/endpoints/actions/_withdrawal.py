@@ -1,0 +1,153 @@
+"""Cancelling a goal at its server, whatever becomes of the task that wanted it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from aionode.endpoints.actions._goal import CancelCode
+from aionode.errors import ServiceUnavailableError
+
+if TYPE_CHECKING:
+    from aionode.endpoints.actions._client_goal import ClientGoalHandle
+    from aionode.endpoints.client import Client, Exchange
+
+__all__ = ["Withdrawal"]
+
+FIRST_RETRY_S = 0.1
+LONGEST_RETRY_S = 5.0
+ATTEMPTS = 14
+"""So many requests are sent at most, within 45 s; after that, their answers are waited for."""
+
+
+class Withdrawal:
+    """A request to cancel a goal that is sent at once, and again until the server has answered.
+
+    It runs in callbacks of the loop and in no task, so nothing that is cancelled can take it back.
+    The goal may be one that the server has not accepted yet: the request goes on until the server
+    has decided. It ends when the goal has ended, too; a server that has gone may come back until
+    all attempts are made.
+
+    Args:
+        client: The client of the server's cancel service.
+        goal: The goal.
+        on_end: Called soon after the end, when nothing will be sent any more.
+
+    Attributes:
+        answer: The server's answer, or the error in its place; ServiceUnavailableError as soon as
+            no server is there. Cancelled with the client.
+    """
+
+    def __init__(
+        self,
+        client: Client[Any, Any],
+        goal: ClientGoalHandle[Any, Any],
+        on_end: Callable[[Withdrawal], None],
+    ) -> None:
+        self._loop = asyncio.get_running_loop()
+        self.answer: asyncio.Future[Any] = self._loop.create_future()
+        # Its exception is looked at, so that asyncio does not report it.
+        self.answer.add_done_callback(lambda done: done.cancelled() or done.exception())
+        self._client = client
+        self._goal = goal
+        self._on_end = on_end
+        self._request = client.srv_type.Request()
+        self._request.goal_info.goal_id = goal.goal_id
+        self._attempts = 0
+        self._timer: asyncio.TimerHandle | None = None
+        self._exchanges: list[Exchange] = []
+        self._ended = False
+        if goal.sending is not None and not goal.sending.answer.done():
+            goal.sending.answer.add_done_callback(self._decided)
+        self._send()
+
+    def _send(self) -> None:
+        """Send the request, and plan the next one."""
+        if self._ended or self._attempts == ATTEMPTS:
+            return
+        if self._client.destroyed:
+            self.end()
+            return
+        if self._goal.is_known_to_have_ended:
+            response = self._client.srv_type.Response(return_code=CancelCode.GOAL_TERMINATED)
+            self._take_response(response)
+            return
+        self._timer = self._loop.call_later(
+            min(FIRST_RETRY_S * 2**self._attempts, LONGEST_RETRY_S), self._send
+        )
+        self._attempts += 1
+        if self._client.service_is_ready():
+            exchange = self._client.begin(self._request)
+            self._exchanges.append(exchange)
+            exchange.answer.add_done_callback(partial(self._take, self._is_decided()))
+        else:
+            self._fail(ServiceUnavailableError(self._client.srv_name))
+
+    def _take(self, decided: bool, answer: asyncio.Future[Any]) -> None:
+        """Take what came of one request; `decided` when it was sent, it is the last word.
+
+        Before that the server may have got it while it did not know the goal yet.
+        """
+        if self._ended:
+            return
+        if answer.cancelled():  # with the client
+            self.end()
+            return
+        error = answer.exception()
+        if isinstance(error, ServiceUnavailableError):
+            if not self._client.service_is_ready():
+                self._fail(error)
+        elif error is not None:
+            self._fail(error)
+            self.end()
+        elif decided or answer.result().return_code != CancelCode.UNKNOWN_GOAL_ID:
+            self._take_response(answer.result())
+
+    def _is_decided(self) -> bool:
+        """Whether the server has said that it accepts the goal, or that it does not."""
+        return self._goal.sending is None or self._goal.sending.answer.done()
+
+    def _decided(self, decision: asyncio.Future[Any]) -> None:
+        """Send the request again if the goal was accepted only now; end if it was not."""
+        if self._ended or decision.cancelled():
+            return
+        error = decision.exception()
+        if isinstance(error, ServiceUnavailableError):
+            return  # the goal may have been accepted, and the answer was lost
+        if error is None and decision.result().accepted:
+            if self._timer is not None:
+                self._timer.cancel()
+            self._attempts = 0
+            self._send()
+        else:
+            unknown = self._client.srv_type.Response(return_code=CancelCode.UNKNOWN_GOAL_ID)
+            self._take_response(unknown)
+
+    def _take_response(self, response: Any) -> None:
+        if not self.answer.done():
+            self.answer.set_result(response)
+        self.end()
+
+    def _fail(self, error: BaseException) -> None:
+        if not self.answer.done():
+            self.answer.set_exception(error)
+
+    def end_with_answer(self) -> None:
+        """Do not wait for a server that has gone to come back: the client ends."""
+        self.answer.add_done_callback(lambda _: self.end())
+
+    def end(self) -> None:
+        """Send nothing any more."""
+        if self._ended:
+            return
+        self._ended = True
+        if self._timer is not None:
+            self._timer.cancel()
+        for exchange in self._exchanges:
+            exchange.cancel()
+        if self._goal.sending is not None:
+            self._goal.sending.cancel()
+        self.answer.cancel()
+        self._loop.call_soon(self._on_end, self)

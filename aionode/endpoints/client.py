@@ -1,0 +1,289 @@
+"""Service clients."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from aionode.clock import perf_ns
+from aionode.endpoints._core.entity import EndStage, Entity
+from aionode.endpoints._core.future import Futures, asks
+from aionode.endpoints.stats import ClientStats
+from aionode.errors import (
+    AionodeError,
+    MessageError,
+    RequestTimeoutError,
+    ServiceUnavailableError,
+    silence,
+)
+from aionode.graph import EndpointKind
+from aionode.message import Message, checker
+from aionode.transport.base import SampleInfo
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from aionode.clock import TimeBase
+    from aionode.endpoints._core.graph_entry import GraphEntry
+    from aionode.errors import ServiceError
+    from aionode.qos import QoSProfile
+    from aionode.transport.base import Call, Requester
+
+__all__ = ["Client", "Exchange"]
+
+RequestT = TypeVar("RequestT", bound=Message)
+
+ResponseT = TypeVar("ResponseT", bound=Message)
+
+
+class Client(Entity, Generic[RequestT, ResponseT]):
+    """Calls a service. Made by `Node.create_client`.
+
+    Attributes:
+        srv_type: The service class.
+        qos_profile: Its profile.
+        stats: What became of the calls.
+    """
+
+    def __init__(
+        self,
+        graph_entry: GraphEntry,
+        srv_type: Any,
+        requesters: Sequence[Requester],
+        time_base: TimeBase,
+    ) -> None:
+        super().__init__(f"client of {graph_entry.endpoint.name}", EndStage.LAST)
+        self.srv_type = srv_type
+        self.qos_profile: QoSProfile = graph_entry.endpoint.qos
+        self.stats = ClientStats()
+        self._graph_entry = graph_entry
+        self._requesters = tuple(requesters)
+        self._check = checker(srv_type.Request)
+        self._now_ns = time_base.system_ns
+        self._answers: set[asyncio.Future[Any]] = set()
+        self._futures = Futures(self.subject)
+        self._warned = False
+
+    def __repr__(self) -> str:
+        return (
+            f"<Client {self.srv_name} {self._graph_entry.endpoint.type_name} "
+            f"calls={self.stats.calls} errors={self.stats.errors}>"
+        )
+
+    @property
+    def srv_name(self) -> str:
+        """The full name of the service."""
+        return self._graph_entry.endpoint.name
+
+    service_name = srv_name
+
+    def service_is_ready(self) -> bool:
+        """Whether a server is matched now."""
+        return self._graph_entry.count_matched(EndpointKind.SERVER) > 0
+
+    @asks
+    async def wait_for_service(self, timeout_sec: float | None = None) -> bool:
+        """Wait until a server is matched.
+
+        Args:
+            timeout_sec: How long at most, in seconds; None waits for ever.
+
+        Returns:
+            True when a server is there, False when `timeout_sec` has passed.
+
+        Raises:
+            EntityDestroyedError: the client was destroyed before.
+            CancelledError: the client was destroyed while it waited.
+        """
+        self.refuse_if_destroyed()
+        try:
+            async with asyncio.timeout(timeout_sec):
+                await self._graph_entry.until(self.service_is_ready)
+        except TimeoutError:
+            return self.service_is_ready()
+        return True
+
+    async def call(self, request: RequestT, timeout_sec: float | None = None) -> ResponseT:
+        """Send `request` and wait for the response.
+
+        Without a server nothing answers, so limit the wait: with `timeout_sec`, or with
+        `asyncio.timeout`, or wait for the service first. A call that is cancelled or times out is
+        forgotten on both sides: a server that has not begun does not serve it, and a late reply
+        goes nowhere. With several servers the first answer counts.
+
+        Args:
+            request: An instance of ``srv_type.Request``; it may be changed after the call began.
+            timeout_sec: How long at most, in seconds; None waits for ever.
+
+        Raises:
+            TypeError: `request` is of another type.
+            MessageError: a value does not fit its field.
+            ServiceError: the handler failed; with type and text of its exception.
+            ServiceUnavailableError: the server went away before it answered (a ServiceError).
+            RequestTimeoutError: `timeout_sec` has passed (a TimeoutError).
+            EntityDestroyedError: the client was destroyed before the call.
+            CancelledError: the client was destroyed during the call.
+        """
+        if self.destroyed:
+            self.refuse_if_destroyed("called")
+        if type(request) is not self.srv_type.Request:
+            self._check(request)
+        began_ns = perf_ns()
+        limit = None if timeout_sec is None else asyncio.timeout(timeout_sec)
+        response: ResponseT
+        try:
+            if limit is None:
+                response = await self._exchange(request)
+            else:
+                async with limit:
+                    response = await self._exchange(request)
+        except TimeoutError as error:
+            self.stats.errors += 1
+            if limit is not None and timeout_sec is not None and limit.expired():
+                raise RequestTimeoutError(self.srv_name, timeout_sec, self._servers()) from error
+            raise
+        except asyncio.CancelledError as error:
+            self.stats.errors += 1
+            error.add_note(f"{self.srv_name}: no reply; {silence(self._servers())}")
+            raise
+        except AionodeError as error:
+            self.stats.errors += 1
+            if isinstance(error, MessageError):
+                error.add_note(f"in a call of {self.srv_name}")
+            raise
+        self.stats.run_time.record(perf_ns() - began_ns)
+        return response
+
+    def call_async(self, request: RequestT) -> asyncio.Future[ResponseT]:
+        """Send `request`, and return a future of the response, as in rclpy.
+
+        The future is asyncio's: it can be awaited, `add_done_callback` tells of its end, `result`
+        gives the response, or raises what `call` raises. Cancelling it forgets the call; so does
+        the end of the client. Before the node runs it waits for that.
+
+        Args:
+            request: An instance of ``srv_type.Request``.
+
+        Raises:
+            EntityDestroyedError: the client was destroyed (a RuntimeError).
+            RuntimeError: no event loop runs.
+        """
+        self.refuse_if_destroyed("called")
+        return self._futures.begin(self.call(request))
+
+    def start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:
+        """Begin the calls that were made before the node ran."""
+        task = super().start(tasks)
+        self._futures.start(tasks)
+        return task
+
+    async def _exchange(self, request: RequestT) -> Any:
+        """Send through every transport and return the first answer."""
+        exchange = self.begin(request)
+        try:
+            return await exchange.answer
+        finally:
+            exchange.cancel()
+
+    def begin(self, request: RequestT) -> Exchange:
+        """Send `request` to the servers that are there now, and return what takes the answer.
+
+        For requests that are to go on when their sender is cancelled.
+
+        Raises:
+            TypeError: `request` is of another type.
+            MessageError: a value does not fit its field.
+        """
+        self.stats.calls += 1
+        servers = 0
+        reached = []
+        for requester in self._requesters:
+            matched = requester.servers
+            if matched:
+                servers += matched
+                reached.append(requester)
+        if servers == 0:
+            self._check(request)
+            self._warn_of_silence()
+        endpoint = self._graph_entry.endpoint
+        sample_info = SampleInfo(endpoint.gid, self.stats.calls, self._now_ns())
+        exchange = Exchange(endpoint.name, servers, self._answers)
+        try:
+            for requester in reached:
+                exchange.open += 1
+                exchange.calls.append(requester.send(request, sample_info, exchange))
+        except BaseException:
+            exchange.cancel()
+            raise
+        return exchange
+
+    def _servers(self) -> int:
+        return sum(requester.servers for requester in self._requesters)
+
+    def _warn_of_silence(self) -> None:
+        if not self._warned:
+            self._warned = True
+            self._graph_entry.callbacks.logger.warning(
+                f"{self.srv_name}: called while {silence(0)} The call waits without an answer; "
+                "`await client.wait_for_service()` first"
+            )
+
+    def _close(self) -> None:
+        """Withdraw the client, and cancel its waits and calls."""
+        self._graph_entry.close()
+        for answer in list(self._answers):  # first, or it would look as if the servers had gone
+            answer.cancel(f"{self.subject}: destroyed")
+        self._futures.close()
+        for requester in self._requesters:
+            requester.close()
+
+
+class Exchange:
+    """The client's end of one call: the first answer of any transport counts.
+
+    With no server at the beginning there is nobody who could go away, so the call goes on waiting.
+
+    Args:
+        service: Name of the service.
+        servers: How many servers there are.
+        answers: Those that the client waits for; this one is among them until it is there.
+
+    Attributes:
+        answer: The response, or the error in its place. Awaiting it directly, a cancelled task
+            cancels it, too; `asyncio.shield` keeps it.
+        calls: What was sent, through each transport.
+        open: How many of these may still answer.
+    """
+
+    def __init__(self, service: str, servers: int, answers: set[asyncio.Future[Any]]) -> None:
+        self.answer: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
+        self.calls: list[Call] = []
+        self.open = 0
+        self._service = service
+        self._servers = servers
+        self._answers = answers
+        answers.add(self.answer)
+
+    def reply(self, response: Any, sample_info: SampleInfo) -> None:  # noqa: ARG002  # part of ReplyTo
+        """Take a response."""
+        if not self.answer.done():
+            self.answer.set_result(response)
+
+    def fail(self, error: ServiceError) -> None:
+        """Take a server's error."""
+        if not self.answer.done():
+            self.answer.set_exception(error)
+
+    def end(self) -> None:
+        """Note that no answer will come any more through one transport."""
+        self.open -= 1
+        if self.open == 0 and not self.answer.done():
+            self.answer.set_exception(ServiceUnavailableError(self._service))
+
+    def cancel(self) -> None:
+        """Forget the call; a server that has not begun need not serve it."""
+        self._answers.discard(self.answer)
+        if not self.answer.cancel() and not self.answer.cancelled():
+            self.answer.exception()  # looked at, so that asyncio does not report it
+        for call in self.calls:
+            call.cancel()

@@ -1,0 +1,147 @@
+"""Publishers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from threading import get_ident
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from aionode.endpoints._core.entity import EndStage, Entity
+from aionode.endpoints.stats import PublisherStats
+from aionode.errors import EntityDestroyedError, MessageError, QueueFullError
+from aionode.graph import EndpointKind
+from aionode.message import Message, checker
+from aionode.qos import KEEP_ALL_DEPTH
+from aionode.transport.base import SampleInfo
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from aionode.clock import TimeBase
+    from aionode.endpoints._core.graph_entry import GraphEntry
+    from aionode.qos import QoSProfile
+    from aionode.transport.base import Writer
+
+__all__ = ["Publisher"]
+
+MsgT = TypeVar("MsgT", bound=Message)
+
+
+class Publisher(Entity, Generic[MsgT]):
+    """Sends messages of one type to one topic. Made by `Node.create_publisher`.
+
+    Attributes:
+        msg_type: The class of its messages.
+        qos_profile: Its profile.
+        stats: What it sent, and which way.
+    """
+
+    def __init__(
+        self,
+        graph_entry: GraphEntry,
+        msg_type: type[MsgT],
+        writers: Sequence[Writer],
+        time_base: TimeBase,
+    ) -> None:
+        super().__init__(f"publisher of {graph_entry.endpoint.name}", EndStage.LAST)
+        self.msg_type = msg_type
+        self.qos_profile: QoSProfile = graph_entry.endpoint.qos
+        self.stats = PublisherStats(writers, graph_entry.matched)
+        self._graph_entry = graph_entry
+        self._writers = tuple(writers)
+        self._gid = graph_entry.endpoint.gid
+        self._affinity = graph_entry.affinity
+        self._check: Callable[[Any], None] = checker(msg_type)
+        self._now_ns = time_base.system_ns
+
+    def __repr__(self) -> str:
+        return (
+            f"<Publisher {self.topic_name} {self._graph_entry.endpoint.type_name} "
+            f"{self.qos_profile} published={self.stats.published}>"
+        )
+
+    @property
+    def topic_name(self) -> str:
+        """The full name of the topic."""
+        return self._graph_entry.endpoint.name
+
+    topic = topic_name
+
+    def publish(self, msg: MsgT | bytes | bytearray | memoryview) -> None:
+        """Hand `msg` to every matched subscription; never blocks and never waits.
+
+        The object may be changed and published again at once: readers have a snapshot. A full
+        KEEP_LAST queue drops its oldest message and counts it. To wait for slow readers instead,
+        subscribe with KEEP_ALL and `await drain()` before publishing on.
+
+        In place of a message it takes one as CDR bytes, such as a subscription with ``raw=True``
+        received.
+
+        It may be called in any thread, such as that of an offloaded callback: outside the thread
+        of the node's event loop it waits until that loop has taken the message.
+
+        Raises:
+            TypeError: `msg` is not of this publisher's type.
+            MessageError: a value does not fit its field; nobody got the message.
+            DecodeError: the bytes are no message of this publisher's type (a ValueError).
+            QueueFullError: a reliable KEEP_ALL subscription of this process is full; nobody got
+                the message.
+            EntityDestroyedError: the publisher or its node was destroyed (a RuntimeError).
+        """
+        thread = self._affinity.thread
+        if thread and thread != get_ident():
+            self._affinity.wait_for(self.publish, msg)
+            return
+        if self.destroyed:
+            raise EntityDestroyedError(self.subject)
+        if type(msg) is not self.msg_type:
+            msg = self._fitting(msg)
+        for writer in self._writers:
+            if writer.bounded and not writer.has_room():
+                raise QueueFullError(self.topic_name, KEEP_ALL_DEPTH)
+        stats = self.stats
+        sample_info = SampleInfo(self._gid, stats.published + 1, self._now_ns())
+        used = False
+        try:
+            for writer in self._writers:
+                if writer.active:
+                    writer.write(msg, sample_info)
+                    used = True
+            if not used:
+                self._check(msg)
+        except MessageError as error:
+            error.add_note(f"published by {self.subject}")
+            raise
+        stats.published += 1
+
+    def _fitting(self, msg: Any) -> Any:
+        """Return a message of another class, if it fits all the same; TypeError if it does not."""
+        if isinstance(msg, bytes | bytearray | memoryview):
+            from aionode.wire import cdr  # who publishes messages in process needs no codec
+
+            return cdr.decode(self.msg_type, msg)
+        self._check(msg)  # raises the TypeError; a subclass that fits may pass
+        return msg
+
+    async def drain(self) -> None:
+        """Wait until every reliable KEEP_ALL reader has room and nothing is left to send.
+
+        What goes to other processes has been handed to the transport then. It does not wait for
+        callbacks. Cancelling is safe.
+        """
+        for writer in self._writers:
+            await writer.drain()
+
+    def get_subscription_count(self) -> int:
+        """Return how many subscriptions are matched, in this process and in others."""
+        return self._graph_entry.count_matched(EndpointKind.SUBSCRIPTION)
+
+    async def wait_for_subscribers(self, count: int = 1) -> None:
+        """Wait until at least `count` subscriptions are matched; `asyncio.timeout` limits it."""
+        await self._graph_entry.until(lambda: self.get_subscription_count() >= count)
+
+    def _close(self) -> None:
+        """Withdraw the publisher."""
+        self._graph_entry.close()
+        for writer in self._writers:
+            writer.close()

@@ -1,0 +1,109 @@
+"""A schedule on a clock: something to await."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING
+
+from aionode.clock import ClockChange, ClockType, Duration, JumpThreshold
+from aionode.endpoints.timer._schedule import Schedule
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.clock import Clock, TimeJump
+    from aionode.clock._time_base import Alarm
+
+__all__ = ["Ticker"]
+
+# Leaps forward need no callback: they end the wait for what they made due.
+JUMPS = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
+
+
+class Ticker:
+    """Follows a schedule by a clock, through leaps of ROS time and switches of its source.
+
+    Attributes:
+        clock: The clock.
+        schedule: What is due when, in the time of the clock.
+    """
+
+    __slots__ = ("_before_jump_ns", "_jumps", "_waiters", "clock", "schedule")
+
+    def __init__(self, clock: Clock, period_ns: int, *, autostart: bool = True) -> None:
+        self.clock = clock
+        self.schedule = Schedule(period_ns, clock.now_ns(), autostart=autostart)
+        self._before_jump_ns = 0
+        self._waiters: dict[asyncio.Future[None], None] = {}  # woken in the order they came
+        self._jumps = (
+            clock.create_jump_callback(
+                JUMPS, pre_callback=self._before_jump, post_callback=self._after_jump
+            )
+            if clock.clock_type is ClockType.ROS_TIME
+            else None
+        )
+
+    def is_ready(self) -> bool:
+        """Whether a call is due."""
+        return self.schedule.is_ready(self.clock.now_ns())
+
+    async def wait(self, on_ring: Callable[[], bool] | None = None) -> None:
+        """Return when a call is probably due, or `wake` was called: look at the schedule then.
+
+        While the schedule is canceled only `wake` ends the wait. Cancelling is safe. Nothing is
+        lost between two waits, because the schedule remembers what is due.
+
+        Args:
+            on_ring: Called when the event loop's own alarm rings; if it returns True, it has made
+                the call, and the wait goes on until the next is due.
+        """
+        waiter = asyncio.get_running_loop().create_future()
+        schedule = self.schedule
+        call_at = self.clock.call_at
+        alarm: Alarm | None = None
+
+        def ring() -> None:
+            nonlocal alarm
+            if waiter.done():
+                return
+            called = on_ring is not None and self.clock.follows_machine and on_ring()
+            if waiter.done():
+                return  # the call has woken or cancelled who waits here
+            if called:
+                alarm = call_at(schedule.next_ns, ring)
+            else:
+                waiter.set_result(None)
+
+        if not schedule.canceled:
+            alarm = call_at(schedule.next_ns, ring)
+        self._waiters[waiter] = None
+        try:
+            await waiter
+        finally:
+            del self._waiters[waiter]
+            if alarm is not None:
+                alarm.cancel()
+        schedule.look_back(self.clock.now_ns())  # the machine's clock may have been set back
+
+    def wake(self) -> None:
+        """End all waits, because the schedule has changed."""
+        for waiter in self._waiters:
+            if not waiter.done():
+                waiter.set_result(None)
+
+    def close(self) -> None:
+        """End all waits, and follow the clock no longer."""
+        if self._jumps is not None:
+            self._jumps.unregister()
+        self.wake()
+
+    def _before_jump(self) -> None:
+        self._before_jump_ns = self.clock.now_ns()
+
+    def _after_jump(self, jump: TimeJump) -> None:
+        now_ns = self.clock.now_ns()
+        if jump.clock_change is ClockChange.ROS_TIME_NO_CHANGE:
+            self.schedule.look_back(now_ns)
+        else:
+            self.schedule.carry_over(self._before_jump_ns, now_ns)
+        self.wake()

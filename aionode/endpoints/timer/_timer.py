@@ -1,0 +1,229 @@
+"""Timers: a callback on a grid of times."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Coroutine
+from typing import TYPE_CHECKING, Any
+
+from aionode._concurrency import checkpoint
+from aionode.clock import S_TO_NS, Time
+from aionode.endpoints._core.callback_runner import accepts
+from aionode.endpoints._core.entity import Entity
+from aionode.endpoints._core.inline_runner import InlineCall
+from aionode.endpoints.stats import CallbackStats
+from aionode.endpoints.timer._ticker import Ticker
+from aionode.errors import brief
+
+if TYPE_CHECKING:
+    from aionode.clock import Clock, ClockType
+    from aionode.endpoints._core.callback_runner import CallbackRunner
+
+__all__ = ["RunnerFactory", "Timer", "TimerCallback", "TimerInfo", "to_period_ns"]
+
+
+class TimerInfo:
+    """When a call of a timer was planned, and when it was made.
+
+    Attributes:
+        expected_call_time: The point of the timer's grid, in the time of its clock.
+        actual_call_time: When the timer called.
+    """
+
+    __slots__ = ("actual_call_time", "expected_call_time")
+
+    def __init__(
+        self, *, expected_call_time: int, actual_call_time: int, clock_type: ClockType
+    ) -> None:
+        self.expected_call_time = Time(nanoseconds=expected_call_time, clock_type=clock_type)
+        self.actual_call_time = Time(nanoseconds=actual_call_time, clock_type=clock_type)
+
+    def __repr__(self) -> str:
+        return (
+            f"TimerInfo(expected_call_time={self.expected_call_time!r}, "
+            f"actual_call_time={self.actual_call_time!r})"
+        )
+
+
+TimerCallback = Callable[[], object] | Callable[[TimerInfo], object]
+"""What a timer calls, sync or async; what it returns is awaited if it can be, and not used."""
+
+RunnerFactory = Callable[[TimerCallback, "Timer", CallbackStats], "CallbackRunner"]
+"""Makes what runs a timer's callback, with the node's way of handling errors."""
+
+
+class Timer(Entity):
+    """Calls a function periodically. Made by `Node.create_timer`.
+
+    The first call comes one period after the creation, or after the last `reset`; the others follow
+    on a grid from there, without drift. A callback never overlaps itself: when it takes longer than
+    the period, or the loop was held up, the calls missed are left out and the next comes on the
+    grid. A timer of period 0 is always ready; on a clock set from outside it is called each time
+    that clock is set.
+
+    Its clock decides what time is: a timer on ROS time waits for `/clock` while that is in use.
+
+    Attributes:
+        stats: How its calls went: `received` counts the calls made, `dropped` those left out, and
+            `queue_wait` is how late they were by the timer's clock.
+    """
+
+    def __init__(
+        self,
+        callback: TimerCallback,
+        timer_period_ns: int,
+        clock: Clock,
+        make_runner: RunnerFactory,
+        *,
+        autostart: bool = True,
+    ) -> None:
+        super().__init__(f"timer of {timer_period_ns / S_TO_NS:g} s")
+        self.stats = CallbackStats()
+        self._wants_info = self._wants_info_of(callback)
+        self._make_runner = make_runner
+        self._runner = make_runner(callback, self, self.stats)
+        self._ticker = Ticker(clock, timer_period_ns, autostart=autostart)
+        self._inline_call = InlineCall()
+
+    def __repr__(self) -> str:
+        schedule = self._ticker.schedule
+        state = "destroyed" if self.destroyed else "canceled" if schedule.canceled else "running"
+        return (
+            f"<Timer {schedule.period_ns / S_TO_NS:g} s {state} "
+            f"calls={self.stats.received} skipped={self.stats.dropped}>"
+        )
+
+    @property
+    def clock(self) -> Clock:
+        """The clock that decides when calls are due."""
+        return self._ticker.clock
+
+    @property
+    def callback(self) -> TimerCallback:
+        """What is called: with nothing, or with a `TimerInfo` if it needs an argument.
+
+        Setting it takes effect with the next call.
+        """
+        return self._runner.callback
+
+    @callback.setter
+    def callback(self, callback: TimerCallback) -> None:
+        wants_info = self._wants_info_of(callback)
+        self._runner = self._make_runner(callback, self, self.stats)
+        self._wants_info = wants_info
+
+    @property
+    def timer_period_ns(self) -> int:
+        """The period in nanoseconds.
+
+        Changing it does not move the call that is planned already: `reset()` does.
+        """
+        return self._ticker.schedule.period_ns
+
+    @timer_period_ns.setter
+    def timer_period_ns(self, value: int) -> None:
+        self._ticker.schedule.change_period(int(value))
+
+    def cancel(self) -> None:
+        """Make no more calls until `reset()`. A callback that is running goes on."""
+        self._ticker.schedule.cancel()
+        self._ticker.wake()
+
+    def reset(self) -> None:
+        """Make the next call one period from now, also if the timer was canceled.
+
+        Raises:
+            EntityDestroyedError: The timer or its node was destroyed (a RuntimeError).
+        """
+        self.refuse_if_destroyed("reset")
+        self._ticker.schedule.reset(self.clock.now_ns())
+        self._ticker.wake()
+
+    def is_canceled(self) -> bool:
+        """Whether the timer makes no calls until `reset()`."""
+        return self._ticker.schedule.canceled
+
+    def is_ready(self) -> bool:
+        """Whether a call is due now."""
+        return self._ticker.is_ready()
+
+    def time_until_next_call(self) -> int | None:
+        """Return the nanoseconds to the next call, negative if it is late; None if canceled."""
+        return self._ticker.schedule.until_next_ns(self.clock.now_ns())
+
+    def time_since_last_call(self) -> int:
+        """Return the nanoseconds since the last call, or since the creation before the first."""
+        return self._ticker.schedule.since_last_ns(self.clock.now_ns())
+
+    # Work
+
+    async def run(self) -> None:
+        """Make the calls, until cancelled."""
+        ticker = self._ticker
+        schedule = ticker.schedule
+        self._inline_call.prepare()
+        while True:
+            now_ns = ticker.clock.now_ns()
+            if not schedule.is_ready(now_ns):
+                if ticker.clock.follows_machine:
+                    await self._inline_call.after(ticker.wait(self._call_inline))
+                else:
+                    await ticker.wait()
+                continue
+            expected_ns = schedule.call(now_ns)
+            rest = self._call(expected_ns, now_ns)
+            if rest is not None:
+                await rest
+            if schedule.period_ns == 0:
+                await ticker.wait()
+            elif ticker.is_ready():
+                await checkpoint()  # late again: without this nothing else would run
+
+    def _call_inline(self) -> bool:
+        """Make the call that is due, within the alarm; return whether nothing is left to do.
+
+        To wake the task that runs this timer takes another turn of the loop, which is a third of
+        what a call costs.
+        """
+        schedule = self._ticker.schedule
+        now_ns = self.clock.now_ns()
+        if not (self._runner.is_sync and schedule.is_ready(now_ns) and schedule.period_ns):
+            return False
+        done = self._inline_call.run(self._call, schedule.call(now_ns), now_ns)
+        return done and not schedule.canceled
+
+    def _call(self, expected_ns: int, now_ns: int) -> Coroutine[Any, Any, None] | None:
+        stats = self.stats
+        stats.received += 1
+        stats.dropped = self._ticker.schedule.skipped
+        stats.queue_wait.record(now_ns - expected_ns)
+        if not self._wants_info:
+            return self._runner.run()
+        return self._runner.run(
+            TimerInfo(
+                expected_call_time=expected_ns,
+                actual_call_time=now_ns,
+                clock_type=self.clock.clock_type,
+            )
+        )
+
+    def _close(self) -> None:
+        """Stop following the clock."""
+        self._ticker.close()
+
+    def _wants_info_of(self, callback: TimerCallback) -> bool:
+        wants = accepts(callback, 0, 1, subject=self.subject, wanted="() or (info: TimerInfo)")
+        return wants == 1
+
+
+def to_period_ns(seconds: float) -> int:
+    """Return a period in nanoseconds, rounded to the nearest.
+
+    Raises:
+        TypeError: `seconds` is not a number.
+        ValueError: It is negative, or not finite.
+    """
+    if not isinstance(seconds, int | float):
+        raise TypeError(f"period: got {brief(seconds)}; a number of seconds is needed")
+    if not 0 <= seconds < 2**63 / S_TO_NS:
+        raise ValueError(f"period: got {seconds} s; it must be finite, and 0 or more")
+    return round(seconds * S_TO_NS)

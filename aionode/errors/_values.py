@@ -1,0 +1,318 @@
+"""The base of all errors, and those about names, arguments, parameters and messages."""
+
+from __future__ import annotations
+
+from aionode.errors import MAX_NAME, shortened
+
+__all__ = [
+    "AionodeError",
+    "DecodeError",
+    "InvalidLogLevelError",
+    "InvalidNamespaceException",
+    "InvalidNodeNameException",
+    "InvalidParameterException",
+    "InvalidParameterTypeException",
+    "InvalidParameterValueException",
+    "InvalidQoSProfileException",
+    "InvalidQosOverridesError",
+    "InvalidROSArgsError",
+    "InvalidRemapRuleError",
+    "InvalidServiceNameException",
+    "InvalidTopicNameException",
+    "MessageError",
+    "NameValidationException",
+    "ParameterAlreadyDeclaredException",
+    "ParameterException",
+    "ParameterFileError",
+    "ParameterImmutableException",
+    "ParameterNotDeclaredException",
+    "ParameterUninitializedException",
+    "UnknownROSArgsError",
+]
+
+
+class AionodeError(Exception):
+    """Base of all errors that aionode raises on purpose.
+
+    A text of more than 2000 characters is shortened in its middle, since beginning and end say what
+    happened and what to do. The attributes hold what was given as it was.
+    """
+
+    def __init__(self, *args: object) -> None:
+        super().__init__(*(shortened(arg) if isinstance(arg, str) else arg for arg in args))
+
+
+class DecodeError(AionodeError, ValueError):
+    """Bytes do not hold a message of the type that they should.
+
+    Attributes:
+        type_name: The type that was to be read.
+        path: The field that could not be read, such as ``name[3]``; empty for the message as a
+            whole.
+        offset: Where it is in the data, in bytes.
+        problem: What is there and what was needed.
+    """
+
+    def __init__(self, type_name: str, path: str, offset: int, problem: str) -> None:
+        self.type_name = type_name
+        self.path = path
+        self.offset = offset
+        self.problem = problem
+        subject = f"{type_name}.{path}" if path else type_name
+        super().__init__(
+            f"{subject}: not readable at byte {offset}: {problem}; is the sender's definition of "
+            "the type the same?"
+        )
+
+
+class MessageError(AionodeError, ValueError):
+    """A value does not fit its field.
+
+    Attributes:
+        path: Type and path of the field, such as ``sensor_msgs/msg/JointState.name[3]``.
+        problem: What was given and what fits.
+    """
+
+    def __init__(self, path: str, problem: str) -> None:
+        self.path = path
+        self.problem = problem
+        super().__init__(f"{path}: {problem}")
+
+
+class NameValidationException(AionodeError, ValueError):
+    """A name of a topic, service, namespace or node breaks the rules for names.
+
+    Attributes:
+        name: The name as given.
+        error_msg: Which rule it breaks.
+        invalid_index: Where it breaks it: an index into `name`.
+    """
+
+    def __init__(self, name_type: str, name: str, error_msg: str, invalid_index: int) -> None:
+        self.name_type = name_type
+        self.name = name
+        self.error_msg = error_msg
+        self.invalid_index = invalid_index
+        # Of a long name what is around the mistake.
+        begin = max(0, min(invalid_index, len(name)) - MAX_NAME // 2)
+        before = "…" if begin else ""
+        after = "…" if begin + MAX_NAME < len(name) else ""
+        shown = f"{before}{name[begin : begin + MAX_NAME]}{after}"
+        caret = " " * (invalid_index - begin + len(before)) + "^"
+        super().__init__(f"Invalid {name_type}: {error_msg}:\n  '{shown}'\n   {caret}")
+
+
+class InvalidTopicNameException(NameValidationException):
+    """A topic name breaks the rules for names."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("topic name", name, error_msg, invalid_index)
+
+
+class InvalidServiceNameException(NameValidationException):
+    """A service name breaks the rules for names."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("service name", name, error_msg, invalid_index)
+
+
+class InvalidNamespaceException(NameValidationException):
+    """A namespace breaks the rules for names."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("namespace", name, error_msg, invalid_index)
+
+
+class InvalidNodeNameException(NameValidationException):
+    """A node name breaks the rules for names."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("node name", name, error_msg, invalid_index)
+
+
+class InvalidRemapRuleError(AionodeError, ValueError):
+    """A remapping rule cannot be read.
+
+    Attributes:
+        rule: The rule as given.
+        problem: What is wrong with it.
+    """
+
+    def __init__(self, rule: str, problem: str) -> None:
+        self.rule = rule
+        self.problem = problem
+        super().__init__(f"remap rule '{rule}': {problem}")
+
+
+class InvalidLogLevelError(AionodeError, ValueError, RuntimeError):
+    """A word is no level of logging; a RuntimeError as in rclpy.
+
+    Attributes:
+        level: The word.
+        fits: The words that fit.
+    """
+
+    def __init__(self, level: str, fits: list[str]) -> None:
+        self.level = level
+        self.fits = fits
+        super().__init__(f"log level '{level}' is unknown; it may be {', '.join(fits)}")
+
+
+class InvalidQoSProfileException(AionodeError, ValueError):
+    """A QoS profile was made from values that do not fit.
+
+    Attributes:
+        problem: What was given and what fits.
+    """
+
+    def __init__(self, problem: str) -> None:
+        self.problem = problem
+        super().__init__(f"Invalid QoSProfile: {problem}")
+
+
+class InvalidQosOverridesError(AionodeError, ValueError, RuntimeError):
+    """Parameters ask for a QoS that an endpoint cannot have; a RuntimeError as in rclpy.
+
+    Attributes:
+        subject: The endpoint, or the parameter at fault.
+        problem: What is wrong.
+    """
+
+    def __init__(self, subject: str, problem: str) -> None:
+        self.subject = subject
+        self.problem = problem
+        super().__init__(f"{subject}: QoS overrides are not valid: {problem}")
+
+
+class InvalidROSArgsError(AionodeError, ValueError):
+    """A known ``--ros-args`` flag has a value that cannot be read.
+
+    Attributes:
+        argument: The word or words at fault, as given.
+        problem: What is wrong with it and what fits.
+    """
+
+    def __init__(self, argument: str, problem: str) -> None:
+        self.argument = argument
+        self.problem = problem
+        super().__init__(f"--ros-args: '{argument}': {problem}")
+
+
+class UnknownROSArgsError(InvalidROSArgsError):
+    """Between ``--ros-args`` and ``--`` stands a word that is no flag of ROS.
+
+    Attributes:
+        unknown_ros_args: All such words.
+    """
+
+    def __init__(self, unknown_ros_args: list[str], problem: str) -> None:
+        self.unknown_ros_args = list(unknown_ros_args)
+        super().__init__(" ".join(unknown_ros_args), problem)
+
+
+class ParameterFileError(AionodeError, ValueError, RuntimeError):
+    """A parameter file or a parameter value in YAML cannot be read.
+
+    Attributes:
+        source: Path of the file, or what else was read.
+        line: Line number, counted from 1; 0 where there is none.
+        problem: What is wrong there.
+    """
+
+    def __init__(self, source: str, line: int, problem: str) -> None:
+        self.source = source
+        self.line = line
+        self.problem = problem
+        where = f"{source}, line {line}" if line else source
+        super().__init__(f"{where}: {problem}")
+
+
+class ParameterException(AionodeError):
+    """Base of the errors about parameters.
+
+    Attributes:
+        parameters: Name of the parameter, or a list of names.
+    """
+
+    def __init__(self, error_msg: str, parameters: str | list[str]) -> None:
+        self.error_msg = error_msg
+        self.parameters = parameters
+        super().__init__(f"{error_msg}: {parameters}")
+
+    def __str__(self) -> str:
+        # KeyError, a base of one subclass, would print the text in quotes.
+        return str(self.args[0])
+
+
+class ParameterNotDeclaredException(ParameterException, KeyError):
+    """An undeclared parameter was used where the node does not allow it."""
+
+    def __init__(self, parameters: str | list[str]) -> None:
+        super().__init__("Invalid access to undeclared parameter(s)", parameters)
+
+
+class ParameterAlreadyDeclaredException(ParameterException, ValueError):
+    """A parameter was declared twice."""
+
+    def __init__(self, parameters: str | list[str]) -> None:
+        super().__init__("Parameter(s) already declared", parameters)
+
+
+class InvalidParameterException(ParameterException, ValueError):
+    """A parameter was to be declared under a name that is no name."""
+
+    def __init__(self, parameter_name: str) -> None:
+        super().__init__("Invalid parameter name", parameter_name)
+
+
+class InvalidParameterTypeException(ParameterException, TypeError):
+    """A value is not of the type that the parameter was declared with.
+
+    Attributes:
+        name: Name of the parameter.
+        value: The rejected value.
+        type_name: Name of the value's type.
+        expected_type: Name of the type that fits.
+    """
+
+    def __init__(self, name: str, value: object, type_name: str, expected_type: str) -> None:
+        self.name = name
+        self.value = value
+        self.type_name = type_name
+        self.expected_type = expected_type
+        hint = f" (write {value}.0)" if (type_name, expected_type) == ("INTEGER", "DOUBLE") else ""
+        super().__init__(
+            f"Trying to set parameter '{name}' to '{value}' of type '{type_name}', "
+            f"expecting type '{expected_type}'{hint}",
+            name,
+        )
+
+
+class InvalidParameterValueException(ParameterException, ValueError):
+    """A value was rejected by the parameter's descriptor or by a callback.
+
+    Attributes:
+        name: Name of the parameter.
+        value: The rejected value.
+        reason: Why it was rejected.
+    """
+
+    def __init__(self, name: str, value: object, reason: str) -> None:
+        self.name = name
+        self.value = value
+        self.reason = reason
+        super().__init__(f"Invalid parameter value ({value}) for parameter. Reason: {reason}", name)
+
+
+class ParameterImmutableException(ParameterException, RuntimeError):
+    """A read-only parameter was to be undeclared."""
+
+    def __init__(self, parameter_name: str) -> None:
+        super().__init__("Attempted to modify read-only parameter", parameter_name)
+
+
+class ParameterUninitializedException(ParameterException, RuntimeError):
+    """A parameter that was declared without a value was read before it had one."""
+
+    def __init__(self, parameter_name: str) -> None:
+        super().__init__(f"The parameter '{parameter_name}' is not initialized", parameter_name)

@@ -1,0 +1,170 @@
+"""Making message, service and action classes of what definitions say."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import new_class
+from typing import Annotated, Any, ClassVar
+
+from aionode.errors import IdlError, InterfaceNotFoundError
+from aionode.idl._definition import (
+    HALVES,
+    InterfaceText,
+    MemberText,
+    MessageText,
+    TypeText,
+    split_type_name,
+)
+from aionode.idl._parser import PRIMITIVES, parse
+from aionode.interfaces import get_interface
+from aionode.message import (
+    ActionType,
+    FieldType,
+    Interface,
+    Message,
+    ServiceType,
+    constants,
+    fields,
+)
+
+__all__ = ["Builder", "define"]
+
+BASES: dict[str, type[Interface]] = {"msg": Message, "srv": ServiceType, "action": ActionType}
+
+
+def define(
+    typename: str, text: str, *, types: Mapping[str, type[Interface]] | None = None
+) -> type[Any]:
+    r"""Return the class that the text of a definition makes.
+
+    ::
+
+        Words = define("tutorial/msg/Words", "string text\nfloat32[] scores")
+
+    Args:
+        typename: Its ROS name, such as ``tutorial/msg/Words``.
+        text: The text of a ``.msg``, ``.srv`` or ``.action`` file, as the name says.
+        types: Message classes that it may use besides those of aionode.interfaces, by name.
+
+    Raises:
+        IdlError: The text cannot be read, or uses a type that is not there.
+        TypeError: `typename` is not the name of a ROS type.
+    """
+    builder = Builder({typename: parse(typename, text)}, reuse=False)
+    builder.built.update(types or {})
+    return builder.build(typename)
+
+
+class Builder:
+    """Makes the classes of several definitions that may use each other."""
+
+    def __init__(self, texts: Mapping[str, InterfaceText], *, reuse: bool) -> None:
+        self.texts = texts
+        self.reuse = reuse
+        self.built: dict[str, type[Interface]] = {}
+        self.open: list[str] = []
+        """What is being built: each uses the next."""
+
+    def build(self, typename: str) -> type[Interface]:
+        """Return the class of one of the definitions, made on the first call.
+
+        Raises:
+            IdlError: A field's type is not there, or contains itself.
+        """
+        if typename not in self.built:
+            self.open.append(typename)
+            made = self.make(self.texts[typename])
+            self.open.pop()
+            self.built[typename] = (self.reuse and existing(typename, made)) or made
+        return self.built[typename]
+
+    def make(self, text: InterfaceText) -> type[Interface]:
+        """Return a new class."""
+        package, kind, name = split_type_name(text.typename)
+        place = {"__module__": f"aionode.interfaces.{package}.{kind}", "__qualname__": name}
+        if kind == "msg":
+            return self.message(text, text.parts[0], {**place, **doc(text, name)})
+        body: dict[str, Any] = {**place, **doc(text, name)}
+        for half, part in zip(HALVES[kind], text.parts, strict=True):
+            inside = {**place, "__qualname__": f"{name}.{half}"}
+            inside["__doc__"] = part.comment or f"The {half.lower()} of {name}."
+            body[half] = self.message(text, part, inside)
+        return new_class(
+            name,
+            (BASES[kind],),
+            {"typename": text.typename},
+            lambda namespace: namespace.update(body),
+        )
+
+    def message(
+        self, text: InterfaceText, part: MessageText, body: dict[str, Any]
+    ) -> type[Message]:
+        """Return a new message class."""
+        name = body["__qualname__"].rpartition(".")[2]
+        annotations: dict[str, Any] = {}
+        for member in part.members:
+            annotation: Any = Annotated[Any, self.field_type(text, member)]
+            annotations[member.name] = ClassVar[annotation] if member.constant else annotation
+            if member.value is not None:
+                body[member.name] = member.value
+        body["__annotations__"] = annotations
+        options = {} if "." in body["__qualname__"] else {"typename": text.typename}
+        return new_class(name, (Message,), options, lambda space: space.update(body))
+
+    def field_type(self, text: InterfaceText, member: MemberText) -> FieldType:
+        """Return the type of a field, with the class of the message that it names."""
+        type_ = member.type
+        if type_.name in PRIMITIVES:
+            return type_.primitive()
+        package = split_type_name(text.typename)[0]
+        try:
+            nested = self.used(full_name(type_, package))
+        except InterfaceNotFoundError as error:
+            problem = f"no message type {type_.name!r} here or in aionode.interfaces"
+            if type_.name == "Header":
+                problem += "; did you mean std_msgs/Header?"
+            elif error.suggestions:
+                problem += f"; did you mean {error.suggestions[0]}?"
+            raise IdlError(text.file, member.line, 1, problem) from None
+        except RecursionError:
+            chain = " uses ".join((*self.open, full_name(type_, package)))
+            raise IdlError(text.file, member.line, 1, f"{chain}: it would never end") from None
+        return FieldType("message", nested, None, type_.container, type_.size)
+
+    def used(self, typename: str) -> type[Message]:
+        """Return the message class of this name: of these definitions, or shipped."""
+        if typename in self.open:
+            raise RecursionError
+        if typename in self.texts:
+            found = self.build(typename)
+        else:
+            found = self.built.get(typename) or get_interface(typename)
+        assert issubclass(found, Message)  # noqa: S101 (the name says msg)
+        return found
+
+
+def full_name(type_: TypeText, package: str) -> str:
+    """Return the ROS name of a message type as `package` writes it."""
+    parts = type_.name.split("/")
+    return f"{parts[0] if len(parts) > 1 else package}/msg/{parts[-1]}"
+
+
+def doc(text: InterfaceText, name: str) -> dict[str, str]:
+    """Return the docstring of a class: the comment at the top of its file, if there is one."""
+    return {"__doc__": text.parts[0].comment or f"{name}, as in {text.typename}."}
+
+
+def existing(typename: str, made: type[Interface]) -> type[Interface] | None:
+    """Return the class that aionode.interfaces has of this name, if it is defined the same.
+
+    So a workspace that brings its own std_msgs can be used together with the shipped one.
+    """
+    try:
+        found = get_interface(typename)
+    except InterfaceNotFoundError:
+        return None
+    halves = HALVES[split_type_name(typename)[1]]
+    pairs: Any = ((getattr(made, h), getattr(found, h)) if h else (made, found) for h in halves)
+    if all(fields(a) == fields(b) and constants(a) == constants(b) for a, b in pairs):
+        return found
+    return None

@@ -1,0 +1,159 @@
+"""Loading the interfaces of a folder of ROS packages at run time."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import aionode.interfaces
+from aionode.errors import IdlError
+from aionode.idl._build import Builder
+from aionode.idl._definition import HALVES, InterfaceText, split_type_name
+from aionode.idl._parser import parse
+
+__all__ = ["Interfaces", "load_interfaces", "read_folder"]
+
+PACKAGE_NAME = re.compile(r"[a-z][a-z0-9_]*")
+TYPE_NAME = re.compile(r"[A-Z][A-Za-z0-9]*")
+
+
+class Interfaces(Mapping[str, type[Any]]):
+    """Interfaces by their ROS name, and as attributes: ``loaded.my_msgs.msg.Words``."""
+
+    def __init__(self, types: Mapping[str, type[Any]]) -> None:
+        self._types = dict(sorted(types.items()))
+        self._packages: dict[str, ModuleType] = {}
+        for typename, cls in self._types.items():
+            package, kind, name = split_type_name(typename)
+            outer = self._packages.setdefault(package, ModuleType(package))
+            if not hasattr(outer, kind):
+                setattr(outer, kind, ModuleType(f"{package}.{kind}"))
+            setattr(getattr(outer, kind), name, cls)
+
+    def __getitem__(self, typename: str) -> type[Any]:
+        return self._types[typename]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._types)
+
+    def __len__(self) -> int:
+        return len(self._types)
+
+    def __getattr__(self, package: str) -> ModuleType:
+        try:
+            return self._packages[package]
+        except KeyError:
+            known = ", ".join(self._packages) or "none"
+            raise AttributeError(
+                f"{package}: no such package was loaded; there are {known}"
+            ) from None
+
+    def __repr__(self) -> str:
+        return (
+            f"Interfaces({len(self._types)} types of {', '.join(self._packages) or 'no package'})"
+        )
+
+
+def load_interfaces(path: str | Path, *, reuse: bool = True) -> Interfaces:
+    """Return the interfaces of a folder as classes, without a build step.
+
+    The folder is a package with ``msg``, ``srv`` or ``action`` folders, or holds packages at any
+    depth, as a workspace or ``share`` does. Types they use are taken from the folder, then from
+    aionode.interfaces. New packages can be imported from then on, as
+    ``aionode.interfaces.my_msgs.msg``, and are found by `aionode.interfaces.get_interface`.
+
+    Args:
+        path: The folder.
+        reuse: Return the class that is there already for a type with the same definition, so that
+            its messages fit both; otherwise every class is new.
+
+    Raises:
+        IdlError: A definition cannot be read; the error names file, line and column.
+        FileNotFoundError: There is no such folder.
+    """
+    texts = read_folder(path)
+    builder = Builder(texts, reuse=reuse)
+    loaded = Interfaces({typename: builder.build(typename) for typename in texts})
+    for package in {split_type_name(typename)[0] for typename in loaded}:
+        make_importable(package, loaded)
+    return loaded
+
+
+def read_folder(path: str | Path) -> dict[str, InterfaceText]:
+    """Return what the definitions of a folder say, by type name.
+
+    Raises:
+        IdlError: One cannot be read, or two of the same type differ.
+        FileNotFoundError: There is no such folder.
+    """
+    root = Path(path).resolve()
+    if not root.is_dir():
+        raise FileNotFoundError(f"{path}: no such folder")
+    texts: dict[str, InterfaceText] = {}
+    sources: dict[str, str] = {}
+    for kind in HALVES:
+        for file in sorted(root.rglob(f"*.{kind}")):
+            if file.parent.name != kind:
+                continue
+            typename = f"{package_of(file)}/{kind}/{checked_stem(file)}"
+            source = read(file)
+            if sources.get(typename, source) != source:  # a workspace has source and install
+                problem = f"{typename} is defined differently in {texts[typename].file}"
+                raise IdlError(str(file), 0, 0, problem)
+            if typename not in texts:
+                sources[typename] = source
+                texts[typename] = parse(typename, source, str(file))
+    return texts
+
+
+def read(file: Path) -> str:
+    """Return the text of a file."""
+    data = file.read_bytes()
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise IdlError(str(file), line, 0, f"not UTF-8: {error.reason}") from error
+
+
+def package_of(file: Path) -> str:
+    """Return the name of the package that a file is in, as its package.xml says if there is one."""
+    folder = file.parent.parent
+    manifest = folder / "package.xml"
+    name = folder.name
+    if manifest.is_file():
+        found = re.search(r"<name>\s*([^<\s]+)\s*</name>", manifest.read_text(errors="replace"))
+        name = found[1] if found else name
+    if not PACKAGE_NAME.fullmatch(name):
+        problem = f"{name!r} is no package name; lower-case letters, digits and _ fit"
+        raise IdlError(str(file), 0, 0, problem)
+    return name
+
+
+def checked_stem(file: Path) -> str:
+    """Return the name of the type in a file."""
+    if not TYPE_NAME.fullmatch(file.stem):
+        problem = f"{file.stem!r} is no type name; letters and digits fit, a capital first"
+        raise IdlError(str(file), 0, 0, problem)
+    return file.stem
+
+
+def make_importable(package: str, loaded: Interfaces) -> None:
+    """Let Python import a loaded package, unless aionode ships one of that name."""
+    name = f"aionode.interfaces.{package}"
+    if package in aionode.interfaces.shipped_packages():
+        return
+    module = getattr(loaded, package)
+    module.__name__ = name
+    module.__path__ = []
+    sys.modules[name] = module
+    setattr(aionode.interfaces, package, module)
+    for kind in HALVES:
+        if hasattr(module, kind):
+            inner = getattr(module, kind)
+            inner.__name__ = f"{name}.{kind}"
+            sys.modules[inner.__name__] = inner

@@ -1,0 +1,311 @@
+"""Reading the text of ``.msg``, ``.srv`` and ``.action`` files.
+
+One member stands on each line: ``type name``, ``type name default`` or ``type NAME=value``.
+``#`` begins a comment, ``---`` separates the messages of services and actions.
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+import sys
+from collections.abc import Iterator
+from keyword import iskeyword
+
+from aionode.errors import IdlError, MessageError
+from aionode.idl._definition import (
+    HALVES,
+    InterfaceText,
+    MemberText,
+    MessageText,
+    TypeText,
+    split_type_name,
+)
+from aionode.message import DTYPES, FieldType, fit, fit_element
+
+__all__ = ["parse"]
+
+PRIMITIVES = frozenset({*DTYPES, "byte", "string", "wstring"})
+STRINGS = frozenset({"string", "wstring"})
+
+TYPE = re.compile(
+    r"(?P<name>[A-Za-z][A-Za-z0-9_]*(?:/[A-Za-z][A-Za-z0-9_]*){0,2})"
+    r"(?:<=(?P<string_bound>\d+))?"
+    r"(?P<brackets>\[(?P<upper><=)?(?P<size>\d*)\])?"
+)
+MESSAGE_NAME = re.compile(r"(?:[a-z][a-z0-9_]*/(?:msg/)?)?[A-Z][A-Za-z0-9]*")
+FIELD_NAME = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*")
+CONSTANT_NAME = re.compile(r"[A-Z][A-Z0-9]*(?:_[A-Z0-9]+)*")
+SEPARATOR = re.compile(r"---\s*(?:#.*)?")
+QUOTED = re.compile(r"""(["'])((?:\\.|(?!\1)[^\\])*)\1""")
+ESCAPE = re.compile(r"\\(x[0-9a-fA-F]{2}|u[0-9a-fA-F]{4}|U[0-9a-fA-F]{8}|[0-7]{1,3}|.)")
+ESCAPED = {
+    "a": "\a",
+    "b": "\b",
+    "f": "\f",
+    "n": "\n",
+    "r": "\r",
+    "t": "\t",
+    "v": "\v",
+    "\\": "\\",
+    '"': '"',
+    "'": "'",
+}
+
+
+MOST_ELEMENTS = 2**32 - 1
+"""How long a sequence or string can be at all: its length has 32 bits on the wire."""
+
+LARGEST_ARRAY = 2**26
+"""How many elements an array of fixed size may have, since each new message has all of them."""
+
+
+class LineError(Exception):
+    """A line cannot be read: what is wrong, and at which character of the line."""
+
+    def __init__(self, offset: int, problem: str) -> None:
+        self.offset = offset
+        self.problem = problem
+        super().__init__(problem)
+
+
+def parse(typename: str, text: str, file: str = "") -> InterfaceText:
+    """Return what the text of a definition says.
+
+    Args:
+        typename: The type that it defines, such as ``std_msgs/msg/String``.
+        text: The text of a ``.msg``, ``.srv`` or ``.action`` file, as the name says.
+        file: Where it is from, for errors; the name if not given.
+
+    Raises:
+        IdlError: It cannot be read; the error names file, line and column.
+    """
+    file = file or typename
+    names = HALVES[split_type_name(typename)[1]]
+    parts: list[list[MemberText]] = [[]]
+    comments: list[list[str]] = [[]]
+    for number, line in enumerate(text.split("\n"), 1):
+        stripped = line.strip()
+        if SEPARATOR.fullmatch(stripped):
+            parts.append([])
+            comments.append([])
+        elif stripped.startswith("#"):
+            if not parts[-1]:
+                comments[-1].append(stripped.lstrip("#").strip())
+        elif stripped:
+            try:
+                add(parts[-1], member(line, number))
+            except LineError as misfit:
+                raise IdlError(file, number, misfit.offset + 1, misfit.problem) from None
+        elif not parts[-1] and comments[-1]:
+            comments[-1].append("")
+    if len(parts) != len(names):
+        wanted = " and ".join(name for name in names if name)
+        needs = f"{wanted}, separated by '---'" if wanted else "one message, without '---'"
+        raise IdlError(file, 0, 0, f"{len(parts)} part(s); this kind of file has {needs}")
+    messages = zip(parts, comments, strict=True)
+    return InterfaceText(
+        typename,
+        file,
+        tuple(MessageText(tuple(part), "\n".join(lines).strip()) for part, lines in messages),
+    )
+
+
+def add(members: list[MemberText], new: MemberText) -> None:
+    """Add a member to those of its message."""
+    for old in members:
+        if old.name == new.name:
+            raise LineError(new.column - 1, f"{new.name!r} is there already, on line {old.line}")
+    members.append(new)
+
+
+def member(line: str, number: int) -> MemberText:
+    """Return what one line says, or raise `LineError`."""
+    start = len(line) - len(line.lstrip())
+    match = TYPE.match(line, start)
+    if match is None:
+        raise LineError(
+            start, f"{line[start:].split(maxsplit=1)[0]!r} is no type; a line begins with one"
+        )
+    end = match.end()
+    if end < len(line) and not line[end].isspace():
+        raise LineError(
+            end, f"{line[end]!r} does not belong to a type; a space and a name follow it"
+        )
+    type_ = type_text(match)
+    name_match = re.compile(r"\s*([^\s=#]*)\s*").match(line, end)
+    assert name_match is not None  # noqa: S101 (it matches nothing at all, too)
+    name, at, rest = name_match[1], name_match.start(1), name_match.end()
+    if not name:
+        raise LineError(at, f"the name is missing; '{line[start:end]} some_name' would fit")
+    constant = line.startswith("=", rest)
+    check_name(name, at, constant=constant)
+    if constant:
+        rest = rest + 1 + len(line[rest + 1 :]) - len(line[rest + 1 :].lstrip())
+    value = written_value(type_, line, rest, name, constant=constant)
+    return MemberText(type_, name, value, constant, number, at + 1)
+
+
+def type_text(match: re.Match[str]) -> TypeText:
+    """Return the type that a line begins with."""
+    name, at = match["name"], match.start()
+    if name not in PRIMITIVES and not MESSAGE_NAME.fullmatch(name):
+        close = difflib.get_close_matches(name, PRIMITIVES, 1)
+        hint = (
+            f"did you mean {close[0]}?" if close else "there are " + ", ".join(sorted(PRIMITIVES))
+        )
+        raise LineError(at, f"{name!r} is no type; {hint}, and names of messages such as pkg/Name")
+    bound = None
+    if match["string_bound"] is not None:
+        at = match.start("string_bound")
+        if name not in STRINGS:
+            raise LineError(at - 2, f"only strings have a bound, not {name}")
+        bound = limit(match["string_bound"], at, "a bound", MOST_ELEMENTS)
+    if match["brackets"] is None:
+        return TypeText(name, bound)
+    size, at = match["size"], match.start("size")
+    if match["upper"]:
+        return TypeText(name, bound, "bounded", limit(size, at, "a size or bound", MOST_ELEMENTS))
+    if size:
+        return TypeText(name, bound, "array", limit(size, at, "a size or bound", LARGEST_ARRAY))
+    return TypeText(name, bound, "unbounded")
+
+
+def limit(text: str, at: int, what: str, most: int) -> int:
+    """Return the size or bound that `text` says, or raise `LineError`."""
+    text = text.lstrip("0")
+    if not text:
+        number = "" if what == "a bound" else "a number of "
+        raise LineError(at, f"{what} is {number}at least 1")
+    if len(text) > len(str(most)) or int(text) > most:  # int() refuses thousands of digits
+        raise LineError(at, f"{what} is at most {most} here")
+    return int(text)
+
+
+def check_name(name: str, at: int, *, constant: bool) -> None:
+    """Raise `LineError` if a field or constant cannot have this name."""
+    if constant and not CONSTANT_NAME.fullmatch(name):
+        raise LineError(
+            at, f"{name!r} is no name for a constant; upper-case letters, digits and _ fit"
+        )
+    if not constant and not FIELD_NAME.fullmatch(name):
+        fits = "lower-case letters, digits and single underscores fit, beginning with a letter"
+        raise LineError(at, f"{name!r} is no name for a field; {fits}")
+    if iskeyword(name):
+        raise LineError(at, f"{name!r} is a keyword of Python, which no attribute can be called")
+
+
+def written_value(type_: TypeText, line: str, at: int, name: str, *, constant: bool) -> object:
+    """Return the default or the value of the constant that stands at `at`, or None."""
+    if (
+        type_.name in STRINGS
+        and type_.container == "single"
+        and line[at : at + 1] not in {"'", '"'}
+    ):
+        text = unescaped(without_comment(line[at:]))
+        if not text and not constant:
+            return None
+        found: object = text
+    else:
+        text = without_comment(line[at:])
+        if not text:
+            if constant:
+                raise LineError(at, f"the value of {name} is missing")
+            return None
+        if type_.name not in PRIMITIVES:
+            raise LineError(at, f"a message has no default here; {text!r} has to go")
+        found = literal(type_, text, at)
+    if constant and type_.container != "single":
+        raise LineError(at, "a constant is a single value, no array")
+    return checked(type_, found, at)
+
+
+def checked(type_: TypeText, found: object, at: int) -> object:
+    """Return the value in the form of the field's type; raise `LineError` if it does not fit."""
+    primitive = type_.primitive()
+    unit = FieldType("uint8") if type_.name == "byte" else primitive
+    try:
+        if isinstance(found, list):
+            fit(FieldType("string", None, None, type_.container, type_.size), [""] * len(found), "")
+            return tuple(fit_element(unit, item, f"[{i}]") for i, item in enumerate(found))
+        value = fit_element(unit, found, "")
+    except MessageError as error:
+        where = f"element {error.path}: " if error.path else ""
+        raise LineError(at, f"{where}{error.problem}") from None
+    return bytes((value,)) if type_.name == "byte" else value
+
+
+def without_comment(text: str) -> str:
+    """Return text up to a ``#`` that is not in quotes."""
+    position = 0
+    while position < len(text) and text[position] != "#":
+        quoted = QUOTED.match(text, position)
+        position = quoted.end() if quoted else position + 1
+    return text[:position].strip()
+
+
+def literal(type_: TypeText, text: str, at: int) -> object:
+    """Return the value of text: a single one, or a list for an array or sequence."""
+    if type_.container == "single":
+        return single(type_.name, text, at)
+    if not text.startswith("[") or not text.endswith("]"):
+        raise LineError(at, f"{text!r} is no list; the default of an array looks like [1, 2, 3]")
+    return [single(type_.name, item, at + offset) for offset, item in items(text, at)]
+
+
+def items(text: str, at: int) -> Iterator[tuple[int, str]]:
+    """Yield offset and text of each element of a list."""
+    position = start = 1
+    while position < len(text):
+        quoted = QUOTED.match(text, position)
+        if quoted:
+            position = quoted.end()
+            continue
+        if text[position] in ",]":
+            item = text[start:position].strip()
+            if item:
+                yield start, item
+            elif text[position] == "," or start > 1:
+                raise LineError(at + position, "an element is missing before this character")
+            start = position + 1
+        position += 1
+
+
+def single(kind: str, text: str, at: int) -> object:
+    """Return the value of one literal."""
+    if kind in STRINGS:
+        quoted = QUOTED.fullmatch(text)
+        if quoted is None and text[0] in "\"'":
+            raise LineError(
+                at, f"the quote {text[0]} is not closed, or stands within; \\{text[0]} fits"
+            )
+        return unescaped(quoted[2] if quoted else text)
+    if kind == "bool":
+        if text.lower() in {"true", "1"}:
+            return True
+        if text.lower() in {"false", "0"}:
+            return False
+        raise LineError(at, f"{text!r} is no bool; true and false are")
+    try:
+        return float(text) if kind in {"float32", "float64"} else int(text, 0)
+    except ValueError:
+        pass
+    try:
+        return int(text)  # 007 is decimal
+    except ValueError:
+        raise LineError(at, f"{text!r} is no {kind}") from None
+
+
+def unescaped(text: str) -> str:
+    r"""Return text with escapes such as \n and \" replaced; unknown ones stay as they are."""
+
+    def replaced(match: re.Match[str]) -> str:
+        code = match[1]
+        if code[0] in "xuU" and len(code) > 1:
+            point = int(code[1:], 16)
+            return chr(point) if point <= sys.maxunicode else match[0]
+        if code[0] in "01234567":
+            return chr(int(code, 8))
+        return ESCAPED.get(code, match[0])
+
+    return ESCAPE.sub(replaced, text)

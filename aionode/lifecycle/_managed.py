@@ -1,0 +1,227 @@
+"""Entities of a managed node that work only while the node is active."""
+
+from __future__ import annotations
+
+import functools
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from aionode.errors import EntityInactiveError
+from aionode.lifecycle._states import TransitionCallbackReturn
+from aionode.message import Message
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.endpoints.publisher import Publisher
+    from aionode.endpoints.stats import PublisherStats
+    from aionode.endpoints.timer import Timer
+    from aionode.lifecycle._states import State
+    from aionode.qos import QoSProfile
+
+__all__ = ["LifecyclePublisher", "LifecycleTimer", "ManagedEntity", "SimpleManagedEntity"]
+
+MsgT = TypeVar("MsgT", bound=Message)
+
+
+class ManagedEntity:
+    """Takes part in the transitions of a node; see `LifecycleNode.add_managed_entity`.
+
+    Each method gets the state in which the transition started, and returns its result. They are
+    plain functions, called in the order in which the entities were added.
+    """
+
+    def on_configure(self, state: State) -> TransitionCallbackReturn:  # noqa: ARG002  # for subclasses
+        """Take part in `configure`."""
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_cleanup(self, state: State) -> TransitionCallbackReturn:  # noqa: ARG002  # the same
+        """Take part in `cleanup`."""
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_shutdown(self, state: State) -> TransitionCallbackReturn:  # noqa: ARG002  # the same
+        """Take part in `shutdown`."""
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_activate(self, state: State) -> TransitionCallbackReturn:  # noqa: ARG002  # the same
+        """Take part in `activate`."""
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_deactivate(self, state: State) -> TransitionCallbackReturn:  # noqa: ARG002  # the same
+        """Take part in `deactivate`."""
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_error(self, state: State) -> TransitionCallbackReturn:  # noqa: ARG002  # the same
+        """Take part in the processing of an error."""
+        return TransitionCallbackReturn.SUCCESS
+
+
+class SimpleManagedEntity(ManagedEntity):
+    """A managed entity that is enabled while its node is active, and has nothing else to do."""
+
+    def __init__(self) -> None:
+        self._activated = False
+
+    @property
+    def is_activated(self) -> bool:
+        """Whether it is enabled."""
+        return self._activated
+
+    def on_activate(self, state: State) -> TransitionCallbackReturn:  # noqa: ARG002  # as inherited
+        """Enable it."""
+        self._activated = True
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_deactivate(self, state: State) -> TransitionCallbackReturn:  # noqa: ARG002  # the same
+        """Disable it."""
+        self._activated = False
+        return TransitionCallbackReturn.SUCCESS
+
+    @staticmethod
+    def when_enabled(
+        wrapped: Callable[..., Any] | None = None,
+        *,
+        when_not_enabled: Callable[..., Any] | None = None,
+    ) -> Callable[..., Any]:
+        """Decorate a method to run only while its entity is enabled.
+
+        Args:
+            wrapped: The method.
+            when_not_enabled: Called in its place with the same arguments, without the entity; the
+                call returns None without it.
+        """
+
+        def decorate(method: Callable[..., Any]) -> Callable[..., Any]:
+            @functools.wraps(method)
+            def only_when_enabled(self: SimpleManagedEntity, *args: Any, **options: Any) -> Any:
+                if self.is_activated:
+                    return method(self, *args, **options)
+                return None if when_not_enabled is None else when_not_enabled(*args, **options)
+
+            return only_when_enabled
+
+        return decorate if wrapped is None else decorate(wrapped)
+
+
+class LifecyclePublisher(SimpleManagedEntity, Generic[MsgT]):
+    """A publisher that sends only while its node is active; made by `create_lifecycle_publisher`.
+
+    Attributes:
+        discarded: How many messages were published while it was disabled, and went nowhere.
+    """
+
+    def __init__(self, publisher: Publisher[MsgT]) -> None:
+        super().__init__()
+        self.discarded = 0
+        self._publisher = publisher
+
+    def __repr__(self) -> str:
+        state = "enabled" if self.is_activated else "disabled"
+        return f"<LifecyclePublisher {state} {self._publisher!r}>"
+
+    @property
+    def msg_type(self) -> type[MsgT]:
+        """The class of its messages."""
+        return self._publisher.msg_type
+
+    @property
+    def topic_name(self) -> str:
+        """The full name of the topic."""
+        return self._publisher.topic_name
+
+    topic = topic_name
+
+    @property
+    def qos_profile(self) -> QoSProfile:
+        """Its profile."""
+        return self._publisher.qos_profile
+
+    @property
+    def stats(self) -> PublisherStats:
+        """What it sent."""
+        return self._publisher.stats
+
+    def publish(self, msg: MsgT | bytes | bytearray | memoryview) -> None:
+        """Do what `Publisher.publish` does while enabled; else count the message as discarded.
+
+        Raises:
+            Exception: what `Publisher.publish` raises, while enabled.
+        """
+        if self.is_activated:
+            self._publisher.publish(msg)
+        else:
+            self.discarded += 1
+
+    async def drain(self) -> None:
+        """Do what `Publisher.drain` does."""
+        await self._publisher.drain()
+
+    def get_subscription_count(self) -> int:
+        """Return how many subscriptions are matched."""
+        return self._publisher.get_subscription_count()
+
+    async def wait_for_subscribers(self, count: int = 1) -> None:
+        """Wait until at least `count` subscriptions are matched; `asyncio.timeout` limits it."""
+        await self._publisher.wait_for_subscribers(count)
+
+    def destroy(self) -> None:
+        """Destroy the publisher; twice is allowed."""
+        self._publisher.destroy()
+
+
+class LifecycleTimer(SimpleManagedEntity):
+    """A timer that runs only while its node is active; made by `create_lifecycle_timer`.
+
+    Each activation starts a new first period.
+
+    Attributes:
+        timer: The timer itself.
+    """
+
+    def __init__(self, timer: Timer) -> None:
+        super().__init__()
+        self.timer = timer
+
+    def on_activate(self, state: State) -> TransitionCallbackReturn:
+        """Start the timer."""
+        self.timer.reset()
+        return super().on_activate(state)
+
+    def on_deactivate(self, state: State) -> TransitionCallbackReturn:
+        """Stop it."""
+        self.timer.cancel()
+        return super().on_deactivate(state)
+
+
+class Gate(SimpleManagedEntity):
+    """Lets calls of a callback through while its node is active.
+
+    Attributes:
+        discarded: How many messages came while it was disabled.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.discarded = 0
+
+    def dropping(self, callback: Callable[..., Any]) -> Callable[..., Any]:
+        """Return `callback` as it is called for messages: what comes meanwhile is discarded."""
+
+        @functools.wraps(callback)
+        def gated(*args: Any) -> Any:
+            if self.is_activated:
+                return callback(*args)
+            self.discarded += 1
+            return None
+
+        return gated
+
+    def refusing(self, callback: Callable[..., Any], subject: str) -> Callable[..., Any]:
+        """Return `callback` as it is called for requests: who asks meanwhile is told."""
+
+        @functools.wraps(callback)
+        def gated(*args: Any) -> Any:
+            if not self.is_activated:
+                raise EntityInactiveError(subject)
+            return callback(*args)
+
+        return gated

@@ -1,0 +1,368 @@
+"""A node whose life others manage: configured, activated, deactivated, cleaned up, shut down."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from aionode.endpoints._core.callback_runner import accepts
+from aionode.interfaces.lifecycle_msgs.msg import State as StateMsg
+from aionode.interfaces.lifecycle_msgs.msg import Transition as TransitionMsg
+from aionode.interfaces.lifecycle_msgs.msg import TransitionDescription, TransitionEvent
+from aionode.interfaces.lifecycle_msgs.srv import (
+    ChangeState,
+    GetAvailableStates,
+    GetAvailableTransitions,
+    GetState,
+)
+from aionode.lifecycle._managed import Gate, LifecyclePublisher, LifecycleTimer
+from aionode.lifecycle._runner import FAILURE, SUCCESS, TransitionRunner
+from aionode.lifecycle._states import (
+    ERROR_PROCESSING,
+    STATES,
+    TRANSITIONS,
+    TransitionCallbackReturn,
+)
+from aionode.message import Message
+from aionode.node import Node
+from aionode.qos import QoSProfile
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
+
+    from aionode.clock import Clock
+    from aionode.endpoints.service import Service, ServiceCallback
+    from aionode.endpoints.subscription import Subscription, SubscriptionCallback
+    from aionode.endpoints.timer import TimerCallback
+    from aionode.lifecycle._managed import ManagedEntity
+    from aionode.lifecycle._runner import LifecycleEvent
+    from aionode.lifecycle._states import State, Transition
+    from aionode.message import ServiceClass
+
+    Result = TransitionCallbackReturn | Awaitable[TransitionCallbackReturn]
+
+__all__ = ["LifecycleNode"]
+
+MsgT = TypeVar("MsgT", bound=Message)
+RequestT = TypeVar("RequestT", bound=Message)
+ResponseT = TypeVar("ResponseT", bound=Message)
+
+EVENT_QOS = QoSProfile(depth=10)
+"""Reliable and volatile, as `rcl_lifecycle` publishes its events."""
+
+
+class LifecycleNode(Node):
+    """A managed node: it does its work only when it was configured and activated.
+
+    Override `on_configure`, `on_activate` and the others. They get the state in which the
+    transition started, and return a `TransitionCallbackReturn`; they may be coroutines, which may
+    await anything, services of this node included. An exception is logged with its traceback,
+    raised by the `trigger_*` method that asked, and given to `on_error`.
+
+    Other processes manage the node by the standard services (``aionode lifecycle``, ``ros2
+    lifecycle``); `get_state` answers during a transition as well. Another request during a
+    transition is refused, with three exceptions. ``transition_failure`` and ``transition_error``,
+    which the table has for this state, cancel the callback, with that result. ``shutdown`` cancels
+    it as a failure, and then shuts down.
+
+    Args:
+        node_name: As for `Node`.
+        enable_communication_interface: Whether others can manage the node by services.
+        options: What `Node` takes besides.
+
+    Raises:
+        CallbackSignatureError: one of its callbacks takes other arguments.
+    """
+
+    def __init__(
+        self, node_name: str, *, enable_communication_interface: bool = True, **options: Any
+    ) -> None:
+        super().__init__(node_name, **options)
+        for verb in ("configure", "cleanup", "activate", "deactivate", "shutdown"):
+            self._accepts(f"on_{verb}", 1, wanted="(state)")
+        self._error_callback_takes = self._accepts(
+            "on_error", 2, 1, wanted="(state) or (state, error)"
+        )
+        self._transition_events = self.create_publisher(
+            TransitionEvent, "~/transition_event", EVENT_QOS
+        )
+        self._transitions = TransitionRunner(
+            self.get_fully_qualified_name(),
+            self.get_logger(),
+            self._callback_of,
+            self._publish_event,
+        )
+        if enable_communication_interface:
+            self._serve()
+
+    def _accepts(self, name: str, *counts: int, wanted: str) -> int:
+        subject = f"{self.get_fully_qualified_name()}: {name}"
+        return accepts(getattr(self, name), *counts, subject=subject, wanted=wanted)
+
+    def _callback_of(self, name: str) -> Callable[[State, Exception | None], Any]:
+        callback = getattr(self, f"on_{name}")
+        if name == "error" and self._error_callback_takes == 2:  # (state, error)
+            return callback  # type: ignore[no-any-return]  # found by name
+        return lambda state, _: callback(state)
+
+    # To be overridden
+
+    def on_configure(self, state: State) -> Result:
+        """Read parameters, load what is needed; without an override, configure all entities."""
+        return self._all("on_configure", self._transitions.entities, state)
+
+    def on_cleanup(self, state: State) -> Result:
+        """Undo `on_configure`; without an override, clean up all entities, the last one first."""
+        return self._all("on_cleanup", reversed(self._transitions.entities), state)
+
+    def on_activate(self, state: State) -> Result:
+        """Begin to work; without an override, enable all entities.
+
+        An override calls this as well: ``return super().on_activate(state)``.
+        """
+        return self._all("on_activate", self._transitions.entities, state)
+
+    def on_deactivate(self, state: State) -> Result:
+        """Stop working; without an override, disable all entities, the last one first."""
+        return self._all("on_deactivate", reversed(self._transitions.entities), state)
+
+    def on_shutdown(self, state: State) -> Result:
+        """End for good; without an override, shut down all entities, the last one first."""
+        return self._all("on_shutdown", reversed(self._transitions.entities), state)
+
+    def on_error(self, state: State, error: Exception | None = None) -> Result:  # noqa: ARG002  # for overrides
+        """Put things right after an error; SUCCESS leads to unconfigured, all else to finalized.
+
+        An override takes ``(state)``, as in rclpy, or ``(state, error)``.
+
+        Args:
+            state: The state in which the failed transition started.
+            error: The exception, or None where the callback returned ERROR.
+        """
+        return FAILURE
+
+    def _all(
+        self, name: str, entities: Iterable[ManagedEntity], state: State
+    ) -> TransitionCallbackReturn:
+        for entity in entities:
+            result: TransitionCallbackReturn = getattr(entity, name)(state)
+            if result is not SUCCESS:
+                return result
+        return SUCCESS
+
+    def report_progress(self, text: str, fraction: float | None = None) -> None:
+        """Say within a transition how far it is: to the log, and to readers of `lifecycle_events`.
+
+        Args:
+            text: What is being done.
+            fraction: How much is done, from 0 to 1.
+        """
+        share = "" if fraction is None else f" ({fraction:.0%})"
+        self.get_logger().info(f"{self.lifecycle_state.label}: {text}{share}")
+        self._transitions.report(text, fraction)
+
+    # From within this process
+
+    @property
+    def lifecycle_state(self) -> State:
+        """The current state."""
+        return self._transitions.machine.state
+
+    def lifecycle_events(self) -> AsyncIterator[LifecycleEvent]:
+        """Iterate over changes of state and progress; a slow reader gets the newest 100.
+
+        It begins with the first step of the iteration.
+        """
+        return self._transitions.events()
+
+    async def trigger_configure(self) -> TransitionCallbackReturn:
+        """Configure the node, and return the result of `on_configure`.
+
+        Cancelling, by `asyncio.timeout` for example, cancels the callback, and the node is in the
+        state to which a failure leads. So do the other `trigger_*` methods.
+
+        Raises:
+            TransitionError: the node is in another state, or the callback raised; its exception is
+                the cause.
+        """
+        return await self._transitions.trigger("configure")
+
+    async def trigger_cleanup(self) -> TransitionCallbackReturn:
+        """Clean the node up; see `trigger_configure`."""
+        return await self._transitions.trigger("cleanup")
+
+    async def trigger_activate(self) -> TransitionCallbackReturn:
+        """Activate the node; see `trigger_configure`."""
+        return await self._transitions.trigger("activate")
+
+    async def trigger_deactivate(self) -> TransitionCallbackReturn:
+        """Deactivate the node; see `trigger_configure`."""
+        return await self._transitions.trigger("deactivate")
+
+    async def trigger_shutdown(self) -> TransitionCallbackReturn:
+        """Shut the node down, after cancelling a transition under way; see `trigger_configure`."""
+        await self._cancel_transition()
+        return await self._transitions.trigger("shutdown")
+
+    # Entities
+
+    def add_managed_entity(self, entity: ManagedEntity) -> None:
+        """Let `entity` take part in the transitions from now on, after those added before."""
+        self._transitions.entities.append(entity)
+
+    def create_lifecycle_publisher(
+        self, msg_type: type[MsgT], topic: str, qos_profile: QoSProfile | int, **options: Any
+    ) -> LifecyclePublisher[MsgT]:
+        """Return a publisher that sends only while the node is active; see `create_publisher`."""
+        publisher = LifecyclePublisher(
+            self.create_publisher(msg_type, topic, qos_profile, **options)
+        )
+        self.add_managed_entity(publisher)
+        return publisher
+
+    def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher[Any]) -> bool:
+        """Destroy a publisher of this node; return whether it was one."""
+        if publisher not in self._transitions.entities:
+            return False
+        self._transitions.entities.remove(publisher)
+        publisher.destroy()
+        return True
+
+    def create_lifecycle_subscription(
+        self,
+        msg_type: type[MsgT],
+        topic: str,
+        callback: SubscriptionCallback[MsgT],
+        qos_profile: QoSProfile | int = 10,
+        **options: Any,
+    ) -> Subscription[MsgT]:
+        """Return a subscription whose callback is called only while the node is active.
+
+        What comes in other states is discarded; see `create_subscription` for the arguments.
+        """
+        gate = Gate()
+        self.add_managed_entity(gate)
+        return self.create_subscription(
+            msg_type, topic, gate.dropping(callback), qos_profile, **options
+        )
+
+    def create_lifecycle_service(
+        self,
+        srv_type: ServiceClass[RequestT, ResponseT],
+        srv_name: str,
+        callback: ServiceCallback[RequestT, ResponseT],
+        **options: Any,
+    ) -> Service[RequestT, ResponseT]:
+        """Return a service that answers only while the node is active.
+
+        In other states the client gets a `ServiceError` that says so; see `create_service`.
+        """
+        gate = Gate()
+        self.add_managed_entity(gate)
+        refusing = gate.refusing(callback, f"service {self.resolve_service_name(srv_name)}")
+        return self.create_service(srv_type, srv_name, refusing, **{"on_error": "log"} | options)
+
+    def create_lifecycle_timer(
+        self,
+        timer_period_sec: float,
+        callback: TimerCallback,
+        clock: Clock | None = None,
+        **options: Any,
+    ) -> LifecycleTimer:
+        """Return a timer that runs only while the node is active; see `create_timer`."""
+        timer = LifecycleTimer(
+            self.create_timer(timer_period_sec, callback, clock, autostart=False, **options)
+        )
+        self.add_managed_entity(timer)
+        return timer
+
+    # From other processes
+
+    def _serve(self) -> None:
+        self.create_service(ChangeState, "~/change_state", self._change_state, concurrent=True)
+        self.create_service(GetState, "~/get_state", self._get_state)
+        self.create_service(GetAvailableStates, "~/get_available_states", self._get_states)
+        self.create_service(
+            GetAvailableTransitions, "~/get_available_transitions", self._get_available
+        )
+        self.create_service(GetAvailableTransitions, "~/get_transition_graph", self._get_graph)
+
+    async def _change_state(
+        self, request: ChangeState.Request, response: ChangeState.Response
+    ) -> ChangeState.Response:
+        response.success = await self._change(request.transition.label, request.transition.id)
+        return response
+
+    async def _change(self, label: str, transition_id: int) -> bool:
+        """Do what a request says; return whether it succeeded."""
+        machine = self._transitions.machine
+        if machine.in_transition and is_shutdown(label, transition_id):
+            await self._cancel_transition()
+            transition = machine.find("shutdown")
+        else:
+            transition = machine.find(label, transition_id)
+        if transition is None:
+            return False
+        if not machine.in_transition:
+            return await self._transitions.run(transition) is SUCCESS
+        # The result of the callback that runs, as another process wants it to be.
+        if transition.label == SUCCESS.to_label() or transition.start == ERROR_PROCESSING:
+            return False
+        wanted = next(one for one in TransitionCallbackReturn if one.to_label() == transition.label)
+        await self._cancel_transition(wanted)
+        return True
+
+    async def _cancel_transition(self, result: TransitionCallbackReturn = FAILURE) -> None:
+        self._transitions.cancel(result)
+        await self._transitions.wait_idle()
+
+    def _get_state(self, _: GetState.Request, response: GetState.Response) -> GetState.Response:
+        response.current_state = state_msg(self.lifecycle_state)
+        return response
+
+    def _get_states(
+        self, _: GetAvailableStates.Request, response: GetAvailableStates.Response
+    ) -> GetAvailableStates.Response:
+        response.available_states = [state_msg(state) for state in STATES]
+        return response
+
+    def _get_available(
+        self, _: GetAvailableTransitions.Request, response: GetAvailableTransitions.Response
+    ) -> GetAvailableTransitions.Response:
+        available = self._transitions.machine.available()
+        response.available_transitions = [description_of(one) for one in available]
+        return response
+
+    def _get_graph(
+        self, _: GetAvailableTransitions.Request, response: GetAvailableTransitions.Response
+    ) -> GetAvailableTransitions.Response:
+        response.available_transitions = [description_of(one) for one in TRANSITIONS]
+        return response
+
+    def _publish_event(self, start: State, goal: State) -> None:
+        if not self._transition_events.destroyed:
+            self._transition_events.publish(
+                TransitionEvent(start_state=state_msg(start), goal_state=state_msg(goal))
+            )
+
+
+def is_shutdown(label: str, transition_id: int) -> bool:
+    """Whether a request asks for the end of the node, in whatever state it is."""
+    if label:
+        return label == "shutdown"
+    return any(
+        one.label == "shutdown" and one.transition_id == transition_id for one in TRANSITIONS
+    )
+
+
+def state_msg(state: State) -> StateMsg:
+    """Return a state as it goes over the wire."""
+    return StateMsg(id=state.state_id, label=state.label)
+
+
+def description_of(transition: Transition) -> TransitionDescription:
+    """Return a transition as it goes over the wire."""
+    return TransitionDescription(
+        transition=TransitionMsg(id=transition.transition_id, label=transition.label),
+        start_state=state_msg(transition.start),
+        goal_state=state_msg(transition.goal),
+    )

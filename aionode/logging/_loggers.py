@@ -1,0 +1,334 @@
+"""Loggers by ROS's names over the standard library's `logging`.
+
+The logger that ROS calls ``ns.talker`` is ``ros.ns.talker`` there, so handlers, filters, pytest's
+caplog and whatever else knows `logging` work with it. Loggers of aionode itself (``aionode.…``)
+have the same name in both. Nothing is installed until the first message or the first setting:
+then ``ros`` and ``aionode`` get a handler that writes to the console as rcutils does.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import sys
+from collections.abc import Callable, Mapping
+from types import FrameType
+from typing import Unpack
+
+from aionode.clock import S_TO_NS, MachineTime
+from aionode.logging._console import (
+    ConsoleHandler,
+    ConsoleSettings,
+    LineFormatter,
+    LogEvent,
+    RosRecord,
+    SinkHandler,
+    get_logging_directory,
+)
+from aionode.logging._filters import CallSites, LogOptions
+from aionode.logging._severity import LoggingSeverity
+
+__all__ = [
+    "RcutilsLogger",
+    "clear_config",
+    "configure",
+    "get_logger",
+    "get_logger_effective_level",
+    "get_logger_level",
+    "initialize",
+    "set_logger_level",
+    "shutdown",
+]
+
+DEFAULT_LEVEL = LoggingSeverity.INFO
+ROOT, OWN = "ros", "aionode"
+EVERYTHING = 1  # in `logging`, 0 at the top would mean the level of its own root
+
+machine = MachineTime()
+caller = sys._getframe  # noqa: SLF001  # inspect's way to the same frame takes longer than the line
+
+
+class RcutilsLogger:
+    """Logs under a name of ROS. Made by `get_logger` and `Node.get_logger`.
+
+    Every method takes the keyword arguments of `LogOptions` and returns whether the message was
+    logged.
+    """
+
+    def __init__(self, name: str = "", *, now_ns: Callable[[], int] = machine.system_ns) -> None:
+        self.name = name
+        self._now_ns = now_ns
+        self._logger = standard_logger(name)
+        self._sites = CallSites()
+
+    def __repr__(self) -> str:
+        return f"<RcutilsLogger {self.name} {self.get_effective_level().name}>"
+
+    def get_child(self, name: str) -> RcutilsLogger:
+        """Return the logger ``<this name>.<name>``, which has this one's level unless set.
+
+        Raises:
+            ValueError: `name` is empty.
+        """
+        if not name:
+            message = "Child logger name must not be empty."
+            raise ValueError(message)
+        return RcutilsLogger(f"{self.name}.{name}" if self.name else name, now_ns=self._now_ns)
+
+    def set_level(self, level: int | LoggingSeverity) -> None:
+        """Let through what is at least this grave; UNSET means what the parent lets through."""
+        set_logger_level(self.name, level)
+
+    def get_effective_level(self) -> LoggingSeverity:
+        """Return the level of this logger, or of the nearest one above that has one."""
+        return get_logger_effective_level(self.name)
+
+    def is_enabled_for(self, severity: int | LoggingSeverity) -> bool:
+        """Return whether a message this grave would be let through."""
+        initialize()
+        return self._logger.isEnabledFor(LoggingSeverity(severity))
+
+    def add_sink(self, sink: Callable[[LogEvent], None]) -> Callable[[], None]:
+        """Call `sink` with each message of this logger and those below; return what ends it.
+
+        It is called at once, in the thread that logs. What it logs itself does not come back.
+        """
+        initialize()
+        handler = SinkHandler(self.name, sink)
+        self._logger.addHandler(handler)
+        return lambda: self._logger.removeHandler(handler)
+
+    # Each method looks for its caller itself: how deep the stack is must not be guessed.
+
+    def log(
+        self,
+        message: str,
+        severity: int | LoggingSeverity,
+        **options: Unpack[LogOptions],
+    ) -> bool:
+        """Log `message` with the given severity.
+
+        Raises:
+            ValueError: Severity, name or options differ from the first call of the same place.
+            TypeError: An option is unknown.
+        """
+        severity = LoggingSeverity(severity)
+        return self._log(message, severity, caller(1), options)
+
+    def debug(self, message: str, **options: Unpack[LogOptions]) -> bool:
+        """Log `message` with severity DEBUG."""
+        return self._log(message, 10, caller(1), options)
+
+    def info(self, message: str, **options: Unpack[LogOptions]) -> bool:
+        """Log `message` with severity INFO."""
+        return self._log(message, 20, caller(1), options)
+
+    def warning(self, message: str, **options: Unpack[LogOptions]) -> bool:
+        """Log `message` with severity WARN."""
+        return self._log(message, 30, caller(1), options)
+
+    def warn(self, message: str, **options: Unpack[LogOptions]) -> bool:
+        """Log `message` with severity WARN, as `warning` does."""
+        return self._log(message, 30, caller(1), options)
+
+    def error(self, message: str, **options: Unpack[LogOptions]) -> bool:
+        """Log `message` with severity ERROR."""
+        return self._log(message, 40, caller(1), options)
+
+    def fatal(self, message: str, **options: Unpack[LogOptions]) -> bool:
+        """Log `message` with severity FATAL."""
+        return self._log(message, 50, caller(1), options)
+
+    def _log(self, message: str, severity: int, frame: FrameType, options: LogOptions) -> bool:
+        initialize()
+        if not self._logger.isEnabledFor(severity):
+            return False
+        name = options.pop("name", None) or self.name
+        site = self._sites.find(frame, severity, name, options)
+        if not site.lets_through(self._now_ns):
+            return False
+        logger = self._logger if name == self.name else standard_logger(name)
+        code = frame.f_code
+        record = RosRecord(
+            logger.name, severity, code.co_filename, frame.f_lineno, message, (), None, code.co_name
+        )
+        record.ros_name = name
+        record.stamp_ns = stamp_ns = self._now_ns()
+        record.created = stamp_ns / S_TO_NS
+        logger.handle(record)
+        return True
+
+
+def standard_logger(name: str) -> logging.Logger:
+    """Return the standard library's logger for a name of ROS."""
+    if name == OWN or name.startswith(f"{OWN}."):
+        return logging.getLogger(name)
+    return logging.getLogger(f"{ROOT}.{name}" if name else ROOT)
+
+
+def get_logger(name: str, *, now_ns: Callable[[], int] = machine.system_ns) -> RcutilsLogger:
+    """Return a logger.
+
+    Args:
+        name: Its name; a dot makes it the child of the part before.
+        now_ns: Where its time stamps come from.
+
+    Raises:
+        ValueError: `name` is empty.
+    """
+    if not name:
+        message = "Logger name must not be empty."
+        raise ValueError(message)
+    return RcutilsLogger(name, now_ns=now_ns)
+
+
+# Levels
+
+
+def set_logger_level(name: str, level: int | LoggingSeverity, detailed_error: bool = False) -> None:
+    """Set the level of a logger, which need not exist; the empty name is the root.
+
+    Raises:
+        ValueError: `level` is not one of `LoggingSeverity`.
+    """
+    del detailed_error  # of rclpy; errors are always detailed here
+    initialize()
+    level = LoggingSeverity(level)
+    if name:
+        standard_logger(name).setLevel(level)
+        return
+    for root in (ROOT, OWN):
+        logging.getLogger(root).setLevel(level or EVERYTHING)
+
+
+def get_logger_level(name: str) -> LoggingSeverity:
+    """Return the level that was set for this logger: UNSET if none was."""
+    initialize()
+    return nearest_severity(standard_logger(name).level)
+
+
+def get_logger_effective_level(name: str) -> LoggingSeverity:
+    """Return the level that applies to this logger: its own, or the nearest one above."""
+    initialize()
+    return nearest_severity(standard_logger(name).getEffectiveLevel())
+
+
+def nearest_severity(level: int) -> LoggingSeverity:
+    """Return a level of `logging`, which may be any number, as a severity."""
+    return LoggingSeverity(min(max(level, 0) // 10 * 10, 50))
+
+
+# Set-up
+
+
+class SetUp:
+    """What is installed in the standard library's logging, so that it can be taken out again."""
+
+    def __init__(self) -> None:
+        self.ready = False
+        self._installed: list[tuple[logging.Logger, logging.Handler]] = []
+        self._root_level: int | None = None
+
+    def install(self, handler: logging.Handler, *names: str) -> None:
+        """Add a handler to these loggers."""
+        for name in names:
+            logger = logging.getLogger(name)
+            logger.addHandler(handler)
+            self._installed.append((logger, handler))
+
+    def take_root(self, level: int) -> None:
+        """Let records of all other loggers through from `level`, as basicConfig would."""
+        root = logging.getLogger()
+        self._root_level = root.level
+        root.setLevel(level)
+
+    def remove(self) -> None:
+        """Take everything out."""
+        for logger, handler in self._installed:
+            logger.removeHandler(handler)
+            handler.close()
+        self._installed.clear()
+        if self._root_level is not None:
+            logging.getLogger().setLevel(self._root_level)
+            self._root_level = None
+        self.ready = False
+
+
+set_up = SetUp()
+
+
+def initialize() -> None:
+    """Set logging up as the environment says, unless it is. Every use of a logger does this.
+
+    Raises:
+        ConfigurationError: An environment variable does not fit (a ValueError).
+    """
+    if not set_up.ready:
+        configure()
+
+
+def configure(
+    *,
+    level: int | LoggingSeverity | None = None,
+    levels: Mapping[str, int] | None = None,
+    console: bool = True,
+    file_name: str | None = None,
+    whole_process: bool = False,
+) -> None:
+    """Set logging up, in place of what was set up before.
+
+    Args:
+        level: Level of all loggers that have none of their own; INFO without it.
+        levels: Levels of single loggers.
+        console: Whether lines are written to the console.
+        file_name: Write lines to a file too: ``<file_name>_<pid>_<milliseconds>.log`` in
+            `get_logging_directory`. Without it no file is written.
+        whole_process: Show what other loggers of the standard library log, too, in the same
+            format; unless the application has given `logging` a handler, and so decides itself.
+            `aionode.run` asks for this.
+
+    Raises:
+        ConfigurationError: An environment variable does not fit (a ValueError).
+        OSError: The file cannot be made.
+    """
+    settings = ConsoleSettings.from_environment()
+    set_up.remove()
+    set_up.ready = True
+    set_logger_level("", DEFAULT_LEVEL if level is None else level)
+    for name, each in (levels or {}).items():
+        set_logger_level(name, each)
+    root_is_free = whole_process and not logging.getLogger().handlers
+    if console:
+        set_up.install(ConsoleHandler(settings), ROOT, OWN, *([""] if root_is_free else []))
+    else:
+        set_up.install(logging.NullHandler(), ROOT, OWN)  # or `logging` would write itself
+    if root_is_free:
+        set_up.take_root(logging.getLogger(ROOT).level)
+    if file_name is not None:
+        set_up.install(log_file(file_name, settings.line_format), ROOT, OWN)
+
+
+def log_file(prefix: str, line_format: str) -> logging.Handler:
+    """Return what writes lines to a new file in the logging directory."""
+    directory = get_logging_directory()
+    directory.mkdir(parents=True, exist_ok=True)
+    stamp_ms = machine.system_ns() // 1_000_000
+    handler = logging.FileHandler(
+        directory / f"{prefix}_{os.getpid()}_{stamp_ms}.log", encoding="utf-8"
+    )
+    handler.setFormatter(LineFormatter(line_format))
+    return handler
+
+
+def shutdown() -> None:
+    """Take out of the standard library's logging what was put in; the next use sets it up anew."""
+    set_up.remove()
+
+
+def clear_config() -> None:
+    """Forget all levels and set logging up again as the environment says."""
+    for name, logger in list(logging.root.manager.loggerDict.items()):
+        ours = name.partition(".")[0] in {ROOT, OWN}
+        if ours and isinstance(logger, logging.Logger):
+            logger.setLevel(logging.NOTSET)
+    configure()

@@ -1,0 +1,193 @@
+"""Messages as plain values, JSON and YAML, and back.
+
+Plain values are dicts, lists, numbers, bools and strings. Bytes are lists of numbers and a scalar
+``byte`` is a number, as ROS prints them. JSON has no word for NaN and the infinities: they are the
+strings ``"NaN"``, ``"Infinity"`` and ``"-Infinity"`` there, and those are read back; YAML has its
+own (``.nan``, ``.inf``, ``-.inf``).
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import msgspec
+
+from aionode.errors import MessageError
+from aionode.message._field_types import FieldType
+from aionode.message._message import Message, message_class, type_name
+from aionode.message._snapshot import snapshot
+from aionode.message._validation import fit, given, listed
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["from_builtins", "from_json", "from_yaml", "to_builtins", "to_json", "to_yaml"]
+
+MessageT = TypeVar("MessageT", bound=Message)
+
+FLOAT_STRINGS = re.compile(r"NaN|-?Infinity|[-+]?\d+[eE][-+]?\d+")
+"""Strings that stand for a float: JSON's missing words, and 1e5, which YAML 1.1 reads as text."""
+
+
+def to_builtins(message: Message) -> dict[str, Any]:
+    """Return a message as dicts, lists, numbers, bools and strings, in the order of its fields.
+
+    Raises:
+        MessageError: A value does not fit its field.
+    """
+    return plain(snapshot(message), lambda number: number)
+
+
+def from_builtins(cls: type[MessageT], data: object) -> MessageT:
+    """Return the message that plain values describe; fields that are left out have their default.
+
+    Arrays and bytes-like objects are taken as well as lists.
+
+    Raises:
+        MessageError: A value does not fit its field, or there is no such field.
+    """
+    return message_from(message_class(cls), data, type_name(cls))  # type: ignore[return-value] # of cls
+
+
+def to_json(message: Message) -> str:
+    """Return a message as JSON in one line.
+
+    Raises:
+        MessageError: A value does not fit its field.
+    """
+    return msgspec.json.encode(plain(snapshot(message), json_float)).decode()
+
+
+def from_json(cls: type[MessageT], text: str | bytes) -> MessageT:
+    """Return the message that JSON describes; see `from_builtins`.
+
+    Raises:
+        MessageError: It is no JSON, or does not describe such a message.
+    """
+    return from_builtins(cls, decoded(cls, msgspec.json.decode, text, "JSON"))
+
+
+def to_yaml(message: Message, *, flow_style: bool = False) -> str:
+    """Return a message as YAML, laid out as ``ros2 topic echo`` prints it.
+
+    Args:
+        message: The message.
+        flow_style: In braces and brackets instead of on lines of their own.
+
+    Raises:
+        MessageError: A value does not fit its field.
+    """
+    import yaml
+
+    text: str = yaml.dump(
+        to_builtins(message),
+        Dumper=getattr(yaml, "CSafeDumper", yaml.SafeDumper),  # libyaml is optional
+        allow_unicode=True,
+        default_flow_style=flow_style,
+        sort_keys=False,
+        width=2**31 - 1,
+    )
+    return text
+
+
+def from_yaml(cls: type[MessageT], text: str | bytes) -> MessageT:
+    """Return the message that YAML describes, such as ``{linear: {x: 1.5}}``.
+
+    Nothing at all gives a message of defaults. See `from_builtins`.
+
+    Raises:
+        MessageError: It is no YAML, or does not describe such a message.
+    """
+    data = decoded(cls, msgspec.yaml.decode, text, "YAML")
+    return from_builtins(cls, {} if data is None else data)
+
+
+def decoded(
+    cls: type[Message], decode: Callable[[str | bytes], Any], text: str | bytes, form: str
+) -> Any:
+    """Return what a text in JSON or YAML says, as plain values."""
+    try:
+        return decode(text)
+    except (msgspec.DecodeError, ValueError, RecursionError) as error:
+        raise MessageError(type_name(cls), f"this is no {form}: {error}") from error
+
+
+def json_float(number: float) -> float | str:
+    """Return a float, or the word for one that JSON does not have."""
+    if math.isfinite(number):
+        return number
+    return "NaN" if math.isnan(number) else "Infinity" if number > 0 else "-Infinity"
+
+
+def plain(message: Message, as_float: Callable[[float], object]) -> dict[str, Any]:
+    """Return a valid message as plain values."""
+    return {
+        field.name: plain_value(field.type, getattr(message, field.name), as_float)
+        for field in message.__ros_fields__
+    }
+
+
+def plain_value(type_: FieldType, value: Any, as_float: Callable[[float], object]) -> object:
+    """Return the valid value of a field as plain values."""
+    if type_.nested is not None:
+        if type_.container == "single":
+            return plain(value, as_float)
+        return [plain(item, as_float) for item in value]
+    if type_.kind in {"float32", "float64"}:
+        return (
+            as_float(value) if type_.container == "single" else list(map(as_float, value.tolist()))
+        )
+    if type_.form == "value":
+        return value[0] if type_.kind == "byte" else value
+    return value.tolist() if type_.form == "ndarray" else list(value)
+
+
+def message_from(cls: type[Message], data: object, path: str) -> Message:
+    """Return a message of plain values, or raise `MessageError` with the path of what is wrong."""
+    if not isinstance(data, Mapping):
+        raise MessageError(path, f"{given(data)}, needs a mapping from field names to values")
+    types = {field.name: field.type for field in cls.__ros_fields__}
+    for key in data:
+        if key not in types:
+            raise MessageError(f"{path}.{key}", no_such_field(cls, str(key), list(types)))
+    values = {key: value_from(types[key], value, f"{path}.{key}") for key, value in data.items()}
+    return cls(**values)
+
+
+def no_such_field(cls: type[Message], key: str, names: list[str]) -> str:
+    """Return what to say of a field that does not exist."""
+    if not names:
+        return f"no such field; {type_name(cls)} has none"
+    close = difflib.get_close_matches(key, names, 1)
+    meant = f"; did you mean {close[0]!r}?" if close else ""
+    return f"no such field{meant}; {type_name(cls)} has {', '.join(names)}"
+
+
+def value_from(type_: FieldType, value: object, path: str) -> object:
+    """Return the value of one field."""
+    if type_.nested is not None:
+        if type_.container == "single":
+            return message_from(type_.nested, value, path)
+        items = enumerate(listed(type_, value, path))
+        return [message_from(type_.nested, item, f"{path}[{i}]") for i, item in items]
+    if type_.container == "single":
+        value = scalar_from(type_, value, path)
+    elif type_.kind in {"float32", "float64"} and isinstance(value, list | tuple):
+        value = [scalar_from(type_, item, f"{path}[{i}]") for i, item in enumerate(value)]
+    fitted = fit(type_, value, path)
+    if type_.form == "ndarray" and fitted is not value and fitted.flags.owndata:
+        fitted.flags.writeable = True  # made for this message alone
+    return fitted
+
+
+def scalar_from(type_: FieldType, value: object, path: str) -> object:
+    """Return a single value; numbers for bytes, and words for floats, are understood."""
+    if type_.kind == "byte" and not isinstance(value, bytes):
+        return bytes((fit(FieldType("uint8"), value, path),))
+    if type_.kind in {"float32", "float64"} and isinstance(value, str):
+        return float(value) if FLOAT_STRINGS.fullmatch(value) else value
+    return value

@@ -1,0 +1,222 @@
+"""Messages as Python classes, and functions that describe them.
+
+A message class has one attribute for each field and nothing else that a field could be called:
+what there is to know about it is asked from functions (`type_name`, `fields`, `constants`).
+"""
+
+from __future__ import annotations
+
+import copy
+import functools
+import re
+import sys
+from importlib import import_module
+from keyword import iskeyword
+from typing import TYPE_CHECKING, Any, ClassVar, dataclass_transform, get_args, get_origin
+
+import msgspec
+
+from aionode.message._field_types import Constant, Field, field_type
+from aionode.message._validation import default_value, plain_default, same, shown
+
+if TYPE_CHECKING:
+    from types import FrameType
+
+__all__ = ["DEFAULT", "Message", "MessageMeta", "constants", "fields", "message_class", "type_name"]
+
+DEFAULT: Any = object()
+"""Stands for the zero of any field type: ``header: Header = DEFAULT``.
+
+A field without a default gets it too; writing it tells type checkers that the field may be left
+out.
+"""
+
+TYPE_NAME = re.compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Z][A-Za-z0-9_]*")
+FIELD_NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
+
+
+class MessageMeta(msgspec.StructMeta):
+    """Turns annotations into the description of a message, and gives every field a default."""
+
+    def __new__(  # noqa: PYI034 (mypy has no Self in metaclasses)
+        mcls,
+        name: str,
+        bases: tuple[type, ...],
+        namespace: dict[str, Any],
+        *,
+        typename: str = "",
+        **options: Any,
+    ) -> MessageMeta:
+        """Make the class; `typename` is its ROS name, such as ``std_msgs/msg/String``."""
+        if typename:
+            namespace["__ros_type__"] = checked_type_name(typename)
+        own: list[Field] = []
+        known: list[Constant] = []
+        for key, annotation in annotations_of(namespace, sys._getframe(1)).items():  # noqa: SLF001 (names of the class statement's scope)
+            if get_origin(annotation) is ClassVar:
+                if not key.startswith("__"):
+                    (inner,) = get_args(annotation)
+                    known.append(Constant(key, field_type(inner), namespace[key]))
+                continue
+            checked_field_name(typename or name, key)
+            type_ = field_type(annotation)
+            given = namespace.get(key, DEFAULT)
+            path = f"{typename or name}.{key}"
+            default = None if given is DEFAULT else plain_default(type_, given, path)
+            own.append(Field(key, type_, default))
+            namespace[key] = default_value(type_, default)
+        inherited = [field for base in bases for field in getattr(base, "__ros_fields__", ())]
+        namespace["__ros_fields__"] = (*inherited, *own)
+        namespace["__ros_constants__"] = tuple(known)
+        namespace["__ros_functions__"] = {}
+        return super().__new__(mcls, name, bases, namespace, eq=False, **options)
+
+
+def annotations_of(namespace: dict[str, Any], frame: FrameType) -> dict[str, Any]:
+    """Return the annotations of a class that is being made in `frame`, as objects."""
+    found: dict[str, Any] | None = namespace.get("__annotations__")
+    if found is None and sys.version_info >= (3, 14):  # made on demand there
+        import annotationlib
+
+        make = annotationlib.get_annotate_from_class_namespace(namespace)
+        if make is not None:
+            form = annotationlib.Format.VALUE
+            found = annotationlib.call_annotate_function(make, form)
+    return {
+        key: eval(value, frame.f_globals, frame.f_locals) if isinstance(value, str) else value  # noqa: S307 (an annotation in the source of a class)
+        for key, value in (found or {}).items()
+    }
+
+
+def checked_type_name(name: str) -> str:
+    """Return `name` if it is one of a ROS type, or raise `TypeError`."""
+    if not TYPE_NAME.fullmatch(name):
+        msg = f"{name!r}: not the name of a ROS type; it looks like 'my_robot_msgs/msg/Words'"
+        raise TypeError(msg)
+    return name
+
+
+def checked_field_name(owner: str, name: str) -> None:
+    """Raise `TypeError` if no ROS field can have this name."""
+    if not FIELD_NAME.fullmatch(name) or iskeyword(name):
+        msg = (
+            f"{owner}.{name}: not the name of a ROS field; lower-case letters, digits and single "
+            "underscores fit, beginning with a letter, except Python's keywords"
+        )
+        raise TypeError(msg)
+
+
+@dataclass_transform(kw_only_default=True, field_specifiers=(msgspec.field,))
+class Message(msgspec.Struct, metaclass=MessageMeta):  # noqa: PLW1641 (mutable: no hash)
+    """Base of all messages.
+
+    Write a message as a class with annotations from `aionode.message`::
+
+        class Words(Message, typename="tutorial/msg/Words"):
+            text: str = ""
+            scores: Sequence[float32] = DEFAULT
+
+    Every field has a default, values are given by keyword and not validated until the message is
+    published, called with or encoded. Two messages are equal if they are of one class and their
+    values are, those in arrays included. Copies and pickles stand on their own.
+    """
+
+    __ros_type__: ClassVar[str] = ""
+    __ros_fields__: ClassVar[tuple[Field, ...]]
+    __ros_constants__: ClassVar[tuple[Constant, ...]]
+    __ros_functions__: ClassVar[dict[str, Any]]
+    """Functions that were generated for this class, by purpose."""
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether both have the same class and values."""
+        if other.__class__ is not self.__class__:
+            return NotImplemented
+        return all(same(getattr(self, f), getattr(other, f)) for f in self.__struct_fields__)
+
+    def __ne__(self, other: object) -> bool:
+        """Return whether class or values differ."""
+        if other.__class__ is not self.__class__:
+            return NotImplemented
+        return not self == other
+
+    def __repr__(self) -> str:
+        """Return it as rclpy prints messages: ``std_msgs.msg.String(data='hi')``."""
+        name = self.__ros_type__.replace("/", ".") or type(self).__qualname__
+        values = (f"{f.name}={shown(f.type, getattr(self, f.name))}" for f in self.__ros_fields__)
+        return f"{name}({', '.join(values)})"
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:
+        """Tell Pydantic how to read and write messages, in models and in FastAPI."""
+        return by_name("pydantic_core_schema")(cls)
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core_schema: Any, handler: Any) -> Any:
+        """Tell Pydantic how messages look as JSON, for OpenAPI."""
+        return by_name("pydantic_json_schema")(cls, handler)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Message:
+        """Return a copy that shares nothing that can change."""
+        return type(self)(*(copy.deepcopy(owned(self, f), memo) for f in self.__struct_fields__))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return how to make it again, for pickle."""
+        values = {name: owned(self, name) for name in self.__struct_fields__}
+        return functools.partial(type(self), **values), ()
+
+
+def by_name(function: str) -> Any:
+    """Return a function of the module for schemas, which imports this one."""
+    return getattr(import_module("aionode.message._schema"), function)
+
+
+def owned(message: Message, name: str) -> object:
+    """Return a field's value; a view of foreign memory as bytes, as it cannot be pickled."""
+    value = getattr(message, name)
+    return bytes(value) if isinstance(value, memoryview) else value
+
+
+def type_name(cls: Any) -> str:
+    """Return the ROS name of a message, service or action class, such as ``std_msgs/msg/String``.
+
+    The halves have names of their own, such as ``example_interfaces/srv/AddTwoInts_Request``.
+
+    Raises:
+        TypeError: `cls` is no such class, or was made without a name.
+    """
+    name = getattr(cls, "__ros_type__", None) if isinstance(cls, type) else None
+    if name is None:
+        msg = f"{cls!r}: not a message, service or action class"
+        raise TypeError(msg)
+    if not name:
+        msg = f"{cls.__qualname__}: has no ROS name; give it typename='my_package/msg/Name'"
+        raise TypeError(msg)
+    return str(name)
+
+
+def message_class(cls: Any) -> type[Message]:
+    """Return `cls` if it is a message class, or raise a `TypeError` that says what it is."""
+    if not isinstance(cls, MessageMeta):
+        msg = f"{cls!r}: not a message class"
+        if hasattr(cls, "__ros_type__"):
+            msg += "; a service or action is described by its nested messages, such as .Request"
+        raise TypeError(msg)
+    return cls  # type: ignore[return-value] # all of this metaclass are messages
+
+
+def fields(cls: type[Message]) -> tuple[Field, ...]:
+    """Return the fields of a message class in their order on the wire.
+
+    Raises:
+        TypeError: `cls` is not a message class.
+    """
+    return message_class(cls).__ros_fields__
+
+
+def constants(cls: type[Message]) -> tuple[Constant, ...]:
+    """Return the constants of a message class in the order of its definition.
+
+    Raises:
+        TypeError: `cls` is not a message class.
+    """
+    return message_class(cls).__ros_constants__

@@ -1,0 +1,170 @@
+"""What a message looks like as JSON: JSON Schema for tools and OpenAPI, fields of Pydantic models.
+
+Pydantic is needed by nothing here; who has it, as FastAPI does, can use messages as types of
+fields, bodies and responses. It asks a class for `pydantic_core_schema` and `pydantic_json_schema`.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from aionode.message._conversion import from_builtins, json_float, plain, to_builtins
+from aionode.message._field_types import INT_RANGES, Field, FieldType
+from aionode.message._message import Message, message_class
+from aionode.message._snapshot import snapshot
+
+if TYPE_CHECKING:
+    from pydantic import GetJsonSchemaHandler
+    from pydantic_core import CoreSchema
+    from pydantic_core.core_schema import SerializationInfo
+
+__all__ = ["json_schema", "pydantic_core_schema", "pydantic_json_schema"]
+
+Schema = dict[str, Any]
+
+NUMBER: Schema = {"type": "number"}
+
+NUMBER_OR_WORD: Schema = {
+    "anyOf": [NUMBER, {"type": "string", "enum": ["NaN", "Infinity", "-Infinity"]}]
+}
+"""A float as `to_json` writes it: JSON has no word for three of them."""
+
+
+def json_schema(cls: type[Message]) -> dict[str, Any]:
+    """Return the JSON Schema of what `from_json` and `from_builtins` read for a message class.
+
+    It is an ``object`` in itself, without references, as the tools of language models want it; with
+    the descriptions of the class's docstring, the ranges of its numbers, and its defaults. No field
+    is required, as each has a default. For a service or an action, ask for that of its
+    ``Request`` or ``Goal``.
+
+    Raises:
+        TypeError: `cls` is not a message class.
+    """
+    message_class(cls)
+    return schema_of(cls, json_schema, NUMBER)
+
+
+def schema_of(
+    cls: type[Message], nested: Callable[[type[Message]], Schema], real: Schema
+) -> Schema:
+    """Return the schema of a message; `nested` gives that of another one, `real` is a float's."""
+    text, described = documentation(cls)
+    schema: Schema = {"title": title(cls), "type": "object"}
+    if text:
+        schema["description"] = text
+    schema["properties"] = {
+        each.name: with_notes(each, described.get(each.name), value_schema(each.type, nested, real))
+        for each in cls.__ros_fields__
+    }
+    schema["additionalProperties"] = False
+    return schema
+
+
+def title(cls: type[Message]) -> str:
+    """Return the name of a message without its package: ``Twist``, ``AddTwoInts_Request``."""
+    return (cls.__ros_type__ or cls.__qualname__).rpartition("/")[2]
+
+
+def value_schema(
+    type_: FieldType, nested: Callable[[type[Message]], Schema], real: Schema
+) -> Schema:
+    """Return the schema of a field's value."""
+    if type_.container != "single":
+        element = value_schema(type_.element, nested, real)
+        limits = {
+            "array": {"minItems": type_.size, "maxItems": type_.size},
+            "bounded": {"maxItems": type_.size},
+            "unbounded": {},
+        }[type_.container]
+        return {"type": "array", "items": element, **limits}
+    if type_.nested is not None:
+        return nested(type_.nested)
+    if type_.kind in {"float32", "float64"}:
+        return dict(real)
+    if type_.kind == "bool":
+        return {"type": "boolean"}
+    if type_.kind in {"string", "wstring"}:
+        bound = {} if type_.string_bound is None else {"maxLength": type_.string_bound}
+        return {"type": "string", **bound}
+    low, high = INT_RANGES["uint8" if type_.kind == "byte" else type_.kind]
+    # Limits of 64 bits are left out: tools that hold them as floats round them up.
+    limits = {"minimum": low, "maximum": high}
+    return {"type": "integer", **{name: at for name, at in limits.items() if abs(at) < 2**53}}
+
+
+def with_notes(field: Field, text: str | None, schema: Schema) -> Schema:
+    """Return the schema of a field with its description and default."""
+    notes: Schema = {} if text is None else {"description": text}
+    if field.type.nested is None and field.type.container == "single":
+        zero = {"boolean": False, "string": "", "integer": 0}.get(schema.get("type", ""), 0.0)
+        default = zero if field.default is None else field.default
+        notes["default"] = default[0] if isinstance(default, bytes) else default
+    elif field.default is not None:
+        notes["default"] = list(field.default)  # type: ignore[call-overload]  # a tuple
+    if "$ref" in schema and notes:  # beside a reference older readers of OpenAPI see nothing
+        return {"allOf": [schema], **notes}
+    return {**schema, **notes}
+
+
+def documentation(cls: type[Message]) -> tuple[str, dict[str, str]]:
+    """Return what the docstring of a class says of it, and of each field under ``Attributes:``."""
+    text, _, attributes = inspect.cleandoc(cls.__doc__ or "").partition("\nAttributes:\n")
+    described: dict[str, str] = {}
+    name = ""
+    for line in attributes.splitlines():
+        began = re.match(r" {4}(\w+): (.*)", line)
+        if began is not None:
+            name = began[1]
+            described[name] = began[2]
+        elif name and line.startswith(" " * 5):
+            described[name] += f" {line.strip()}"
+        else:
+            name = ""
+    return " ".join(text.split()), described
+
+
+# Pydantic
+
+
+def pydantic_core_schema(cls: type[Message]) -> CoreSchema:
+    """Return how Pydantic reads and writes a message: as `from_builtins` and `to_json` do."""
+    from pydantic_core import core_schema
+
+    return core_schema.no_info_plain_validator_function(
+        partial(validated, cls),
+        ref=f"{cls.__module__}.{title(cls)}:{id(cls)}",  # the part before the colon names it
+        serialization=core_schema.plain_serializer_function_ser_schema(serialized, info_arg=True),
+    )
+
+
+def validated(cls: type[Message], value: object) -> Message:
+    """Return the message that `value` is or describes; a wrong one is a ValueError."""
+    if isinstance(value, cls):
+        return value
+    return from_builtins(cls, value)
+
+
+def serialized(message: Message, info: SerializationInfo) -> dict[str, Any]:
+    """Return a message as plain values, without what JSON cannot say if it is to be JSON."""
+    if info.mode == "json":
+        return plain(snapshot(message), json_float)
+    return to_builtins(message)
+
+
+def pydantic_json_schema(cls: type[Message], handler: GetJsonSchemaHandler) -> Schema:
+    """Return the JSON Schema of a message, with references to that of each message in it."""
+    from pydantic import TypeAdapter
+    from pydantic_core import core_schema
+
+    def nested(other: type[Message]) -> Schema:
+        # The handler itself makes no reference; for the items of a list it does.
+        several = handler(core_schema.list_schema(TypeAdapter(other).core_schema))
+        one: Schema = several["items"]
+        return one
+
+    return schema_of(cls, nested, NUMBER_OR_WORD)

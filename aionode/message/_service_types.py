@@ -1,0 +1,197 @@
+"""Services and actions as Python classes, and the messages they are carried out with."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from types import new_class
+from typing import Any, ClassVar, Protocol, TypeAlias, TypeVar
+
+from aionode.message._field_types import Sequence, int8
+from aionode.message._message import Message, MessageMeta, checked_type_name
+
+__all__ = ["ActionClass", "ActionType", "Interface", "ServiceClass", "ServiceType"]
+
+
+class Hidden:
+    """A part of a service or action type that is made when it is first asked for."""
+
+    def __init__(self, make: Any) -> None:
+        self.make = make
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        """Learn under which name to keep the part."""
+        self.name = name
+
+    def __get__(self, instance: object, owner: type) -> Any:
+        """Return the part of `owner`, kept for the next time."""
+        part = self.make(owner)
+        setattr(owner, self.name, part)
+        return part
+
+
+def shipped(package: str, kind: str, name: str) -> Any:
+    """Return a generated type of aionode.interfaces.
+
+    By name and late, because those modules stand on this one: every service and action has parts
+    that are made of ROS's own messages.
+    """
+    return getattr(import_module(f"aionode.interfaces.{package}.{kind}"), name)
+
+
+def name_halves(cls: type, typename: str, halves: tuple[str, ...]) -> None:
+    """Give a service or action class and its nested messages their ROS names."""
+    cls.__ros_type__ = checked_type_name(typename)  # type: ignore[attr-defined] # both declare it
+    for half in halves:
+        message = cls.__dict__.get(half)
+        if not isinstance(message, MessageMeta):
+            msg = f"{typename}: has no nested class {half}(Message); it may be one without fields"
+            raise TypeError(msg)
+        message.__ros_type__ = f"{typename}_{half}"  # type: ignore[attr-defined] # of Message
+
+
+def make_event(cls: type[ServiceType]) -> type[Message]:
+    """Return the message that tells of one request or response of a service."""
+    info = shipped("service_msgs", "msg", "ServiceEventInfo")
+    namespace = {
+        "__module__": cls.__module__,
+        "__qualname__": f"{cls.__qualname__}.Event",
+        "__doc__": f"A request to or a response from {cls.__name__}, with who and when.",
+        "__annotations__": {
+            "info": info,
+            "request": Sequence[cls.Request, 1],  # type: ignore[attr-defined] # nested classes
+            "response": Sequence[cls.Response, 1],  # type: ignore[attr-defined] # nested classes
+        },
+    }
+    return MessageMeta("Event", (Message,), namespace, typename=f"{cls.__ros_type__}_Event")  # type: ignore[return-value] # a class of Message
+
+
+class ServiceType:
+    """Base of all service types, with nested messages `Request` and `Response`.
+
+    Write a service as a class::
+
+        class Add(ServiceType, typename="tutorial/srv/Add"):
+            class Request(Message):
+                a: int64 = 0
+                b: int64 = 0
+
+            class Response(Message):
+                sum: int64 = 0
+
+    `Event` is the message of service introspection.
+    """
+
+    __ros_type__: ClassVar[str] = ""
+    Event: ClassVar[Any] = Hidden(make_event)
+
+    def __init_subclass__(cls, *, typename: str) -> None:
+        """Name the service and its messages."""
+        name_halves(cls, typename, ("Request", "Response"))
+
+
+def make_impl(cls: type[ActionType]) -> type:
+    """Return the services and messages that an action is carried out with."""
+    uuid = shipped("unique_identifier_msgs", "msg", "UUID")
+    time = shipped("builtin_interfaces", "msg", "Time")
+    place = f"{cls.__qualname__}.Impl"
+
+    def message(name: str, annotations: dict[str, Any], doc: str, typename: str = "") -> Any:
+        namespace = {
+            "__module__": cls.__module__,
+            "__qualname__": f"{place}.{name}",
+            "__doc__": doc,
+            "__annotations__": annotations,
+        }
+        return MessageMeta(name.rpartition(".")[2], (Message,), namespace, typename=typename)
+
+    def service(name: str, request: dict[str, Any], response: dict[str, Any]) -> Any:
+        typename = f"{cls.__ros_type__}_{name.removesuffix('Service')}"
+        namespace = {
+            "__module__": cls.__module__,
+            "__qualname__": f"{place}.{name}",
+            "__doc__": f"The service {typename}.",
+            "Request": message(f"{name}.Request", request, f"A request to {typename}."),
+            "Response": message(f"{name}.Response", response, f"A response of {typename}."),
+        }
+        return new_class(
+            name, (ServiceType,), {"typename": typename}, lambda ns: ns.update(namespace)
+        )
+
+    parts = {
+        "__module__": cls.__module__,
+        "__qualname__": place,
+        "__doc__": f"What {cls.__ros_type__} is carried out with.",
+        "SendGoalService": service(
+            "SendGoalService",
+            {"goal_id": uuid, "goal": cls.Goal},  # type: ignore[attr-defined] # nested class
+            {"accepted": bool, "stamp": time},
+        ),
+        "GetResultService": service(
+            "GetResultService",
+            {"goal_id": uuid},
+            {"status": int8, "result": cls.Result},  # type: ignore[attr-defined] # nested class
+        ),
+        "FeedbackMessage": message(
+            "FeedbackMessage",
+            {"goal_id": uuid, "feedback": cls.Feedback},  # type: ignore[attr-defined] # nested class
+            "Feedback, and the goal that it belongs to.",
+            f"{cls.__ros_type__}_FeedbackMessage",
+        ),
+        "CancelGoalService": shipped("action_msgs", "srv", "CancelGoal"),
+        "GoalStatusMessage": shipped("action_msgs", "msg", "GoalStatusArray"),
+    }
+    return type("Impl", (), parts)
+
+
+class ActionType:
+    """Base of all action types, with nested messages `Goal`, `Result` and `Feedback`.
+
+    `Impl` holds the types that only the action protocol uses, named as in rclpy:
+    `SendGoalService`, `GetResultService`, `CancelGoalService`, `FeedbackMessage` and
+    `GoalStatusMessage`.
+    """
+
+    __ros_type__: ClassVar[str] = ""
+    Impl: ClassVar[Any] = Hidden(make_impl)
+
+    def __init_subclass__(cls, *, typename: str) -> None:
+        """Name the action and its messages."""
+        name_halves(cls, typename, ("Goal", "Result", "Feedback"))
+
+
+Interface: TypeAlias = Message | ServiceType | ActionType
+"""What a ROS type name can stand for."""
+
+Request_co = TypeVar("Request_co", bound=Message, covariant=True)
+Response_co = TypeVar("Response_co", bound=Message, covariant=True)
+Goal_co = TypeVar("Goal_co", bound=Message, covariant=True)
+Result_co = TypeVar("Result_co", bound=Message, covariant=True)
+Feedback_co = TypeVar("Feedback_co", bound=Message, covariant=True)
+
+
+class ServiceClass(Protocol[Request_co, Response_co]):
+    """To type checkers: a service type, by what its requests and responses are.
+
+    ``def create_client(self, srv_type: ServiceClass[RequestT, ResponseT], …)`` learns both types
+    from ``AddTwoInts``. The nested classes are described as functions that make a message, as that
+    is the form in which mypy and pyright both find them.
+    """
+
+    def Request(self, *args: Any, **values: Any) -> Request_co:  # noqa: N802 (a class)
+        ...
+
+    def Response(self, *args: Any, **values: Any) -> Response_co:  # noqa: N802 (a class)
+        ...
+
+
+class ActionClass(Protocol[Goal_co, Result_co, Feedback_co]):
+    """To type checkers: an action type, by what its goals, results and feedback are."""
+
+    def Goal(self, *args: Any, **values: Any) -> Goal_co:  # noqa: N802 (a class)
+        ...
+
+    def Result(self, *args: Any, **values: Any) -> Result_co:  # noqa: N802 (a class)
+        ...
+
+    def Feedback(self, *args: Any, **values: Any) -> Feedback_co:  # noqa: N802 (a class)
+        ...

@@ -1,0 +1,232 @@
+"""Validating and copying messages, with code that is generated once for each type.
+
+The generated function handles the usual value of each field in one line and hands every other one
+to `fit`. Nested messages are unrolled into it, so a Twist costs one call. What is in the code comes
+from the description of a message class, whose names were checked when the class was made.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from aionode.errors import MessageError
+from aionode.message._field_types import INT_RANGES, FieldType
+from aionode.message._message import Message, fields, message_class, type_name
+from aionode.message._validation import check_length, fit, fit_array, fit_bytes, given, listed
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["check", "checker", "holds_arrays", "snapshot", "snapshotter"]
+
+MessageT = TypeVar("MessageT", bound=Message)
+
+FLOAT32_MAX = (2 - 2**-23) * 2.0**127
+
+
+@cache
+def holds_arrays(cls: type[Message]) -> bool:
+    """Whether values of a message class hold numpy arrays, their parts included."""
+    types = [field.type for field in fields(cls)]
+    return any(
+        type_.form == "ndarray" or (type_.nested is not None and holds_arrays(type_.nested))
+        for type_ in types
+    )
+
+
+def snapshotter(cls: type[MessageT]) -> Callable[[MessageT], MessageT]:
+    """Return a function that validates a message and returns a copy for its readers.
+
+    The copy shares nothing that can change: bytes and arrays marked read-only are shared, other
+    arrays are copied and the copy is marked read-only, lists of numbers become such arrays.
+    The function is generated once for each type. It raises `TypeError` for an object of another
+    class and `MessageError` for a value that does not fit.
+
+    Raises:
+        TypeError: `cls` is not a message class, or has no ROS name.
+    """
+    function: Callable[[MessageT], MessageT] = generated(cls, copying=True)
+    return function
+
+
+def checker(cls: type[MessageT]) -> Callable[[MessageT], None]:
+    """Return a function that raises as the one of `snapshotter` does, and copies nothing.
+
+    Raises:
+        TypeError: `cls` is not a message class, or has no ROS name.
+    """
+    function: Callable[[MessageT], None] = generated(cls, copying=False)
+    return function
+
+
+def snapshot(message: MessageT) -> MessageT:
+    """Return a validated copy of a message, as `snapshotter` does."""
+    return snapshotter(type(message))(message)
+
+
+def check(message: Message) -> None:
+    """Raise `MessageError` if a value of the message does not fit its field."""
+    checker(type(message))(message)
+
+
+def generated(cls: type[Message], *, copying: bool) -> Any:
+    """Return the function for a class, made when it is first asked for."""
+    functions = message_class(cls).__ros_functions__
+    purpose = "snapshot" if copying else "check"
+    if purpose not in functions:
+        functions[purpose] = Unrolling(copying=copying).function(cls)
+    return functions[purpose]
+
+
+class Unrolling:
+    """Writes the function of one message type."""
+
+    def __init__(self, *, copying: bool) -> None:
+        self.copying = copying
+        self.lines: list[str] = []
+        self.names: dict[str, Any] = {
+            "fit": fit,
+            "fit_array": fit_array,
+            "fit_bytes": fit_bytes,
+            "refuse": refuse,
+            "messages": messages,
+            "strings": strings,
+            "frozen": frozen_copy,
+            "fixed": fixed_bytes,
+        }
+
+    def function(self, cls: type[Message]) -> Callable[..., Any]:
+        """Return the function."""
+        whole = self.message(cls, "message", "")
+        result = whole if self.copying else "None"
+        text = "\n    ".join(["def take(message, path=TYPE):", *self.lines, f"return {result}"])
+        self.names["TYPE"] = type_name(cls)
+        exec(compile(text, f"<snapshot of {type_name(cls)}>", "exec"), self.names)  # noqa: S102 (of checked names only)
+        function: Callable[..., Any] = self.names["take"]
+        return function
+
+    def name(self, value: object, prefix: str) -> str:
+        """Return a new name for a value that the code uses."""
+        name = f"{prefix}{len(self.names)}"
+        self.names[name] = value
+        return name
+
+    def message(self, cls: type[Message], source: str, path: str) -> str:
+        """Write what one message needs; return the expression of its copy."""
+        class_ = self.name(cls, "C")
+        where = f"path + {path!r}" if path else "path"
+        self.lines.append(
+            f"if {source}.__class__ is not {class_}: refuse({class_}, {source}, {where})"
+        )
+        copies = []
+        for field in cls.__ros_fields__:
+            value = self.name(field, "v")
+            self.lines.append(f"{value} = {source}.{field.name}")
+            copies.append(self.field(field.type, value, f"{path}.{field.name}"))
+        return f"{class_}({', '.join(copies)})"
+
+    def field(self, type_: FieldType, value: str, path: str) -> str:
+        """Write what one field needs; return the expression of its copy."""
+        if type_.nested is not None and type_.container == "single":
+            return self.message(type_.nested, value, path)
+        known = self.name(type_, "F")
+        fitting = f"fit({known}, {value}, path + {path!r})"
+        if type_.container == "single":
+            self.lines.append(f"if {unusual(type_, value)}: {value} = {fitting}")
+        elif type_.nested is not None:
+            take = self.name(generated(type_.nested, copying=self.copying), "f")
+            self.lines.append(f"{value} = messages({known}, {take}, {value}, path, {path!r})")
+        elif type_.form == "list":
+            self.lines.append(f"{value} = strings({known}, {value}, path, {path!r})")
+        else:
+            own, rule = (
+                ("frozen", "fit_array") if type_.form == "ndarray" else ("fixed", "fit_bytes")
+            )
+            fitting = fitting.replace("fit(", f"{rule}(", 1)
+            line = f"{value} = {own}({fitting})" if self.copying else fitting
+            if type_.form == "bytes" and type_.container == "unbounded":
+                line = f"if {value}.__class__ is not bytes: {line}"
+            elif not self.copying and type_.container != "array":
+                # An empty tuple always fits, and to see that needs no numpy.
+                line = f"if {value}.__class__ is not tuple or {value}: {line}"
+            self.lines.append(line)
+        return value
+
+
+def unusual(type_: FieldType, value: str) -> str:
+    """Return the condition under which a single value needs a closer look."""
+    kind = type_.kind
+    if kind in INT_RANGES:
+        low, high = INT_RANGES[kind]
+        return f"{value}.__class__ is not int or not {low} <= {value} <= {high}"
+    if kind == "float32":
+        limit = repr(FLOAT32_MAX)
+        return f"{value}.__class__ is not float or not -{limit} <= {value} <= {limit}"
+    if kind == "float64":
+        return f"{value}.__class__ is not float"
+    if kind == "bool":
+        return f"{value} is not True and {value} is not False"
+    if kind == "byte":
+        return f"{value}.__class__ is not bytes or len({value}) != 1"
+    long = "" if type_.string_bound is None else f" or len({value}) > {type_.string_bound}"
+    return f"{value}.__class__ is not str or not {value}.isascii(){long}"
+
+
+def refuse(cls: type[Message], value: object, path: str) -> None:
+    """Raise what fits an object that is not of `cls`: the whole message, or a part of it."""
+    other, wanted = given_type(value), type_name(cls)
+    if other == wanted:
+        other, wanted = (f"{t.__module__}.{t.__qualname__}" for t in (type(value), cls))
+    if path == type_name(cls):
+        msg = f"{type_name(cls)}: got {other}, needs an object of {wanted}"
+        raise TypeError(msg)
+    raise MessageError(path, f"{other}, needs {wanted}")
+
+
+def given_type(value: object) -> str:
+    """Return what an error calls an object: the ROS name of a message, or value and type."""
+    return getattr(type(value), "__ros_type__", "") or given(value)
+
+
+def messages(
+    type_: FieldType, take: Callable[..., Any], values: Any, path: str, field: str
+) -> list[Any]:
+    """Return copies of a list of messages."""
+    values = listed(type_, values, path + field)
+    try:
+        return [take(value) for value in values]
+    except (MessageError, TypeError):
+        for index, value in enumerate(values):  # again, to find the one and name it
+            take(value, f"{path}{field}[{index}]")
+        raise
+
+
+def strings(type_: FieldType, values: Any, path: str, field: str) -> list[str]:
+    """Return a copy of a list of strings."""
+    if values.__class__ is list and type_.string_bound is None:
+        try:
+            usual = "".join(values).isascii()  # at C speed, and TypeError for what is no str
+        except TypeError:
+            usual = False
+        if usual:
+            check_length(type_, len(values), path + field)
+            return values[:]
+    return fit(type_, values, path + field)  # type: ignore[no-any-return] # a list
+
+
+def frozen_copy(array: Any) -> Any:
+    """Return an array that cannot change: itself if it is marked so, else a marked copy."""
+    flags = array.flags
+    if not flags.writeable:
+        return array
+    array = array.copy()
+    array.flags.writeable = False
+    return array
+
+
+def fixed_bytes(value: bytes | bytearray | memoryview) -> bytes | memoryview:
+    """Return bytes that cannot change: themselves if they are read-only, else a copy."""
+    if isinstance(value, bytearray) or (isinstance(value, memoryview) and not value.readonly):
+        return bytes(value)
+    return value

@@ -1,0 +1,73 @@
+"""Whether a parameter fits its descriptor; if not, why, in rclpy's words."""
+
+from __future__ import annotations
+
+import math
+
+from aionode.interfaces.rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ParameterDescriptor,
+)
+from aionode.parameter._value import Parameter, ParameterType
+
+__all__ = ["descriptor_violation", "type_violation"]
+
+REL_TOL = 1e-6  # how near to a step or to an end of its range a float must be
+
+
+def descriptor_violation(parameter: Parameter, descriptor: ParameterDescriptor) -> str | None:
+    """Return why a value is out of the descriptor's range, or None if it is not."""
+    if parameter.type_ is ParameterType.INTEGER and descriptor.integer_range:
+        return integer_violation(parameter, descriptor.integer_range[0])
+    if parameter.type_ is ParameterType.DOUBLE and descriptor.floating_point_range:
+        return float_violation(parameter, descriptor.floating_point_range[0])
+    return None
+
+
+def type_violation(
+    parameter: Parameter, descriptor: ParameterDescriptor, *, declared: bool
+) -> str | None:
+    """Return why a value's type is not the descriptor's, or None if it is."""
+    if descriptor.dynamic_typing:
+        return None
+    if parameter.type_ is ParameterType.NOT_SET:
+        return "Static parameter cannot be undeclared" if declared else None
+    if parameter.type_ == descriptor.type:
+        return None
+    expected = ParameterType(descriptor.type).name
+    return f"Wrong parameter type, expected 'Type.{expected}' got 'Type.{parameter.type_.name}'"
+
+
+def integer_violation(parameter: Parameter, limits: IntegerRange) -> str | None:
+    """Return why an int is not in its range, or None if it is."""
+    low, high = sorted((limits.from_value, limits.to_value))
+    value: int = parameter.value
+    if value in {low, high}:
+        return None  # both ends count, even where no step leads to the upper one
+    if not low < value < high:
+        return f"Parameter {parameter.name} out of range. Min: {low}, Max: {high}, value: {value}"
+    if limits.step and (value - low) % limits.step:
+        return (
+            f"The parameter value for {parameter.name} is not a valid step. "
+            f"Min: {low}, max: {high}, value: {value}, step: {limits.step}"
+        )
+    return None
+
+
+def float_violation(parameter: Parameter, limits: FloatingPointRange) -> str | None:
+    """Return why a float is not in its range, or None if it is."""
+    low, high = sorted((limits.from_value, limits.to_value))
+    value: float = parameter.value
+    if math.isclose(value, low, rel_tol=REL_TOL) or math.isclose(value, high, rel_tol=REL_TOL):
+        return None
+    if not low < value < high:
+        return f"Parameter {parameter.name} out of range Min: {low}, Max: {high}, value: {value}"
+    if limits.step:
+        nearest = low + round((value - low) / limits.step) * limits.step
+        if not math.isclose(nearest, value, rel_tol=REL_TOL):
+            return (
+                f"The parameter value for {parameter.name} is not close enough to a valid step. "
+                f"Min: {low}, max: {high}, value: {value}, step: {limits.step}"
+            )
+    return None

@@ -1,0 +1,119 @@
+"""What the six parameter services of a node answer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from aionode.errors import ParameterNotDeclaredException, ParameterUninitializedException
+from aionode.interfaces.rcl_interfaces import srv
+from aionode.interfaces.rcl_interfaces.msg import Parameter as ParameterMsg
+from aionode.interfaces.rcl_interfaces.msg import SetParametersResult
+from aionode.parameter._store import ParameterStore
+from aionode.parameter._value import Parameter
+
+__all__ = ["ParameterService", "parameter_services"]
+
+
+class ParameterService(NamedTuple):
+    """One service: make it with ``node.create_service(srv_type, f"~/{name}", callback)``.
+
+    Attributes:
+        name: Its name below the node.
+        srv_type: Its type.
+        callback: What answers a request.
+    """
+
+    name: str
+    srv_type: Any
+    callback: Callable[[Any, Any], Any]
+
+
+def parameter_services(store: ParameterStore) -> list[ParameterService]:
+    """Return the services through which others read and set the parameters of a node."""
+    answers = Answers(store)
+    return [
+        ParameterService("describe_parameters", srv.DescribeParameters, answers.describe),
+        ParameterService("get_parameters", srv.GetParameters, answers.get_values),
+        ParameterService("get_parameter_types", srv.GetParameterTypes, answers.get_types),
+        ParameterService("list_parameters", srv.ListParameters, answers.list_names),
+        ParameterService("set_parameters", srv.SetParameters, answers.set_each),
+        ParameterService(
+            "set_parameters_atomically", srv.SetParametersAtomically, answers.set_atomically
+        ),
+    ]
+
+
+class Answers:
+    """The callbacks of the services.
+
+    If one of several names is undeclared, reading answers with an empty list: there is no other
+    way in these services to say so.
+    """
+
+    def __init__(self, store: ParameterStore) -> None:
+        self.store = store
+
+    def describe(
+        self, request: srv.DescribeParameters.Request, response: srv.DescribeParameters.Response
+    ) -> srv.DescribeParameters.Response:
+        """Answer describe_parameters."""
+        try:
+            response.descriptors = self.store.describe_parameters(request.names)
+        except ParameterNotDeclaredException:
+            response.descriptors = []
+        return response
+
+    def get_values(
+        self, request: srv.GetParameters.Request, response: srv.GetParameters.Response
+    ) -> srv.GetParameters.Response:
+        """Answer get_parameters."""
+        try:
+            parameters = self.store.get_parameters(request.names)
+        except (ParameterNotDeclaredException, ParameterUninitializedException):
+            parameters = []
+        response.values = [parameter.get_parameter_value() for parameter in parameters]
+        return response
+
+    def get_types(
+        self, request: srv.GetParameterTypes.Request, response: srv.GetParameterTypes.Response
+    ) -> srv.GetParameterTypes.Response:
+        """Answer get_parameter_types."""
+        try:
+            response.types = bytes(self.store.get_parameter_types(request.names))
+        except ParameterNotDeclaredException:
+            response.types = b""
+        return response
+
+    def list_names(
+        self, request: srv.ListParameters.Request, response: srv.ListParameters.Response
+    ) -> srv.ListParameters.Response:
+        """Answer list_parameters."""
+        response.result = self.store.list_parameters(request.prefixes, request.depth)
+        return response
+
+    def set_each(
+        self, request: srv.SetParameters.Request, response: srv.SetParameters.Response
+    ) -> srv.SetParameters.Response:
+        """Answer set_parameters: each for itself, in order."""
+        response.results = [self._set([each]) for each in request.parameters]
+        return response
+
+    def set_atomically(
+        self,
+        request: srv.SetParametersAtomically.Request,
+        response: srv.SetParametersAtomically.Response,
+    ) -> srv.SetParametersAtomically.Response:
+        """Answer set_parameters_atomically: all or none."""
+        response.result = self._set(request.parameters)
+        return response
+
+    def _set(self, messages: list[ParameterMsg]) -> SetParametersResult:
+        try:
+            parameters = [Parameter.from_parameter_msg(message) for message in messages]
+        except ValueError as error:  # a type that there is not
+            return SetParametersResult(successful=False, reason=str(error))
+        try:
+            return self.store.set_parameters_atomically(parameters)
+        except ParameterNotDeclaredException as error:
+            return SetParametersResult(successful=False, reason=str(error))

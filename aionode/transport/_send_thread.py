@@ -1,0 +1,235 @@
+"""Sending what may block, from threads, so that the event loop never does."""
+
+from __future__ import annotations
+
+import asyncio
+import atexit
+import threading
+import weakref
+from collections import deque
+from collections.abc import Callable
+from queue import SimpleQueue
+from typing import TYPE_CHECKING, Final
+
+from aionode.transport._loop_waker import ThreadsafeQueue
+
+if TYPE_CHECKING:
+    from aionode.transport._loop_waker import LoopWaker
+
+__all__ = ["SendQueue", "SendThread"]
+
+
+Job = Callable[[], None]
+
+EXIT_S: Final = 1.0
+"""How long the end of the process waits for threads that are sending."""
+
+
+class Worker:
+    """One thread and its jobs.
+
+    Attributes:
+        stopped: Whether the jobs that wait are left out.
+        thread: The thread; Python does not wait for it at its end, but `end_all` does for a while.
+    """
+
+    def __init__(self, name: str) -> None:
+        self.stopped = False
+        self._jobs: SimpleQueue[Job | None] = SimpleQueue()
+        # Written by the loop only and by the thread only; the loop compares them.
+        self._put = 0
+        self._done = 0
+        self.thread = threading.Thread(target=self._run, name=name, daemon=True)
+        workers.add(self)
+        self.thread.start()
+
+    @property
+    def busy(self) -> bool:
+        """Whether a job waits or runs."""
+        return self._put != self._done
+
+    def submit(self, job: Job) -> None:
+        """Run `job` after those before it."""
+        self._put += 1
+        self._jobs.put(job)
+
+    def end(self) -> None:
+        """Let the thread end after its jobs."""
+        self._jobs.put(None)
+
+    def _run(self) -> None:
+        while (job := self._jobs.get()) is not None:
+            if not self.stopped:
+                job()
+            self._done += 1
+
+
+workers: weakref.WeakSet[Worker] = weakref.WeakSet()
+
+
+@atexit.register
+def end_all() -> None:
+    """Let no thread be inside Zenoh while the interpreter ends: that would abort the process."""
+    running = [worker for worker in workers if worker.thread.is_alive()]
+    for worker in running:
+        worker.stopped = True
+        worker.end()
+    for worker in running:
+        worker.thread.join(EXIT_S / len(running))
+
+
+class SendThread:
+    """One thread that runs jobs in order. It is started by the first job.
+
+    Args:
+        name: Name of the thread.
+        waker: Wakes the loop when a job is done that somebody waits for.
+    """
+
+    def __init__(self, name: str, waker: LoopWaker) -> None:
+        self._name = name
+        self._worker: Worker | None = None
+        self._waker = waker
+
+    @property
+    def busy(self) -> bool:
+        """Whether a job waits or runs."""
+        return self._worker is not None and self._worker.busy
+
+    def submit(self, job: Job) -> None:
+        """Run `job` after those before it. It must not raise."""
+        if self._worker is None:
+            self._worker = Worker(self._name)
+        self._worker.submit(job)
+
+    def send_queue(
+        self, limit: int, *, keep_all: bool, lost: Callable[[int], None] | None = None
+    ) -> SendQueue:
+        """Return a bounded queue that this thread empties."""
+        return SendQueue(self, self._waker, limit, keep_all=keep_all, lost=lost)
+
+    def close(self) -> None:
+        """Let the thread end after the jobs that it has; returns at once."""
+        worker, self._worker = self._worker, None
+        if worker is not None:
+            worker.end()
+
+    def abandon(self) -> None:
+        """Let the thread end after the job that it is in; returns at once."""
+        if self._worker is not None:
+            self._worker.stopped = True
+        self.close()
+
+    async def flush(self) -> None:
+        """Wait until the jobs so far are done and the thread has ended; the next starts another.
+
+        Cancelling stops the wait only: the thread still ends after its jobs.
+        """
+        worker = self._worker
+        if worker is None:
+            return
+        ended = asyncio.Event()
+        queue: ThreadsafeQueue[None] = ThreadsafeQueue(self._waker, lambda _: ended.set())
+        worker.submit(lambda: queue.put(None))
+        self.close()
+        await ended.wait()
+
+
+class SendQueue:
+    """A bounded queue of sends, in order.
+
+    Args:
+        send_thread: The thread that sends.
+        waker: Wakes the loop when everything was sent.
+        limit: How many sends wait at most.
+        keep_all: Whether a full queue has no room, or else drops its oldest.
+        lost: Called with how many were dropped.
+
+    Attributes:
+        dropped: How many sends were dropped.
+        sent: How many have left the queue.
+    """
+
+    def __init__(
+        self,
+        send_thread: SendThread,
+        waker: LoopWaker,
+        limit: int,
+        *,
+        keep_all: bool,
+        lost: Callable[[int], None] | None = None,
+    ) -> None:
+        self.dropped = 0
+        self._send_thread = send_thread
+        self._limit = limit
+        self._keep_all = keep_all
+        self._lost = lost
+        self._waiting: deque[Callable[[], None]] = deque()
+        # Written by the loop only and by the thread only; the loop compares them.
+        self._put = 0
+        self.sent = 0
+        self._drained: list[asyncio.Future[None]] = []
+        self._queue: ThreadsafeQueue[None] = ThreadsafeQueue(waker, self._wake, limit=1)
+
+    def __len__(self) -> int:
+        return self._put - self.sent
+
+    def put(self, send: Callable[[], None]) -> None:
+        """Have `send` called in the thread; a full queue drops its oldest unless it keeps all."""
+        if not self._keep_all and len(self._waiting) >= self._limit:
+            try:
+                self._waiting.popleft()
+            except IndexError:  # the thread was faster
+                pass
+            else:
+                self._waiting.append(send)  # and takes the place, and the job, of the oldest
+                self._note_dropped(1)
+                return
+        self._put += 1
+        self._waiting.append(send)
+        self._send_thread.submit(self._send)
+
+    def _note_dropped(self, count: int) -> None:
+        self.dropped += count
+        if self._lost is not None:
+            self._lost(count)
+
+    def has_room(self) -> bool:
+        """Whether one more can be put without dropping any."""
+        return len(self) < self._limit
+
+    async def drain(self) -> None:
+        """Wait until everything was sent. Cancelling is safe."""
+        while len(self):
+            waiter = asyncio.get_running_loop().create_future()
+            self._drained.append(waiter)
+            if len(self):  # the thread looks at the list after it counts, so one of both sees it
+                await waiter
+            else:
+                self._wake(None)
+
+    def abandon(self) -> None:
+        """Drop, and count, what waits."""
+        count = len(self._waiting)
+        self._waiting.clear()
+        if count:
+            self._note_dropped(count)
+
+    def _send(self) -> None:
+        try:
+            send = self._waiting.popleft()
+        except IndexError:  # it was abandoned
+            send = None
+        try:
+            if send is not None:
+                send()
+        finally:
+            self.sent += 1
+            if self._drained and not len(self):
+                self._queue.put(None)
+
+    def _wake(self, _: None) -> None:
+        waiters, self._drained = self._drained, []
+        for waiter in waiters:
+            if not waiter.done():
+                waiter.set_result(None)

@@ -1,0 +1,216 @@
+"""Where processes of one user on one host meet: sockets in a folder that only the user enters."""
+
+from __future__ import annotations
+
+import os
+import socket
+import stat
+import struct
+import sys
+import tempfile
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import xxhash
+
+from aionode.clock import S_TO_NS, MachineTime
+from aionode.errors import TransportError
+from aionode.transport.ipc._protocol import VERSION
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+__all__ = ["Advertisement", "Listener", "available", "host_id", "is_own_user", "socket_folder"]
+
+BACKLOG: Final = 64
+CREDENTIALS: Final = struct.Struct("3i")
+NEW_S: Final = 10
+"""After this time, in seconds, a socket that is still being made has lost its process."""
+
+BOOT_ID: Final = Path("/proc/sys/kernel/random/boot_id")
+
+
+def available() -> bool:
+    """Whether this system has what a link needs: Unix sockets, credentials, sealed memory."""
+    return (
+        sys.platform == "linux"
+        and hasattr(socket, "SO_PEERCRED")
+        and hasattr(os, "memfd_create")
+        and BOOT_ID.exists()
+    )
+
+
+def host_id() -> str:
+    """Return what tells this host from others, until it starts anew."""
+    return xxhash.xxh3_64_hexdigest(BOOT_ID.read_bytes())
+
+
+class Advertisement(NamedTuple):
+    """What a context announces so that others can link to it."""
+
+    participant: str
+    version: int
+    host: str
+    uid: int
+
+    @classmethod
+    def own(cls, participant: str) -> Advertisement:
+        """Return the beacon of a context in this process."""
+        return cls(participant, VERSION, host_id(), os.getuid())
+
+    def text(self) -> str:
+        """Return it as the end of a key: chunks without wildcards."""
+        return f"{self.participant}/link/{self.version}/{self.host}/{self.uid}"
+
+    @classmethod
+    def parse(cls, text: str) -> Advertisement | None:
+        """Return what `text` made, or None for anything else."""
+        chunks = text.split("/")
+        if len(chunks) != 5 or chunks[1] != "link":
+            return None
+        participant, _, version, host, uid = chunks
+        numbers = all(n.isascii() and n.isdigit() and len(n) <= 10 for n in (version, uid))
+        # It becomes part of a path.
+        hexadecimal = set(participant) <= set("0123456789abcdef") and 0 < len(participant) <= 32
+        return cls(participant, int(version), host, int(uid)) if numbers and hexadecimal else None
+
+    def is_near(self, other: Advertisement) -> bool:
+        """Whether the two can be linked."""
+        return self[1:] == other[1:] and self.participant != other.participant
+
+
+def socket_folder(environ: Mapping[str, str]) -> Path:
+    """Return the folder of this user's sockets, made if need be.
+
+    Raises:
+        TransportError: it cannot be made, or others can enter it.
+    """
+    runtime = environ.get("XDG_RUNTIME_DIR")
+    if runtime:
+        folder = Path(runtime) / "aionode"
+    else:
+        folder = Path(tempfile.gettempdir()) / f"aionode-{os.getuid()}"
+    try:
+        with suppress(FileExistsError):
+            folder.mkdir(mode=0o700)
+        found = folder.lstat()
+    except OSError as error:
+        raise TransportError(f"link: {folder} cannot be used: {error}") from error
+    if (
+        not stat.S_ISDIR(found.st_mode)
+        or found.st_uid != os.getuid()
+        or stat.S_IMODE(found.st_mode) & 0o077
+    ):
+        raise TransportError(
+            f"link: {folder} is not a folder of this user's alone; remove it, or set "
+            "XDG_RUNTIME_DIR to a folder that is"
+        )
+    return folder
+
+
+def is_own_user(sock: socket.socket) -> bool:
+    """Whether a process of this user is at the other end."""
+    data = sock.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, CREDENTIALS.size)
+    _, uid, _ = CREDENTIALS.unpack(data)
+    return bool(uid == os.getuid())
+
+
+class Listener:
+    """The socket of one context, where others find it by its id.
+
+    Args:
+        folder: As `socket_folder` returns it.
+        participant: Id of the context.
+
+    Raises:
+        TransportError: the socket cannot be made.
+    """
+
+    def __init__(self, folder: Path, participant: str) -> None:
+        self._folder = folder
+        self._path = folder / f"{participant}.sock"
+        self._remove_dead()
+        self.sock = new_socket()
+        temporary = folder / f"{participant}.new"
+        try:
+            self.sock.bind(os.fspath(temporary))
+            self.sock.listen(BACKLOG)
+            # Under its name only when it listens, or another process would take it for dead.
+            temporary.rename(self._path)
+        except OSError as error:
+            self.sock.close()
+            with suppress(OSError):
+                temporary.unlink()
+            raise TransportError(f"link: no socket in {folder}: {error}") from error
+
+    def accept(self) -> socket.socket | None:
+        """Return the connection of another process of this user, if one waits.
+
+        Raises:
+            OSError: no descriptor is left.
+        """
+        try:
+            sock, _ = self.sock.accept()
+        except (BlockingIOError, ConnectionAbortedError):
+            return None
+        sock.setblocking(False)
+        return checked(sock)
+
+    def dial(self, participant: str) -> socket.socket | None:
+        """Return a connection to another context; None if there is none, or it is a stranger's."""
+        sock = new_socket()
+        try:
+            sock.connect(os.fspath(self._folder / f"{participant}.sock"))
+        except OSError:
+            sock.close()
+            return None
+        return checked(sock)
+
+    def close(self) -> None:
+        """Listen no longer."""
+        self.sock.close()
+        with suppress(OSError):
+            self._path.unlink()
+
+    def _remove_dead(self) -> None:
+        """Remove the sockets of processes that were killed."""
+        for path in self._folder.glob("*.new"):
+            with suppress(OSError):  # somebody else was faster
+                # A socket has this name until it listens, which takes no time at all.
+                age_ns = MachineTime().system_ns() - path.lstat().st_mtime_ns
+                if age_ns > NEW_S * S_TO_NS:
+                    path.unlink()
+        for path in self._folder.glob("*.sock"):
+            probe = new_socket()
+            try:
+                probe.connect(os.fspath(path))
+            except ConnectionRefusedError:
+                with suppress(OSError):
+                    path.unlink()
+            except OSError:
+                pass  # somebody is there, but busy
+            finally:
+                probe.close()
+
+
+def new_socket() -> socket.socket:
+    """Return a Unix socket that does not block.
+
+    Raises:
+        TransportError: no descriptor is left.
+    """
+    try:
+        sock = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    except OSError as error:
+        raise TransportError(f"link: no socket: {error}") from error
+    sock.setblocking(False)
+    return sock
+
+
+def checked(sock: socket.socket) -> socket.socket | None:
+    """Return `sock`, or close it if a stranger is at the other end."""
+    if is_own_user(sock):
+        return sock
+    sock.close()
+    return None

@@ -1,0 +1,232 @@
+"""Publishers with two ways to each subscription: here it is decided which one a message takes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from aionode.graph import EndpointKind
+from aionode.qos import ReliabilityPolicy, depth_of, keeps_all
+from aionode.transport.base import Writer
+from aionode.transport.ipc import _protocol as protocol
+from aionode.transport.ipc._protocol import BufferRef, Kind
+from aionode.transport.ipc._send_queue import DATA, IpcSendQueue, RemoteSubscription
+from aionode.transport.ipc._shared_memory import SHARED_FROM
+from aionode.wire import cdr
+from aionode.wire.cdr._layout import has_views
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from aionode.graph import EndpointInfo
+    from aionode.transport.base import SampleInfo
+    from aionode.transport.ipc._connection import Connection
+    from aionode.transport.ipc._manager import LinkManager
+    from aionode.wire.cdr import Data
+
+__all__ = ["IpcWriter"]
+
+
+class IpcWriter(Writer):
+    """A publisher. Here it is decided which way each message takes.
+
+    Args:
+        manager: The links of this context.
+        endpoint: The publisher.
+        msg_type: Its messages.
+        zenoh: Its other way.
+    """
+
+    def __init__(
+        self, manager: LinkManager, endpoint: EndpointInfo, msg_type: type[Any], zenoh: Writer
+    ) -> None:
+        self.endpoint = endpoint
+        self.bounded = keeps_all(endpoint.qos)
+        self._manager = manager
+        self._gid = endpoint.gid
+        self._zenoh = zenoh
+        self._msg_type = msg_type
+        self._reliable = endpoint.qos.resolved().reliability is ReliabilityPolicy.RELIABLE
+        self._send_queues: dict[Connection, IpcSendQueue] = {}
+        self._sequence = 0
+        # Made when it is needed: most publishers of a node are never heard.
+        self._encode: Callable[[Any], bytes] | None = None
+        self._shares = False
+        # Whether Zenoh has to carry messages too: somebody is matched who has not switched.
+        self._needs_zenoh = True
+        self._asked_at = -1
+        self._dropped = 0
+        manager.writers[endpoint.gid] = self
+
+    @property
+    def active(self) -> bool:  # type: ignore[override]  # asked for each message, and so computed
+        """Whether a message written now would be used."""
+        return bool(self._send_queues) or self._zenoh.active
+
+    @property
+    def dropped(self) -> int:
+        """How many messages were dropped because a link was slow, or Zenoh."""
+        linked = sum(send_queue.dropped for send_queue in self._send_queues.values())
+        return self._dropped + linked + self._zenoh.dropped
+
+    def route_of(self, reader: EndpointInfo) -> str | None:
+        """Return ``link``, ``zenoh``, or both while somebody else still needs Zenoh."""
+        if not any(reader.gid in send_queue.readers for send_queue in self._send_queues.values()):
+            return self._zenoh.route_of(reader)
+        return "link and zenoh" if self.update() else "link"
+
+    @property
+    def linked(self) -> int:
+        """How many subscriptions get their messages over a link only."""
+        return sum(
+            reader.switched
+            for send_queue in self._send_queues.values()
+            for reader in send_queue.readers.values()
+        )
+
+    def write(self, msg: Any, sample_info: SampleInfo) -> None:
+        """Send `msg` each way that somebody needs."""
+        send_queues = self._send_queues
+        if send_queues:
+            encode = self._encode
+            if encode is None:
+                encode = self._encode = cdr.encoder(self._msg_type)
+                self._shares = has_views(self._msg_type)
+            sequence = sample_info.sequence
+            if self._shares:
+                self._write_parts(cdr.parts_encoder(self._msg_type)(msg), sample_info)
+            elif len(payload := encode(msg)) >= SHARED_FROM:
+                self._write_parts([payload], sample_info)
+            else:
+                # `protocol.pack` written out: a call less for each message.
+                head = protocol.HEADER.pack(
+                    len(payload), DATA, 0, protocol.MARK, sequence, sample_info.source_ns, self._gid
+                )
+                data = head + payload
+                for send_queue in tuple(send_queues.values()):  # one may turn out to be broken
+                    send_queue.send(sequence, data)
+            self._sequence = sequence
+        if self._needs_zenoh and self.update():
+            if self._zenoh.active:
+                self._zenoh.write(msg, sample_info)
+            self._sequence = sample_info.sequence
+
+    def _write_parts(self, parts: Sequence[Data], sample_info: SampleInfo) -> None:
+        """Send what may be large: in memory, once for all routes, if it is and there is some."""
+        pool = self._manager.pool
+        size = sum(map(len, parts))
+        buffer = pool.filled(parts, size) if size >= SHARED_FROM else None
+        payload = b"".join(parts) if buffer is None else BufferRef(buffer.number, size).pack()
+        in_shm = buffer is not None
+        data = protocol.pack(
+            DATA, sample_info.sequence, sample_info.source_ns, self._gid, payload, in_shm=in_shm
+        )
+        for send_queue in tuple(self._send_queues.values()):
+            send_queue.send(sample_info.sequence, data, buffer)
+        if buffer is not None:
+            pool.release(buffer)
+
+    def has_room(self) -> bool:
+        """Whether nobody would lose one more message."""
+        return all(send_queue.has_room() for send_queue in self._send_queues.values()) and (
+            not self._needs_zenoh or self._zenoh.has_room()
+        )
+
+    async def drain(self) -> None:
+        """Wait until `has_room`, and what was written has been handed on."""
+        while slow := [
+            send_queue for send_queue in self._send_queues.values() if not send_queue.is_done()
+        ]:
+            await slow[0].connection.progress()
+        await self._zenoh.drain()
+
+    def close(self) -> None:
+        """Withdraw the publisher."""
+        self._manager.writers.pop(self._gid, None)
+        self._zenoh.close()
+        gone = protocol.pack(Kind.GONE, 0, 0, self._gid)
+        for send_queue in self._send_queues.values():
+            send_queue.end(gone)
+            self._manager.keep(self._gid, send_queue)
+        self._send_queues.clear()
+
+    # What readers at the other end of a link want
+
+    def open(self, connection: Connection, reader: bytes, window: int, *, confirms: bool) -> None:
+        """Send to `reader` from the next message on."""
+        send_queue = self._send_queues.get(connection)
+        if send_queue is None:
+            send_queue = IpcSendQueue(
+                self.endpoint.name,
+                connection,
+                depth_of(self.endpoint.qos),
+                keep_all=self.bounded,
+            )
+            self._send_queues[connection] = send_queue
+        send_queue.add(
+            reader,
+            RemoteSubscription(
+                window if self.bounded else 0,  # who drops its oldest waits for nobody
+                0,
+                self._sequence,
+                confirms=confirms and self._reliable,
+            ),
+        )
+        connection.send(Kind.OPENED, self._sequence, self._gid, reader)
+        self.update()
+
+    def switched(self, connection: Connection, reader: bytes) -> None:
+        """Note that `reader` needs Zenoh no longer."""
+        send_queue = self._send_queues.get(connection)
+        if send_queue is not None and reader in send_queue.readers:
+            send_queue.readers[reader].switched = True
+            self._asked_at = -1
+            self.update()
+
+    def credit(self, connection: Connection, reader: bytes, used: int, confirmed: int) -> None:
+        """Note that `reader` has used `used` more messages, and has those up to a number."""
+        send_queue = self._send_queues.get(connection)
+        if send_queue is not None:
+            send_queue.credit(reader, used, confirmed)
+
+    def leave(self, connection: Connection, reader: bytes) -> None:
+        """Send to `reader` no longer."""
+        send_queue = self._send_queues.get(connection)
+        if send_queue is None:
+            return
+        send_queue.remove(reader)
+        if not send_queue.readers:
+            self._forget(connection)
+        self.update()
+
+    def broken(self, connection: Connection) -> Iterator[bytes]:
+        """Use `connection` no longer: it is closed; yield the frames that may not have arrived."""
+        send_queue = self._forget(connection)
+        self.update()
+        return iter(()) if send_queue is None else send_queue.unacked()
+
+    def _forget(self, connection: Connection) -> IpcSendQueue | None:
+        send_queue = self._send_queues.pop(connection, None)
+        if send_queue is not None:
+            self._dropped += send_queue.dropped
+        self._asked_at = -1
+        return send_queue
+
+    def update(self) -> bool:
+        """Find out whether somebody needs Zenoh: with a token, or a stranger without."""
+        manager = self._manager
+        if not self._send_queues or manager.has_unannounced_peers:
+            self._needs_zenoh = True
+        elif self._asked_at != manager.changes:
+            self._asked_at = manager.changes
+            switched = {
+                gid
+                for send_queue in self._send_queues.values()
+                for gid, reader in send_queue.readers.items()
+                if reader.switched
+            }
+            self._needs_zenoh = any(
+                other.gid not in switched
+                for other in manager.remote(EndpointKind.SUBSCRIPTION, self.endpoint.name)
+                if self.endpoint.matches(other)
+            )
+        return self._needs_zenoh

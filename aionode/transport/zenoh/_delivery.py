@@ -1,0 +1,68 @@
+"""What publishers, subscriptions and services on Zenoh share: limits, sizes, QoS."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import zenoh
+
+from aionode.message import fields
+from aionode.qos import DurabilityPolicy, ReliabilityPolicy
+from aionode.transport._zenoh_config import BLOCK_US
+from aionode.transport.zenoh._session_state import FLUSH_S
+
+if TYPE_CHECKING:
+    from aionode.qos import QoSProfile
+
+__all__ = [
+    "BLOCK",
+    "BULK_BYTES",
+    "DROP",
+    "FLUSH_NS",
+    "GIVEN_UP_NS",
+    "STILL_NS",
+    "has_buffers",
+    "is_reliable",
+    "is_transient",
+]
+
+BULK_BYTES = 60_000
+"""From this size on a message is sent from a thread: it takes more than one packet of Zenoh's."""
+
+FLUSH_NS = int(FLUSH_S * 1e9)
+"""How long what was published has to arrive after the publisher was destroyed."""
+
+STILL_NS = 500_000_000
+"""The same while nothing moves."""
+
+GIVEN_UP_NS = BLOCK_US * 900
+"""What took so long to send was given up by Zenoh."""
+
+BLOCK = zenoh.CongestionControl.BLOCK
+
+DROP = zenoh.CongestionControl.DROP
+
+
+def has_buffers(msg_type: type[Any]) -> bool:
+    """Whether messages hold sequences of numbers without a bound, at any depth.
+
+    Such messages may be large, and from ROS 2 Lyrical on their publishers use a second key.
+    """
+    for field in fields(msg_type):
+        kind = field.type
+        if kind.kind == "message":
+            if kind.nested is not None and has_buffers(kind.nested):
+                return True
+        elif kind.container == "unbounded" and kind.kind not in ("string", "wstring"):
+            return True
+    return False
+
+
+def is_reliable(qos: QoSProfile) -> bool:
+    """Whether lost messages are sent again."""
+    return qos.resolved().reliability is ReliabilityPolicy.RELIABLE
+
+
+def is_transient(qos: QoSProfile) -> bool:
+    """Whether late subscriptions get what was published before."""
+    return qos.durability is DurabilityPolicy.TRANSIENT_LOCAL

@@ -1,0 +1,261 @@
+"""The graph of others, from their liveliness tokens."""
+
+from __future__ import annotations
+
+import logging
+from typing import TYPE_CHECKING, Final
+
+import zenoh
+
+from aionode.clock import perf_ns
+from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
+from aionode.transport.zenoh._handlers import direct, translated
+from aionode.transport.zenoh._session_state import Declaration
+from aionode.wire._liveliness import PREFIX, node_token, parse_token
+
+if TYPE_CHECKING:
+    import asyncio
+
+    from aionode.transport.zenoh._session_state import SessionState
+
+__all__ = ["NodeDeclaration", "Watcher"]
+
+logger = logging.getLogger("aionode.transport.zenoh")
+
+
+CHECK_S: Final = 2.0
+"""How long the tokens may take to come; it takes a millisecond."""
+
+NAMED: Final = 5
+"""How many other domains are named in the log."""
+
+MAX_FOREIGN: Final = 100
+"""How many other domains are remembered, and how many tokens of each."""
+
+SHOWN: Final = 200
+"""How many characters of something unknown are shown."""
+
+
+class NodeDeclaration(Declaration):
+    """A node: nothing but its token."""
+
+    def __init__(self, state: SessionState, node: NodeInfo) -> None:
+        super().__init__(state, node_token(state.domain_id, node))
+        state.add(self)
+
+    def declare_data(self, session: zenoh.Session) -> None:
+        """Nodes send and receive nothing themselves."""
+
+    def undeclare_data(self) -> None:
+        """Nor is there anything to withdraw."""
+
+
+def ignore(_: zenoh.Reply) -> None:
+    """Do nothing with an answer."""
+
+
+class Check:
+    """What is there now, to be compared with what is known.
+
+    Attributes:
+        found: The tokens that were found.
+        changed: Those that have come or gone meanwhile, of which the answers may be older.
+        failed: Whether there may be more.
+    """
+
+    def __init__(self) -> None:
+        self.found: set[str] = set()
+        self.changed: set[str] = set()
+        self.failed = False
+
+
+class Watcher:
+    """Keeps the graph as the tokens of others say.
+
+    Attributes:
+        newest_ns: When the newest token came, by `perf_ns`.
+    """
+
+    def __init__(self, state: SessionState) -> None:
+        self.newest_ns = 0
+        self._state = state
+        self._check: Check | None = None
+        self._missing: set[str] = set()
+        self._known: dict[str, NodeInfo | EndpointInfo] = {}
+        # The tokens of nodes in other domains, as far as they are of interest.
+        self._foreign: dict[int, set[str]] = {}
+        self._tell_from = 1
+        self._warned = False
+        self._opening = True
+        self._subscriber: zenoh.Subscriber[None] | None = None
+        self._queue = state.queue(self._take)
+
+    def start(self, session: zenoh.Session) -> None:
+        """Begin to listen; what exists already comes at once."""
+        with translated("the graph"):
+            # Of all domains: a node that is not heard because of its domain can be named.
+            self._subscriber = session.liveliness().declare_subscriber(
+                f"{PREFIX}/**", direct(self._queue.put), history=True
+            )
+
+    def stop(self) -> None:
+        """Listen no longer, and forget what was known."""
+        if self._subscriber is not None:
+            self._subscriber.undeclare()
+            self._subscriber = None
+        self._queue.clear()
+        self._check = None
+        self._missing = set()
+        self._known.clear()
+        self._foreign.clear()
+        self._tell_from = 1
+        self._warned = False
+        self._opening = True
+
+    @property
+    def other_domains(self) -> frozenset[int]:
+        """The domains of nodes that are there and are not heard; a hundred at most."""
+        return frozenset(self._foreign)
+
+    def ask(self, session: zenoh.Session, answered: asyncio.Future[None]) -> None:
+        """Resolve `answered` when the tokens of everyone connected now are in the graph."""
+        # The answers themselves are the same tokens that the subscriber gets, and they may be older
+        # than a withdrawal that it has got since: only their end is of interest.
+        session.liveliness().get(
+            f"{PREFIX}/{self._state.domain_id}/**",
+            direct(ignore, lambda: self._queue.put(answered)),
+            timeout=10,
+        )
+
+    def check(self) -> None:
+        """Compare the graph with the tokens that are there, and mend it.
+
+        While connections break and are made anew Zenoh may tell in the wrong order that one token
+        has gone over the one and has come over the other. At the same time it may answer without
+        some that are there: one has gone if it is missing twice, and whose it is not connected.
+        """
+        session = self._state.session
+        if session is None or self._check is not None:
+            return
+        check = self._check = Check()
+        session.liveliness().get(
+            f"{PREFIX}/{self._state.domain_id}/**",
+            direct(self._queue.put, lambda: self._queue.put(check)),
+            timeout=CHECK_S,
+        )
+
+    def _take(self, item: zenoh.Sample | zenoh.Reply | Check | asyncio.Future[None]) -> None:
+        if isinstance(item, zenoh.Sample):
+            self.newest_ns = perf_ns()
+            key = str(item.key_expr)
+            if self._check is not None:
+                self._check.changed.add(key)
+            if item.kind == zenoh.SampleKind.PUT:
+                self._add(key)
+            else:
+                self._remove(key)
+        elif isinstance(item, zenoh.Reply):
+            if self._check is None:
+                return
+            if item.ok is None:
+                self._check.failed = True
+            else:
+                self._check.found.add(str(item.ok.key_expr))
+        elif isinstance(item, Check):
+            self._end_check(item)
+        else:
+            self.newest_ns = perf_ns()
+            if not item.done():
+                item.set_result(None)
+
+    def _end_check(self, check: Check) -> None:
+        if check is not self._check:
+            return
+        self._check = None
+        for key in check.found - check.changed:
+            self._add(key)
+        session = self._state.session
+        if check.failed or session is None:
+            return
+        missing = self._known.keys() - check.found - check.changed
+        connected = {str(transport.zid) for transport in session.info.transports()}
+        for key in missing & self._missing:
+            if key.split("/", 3)[2] not in connected:
+                self._remove(key)
+        self._missing = missing
+
+    def _add(self, key: str) -> None:
+        if key in self._known or key.split("/", 3)[2:3] == [self._state.participant]:
+            return
+        token = parse_token(key)
+        if token is None:
+            self._state.note_malformed(f"{PREFIX}/**", f"the liveliness token {key[:SHOWN]}")
+        elif token.domain_id != self._state.domain_id:
+            self._note_domain(token.domain_id, key)
+        elif self._state.graph is not None:
+            info = self._known[key] = token.info
+            if isinstance(info, NodeInfo):
+                self._state.graph.add_node(info)
+            else:
+                self._state.graph.add_endpoint(info)
+                self._tell_writers(info)
+
+    def _remove(self, key: str) -> None:
+        info = self._known.pop(key, None)
+        if info is None:
+            self._forget_domain(key)
+            return
+        if self._state.graph is None:
+            return
+        if isinstance(info, NodeInfo):
+            self._state.graph.remove_node(info)
+        else:
+            self._state.graph.remove_endpoint(info)
+            self._tell_writers(info)
+
+    def _forget_domain(self, key: str) -> None:
+        for domain_id, keys in list(self._foreign.items()):
+            keys.discard(key)
+            if not keys:
+                del self._foreign[domain_id]
+
+    def _tell_writers(self, info: EndpointInfo) -> None:
+        if info.kind is EndpointKind.SUBSCRIPTION:
+            for update in self._state.on_reader.get(info.name, ()):
+                update()
+
+    def note_domains(self) -> None:
+        """Say whether there are nodes of other domains, and from now on when more come."""
+        self._opening = False
+        self._tell_domains()
+
+    def _note_domain(self, domain_id: int, key: str) -> None:
+        keys = self._foreign.get(domain_id)
+        if keys is not None:
+            if len(keys) < MAX_FOREIGN:
+                keys.add(key)
+        elif len(self._foreign) < MAX_FOREIGN:
+            self._foreign[domain_id] = {key}
+            if not self._opening:
+                self._tell_domains()
+
+    def _tell_domains(self) -> None:
+        """Name a few of the other domains, and then only each time that there are many more.
+
+        A warning if there is nobody else: then the domain is likely to be a mistake.
+        """
+        count = len(self._foreign)
+        alone = not self._known
+        if count < self._tell_from and not (alone and count and not self._warned):
+            return
+        self._tell_from = 10 * max(count, 1)
+        self._warned = self._warned or alone
+        named = sorted(self._foreign)[:NAMED]
+        logger.log(
+            logging.WARNING if alone else logging.DEBUG,
+            "nodes of domain %s%s can be reached, but this is domain %d: they do not hear each "
+            "other; ROS_DOMAIN_ID or Context(domain_id=...) changes it",
+            ", ".join(map(str, named)),
+            f" and {count - len(named)} more" if count > len(named) else "",
+            self._state.domain_id,
+        )

@@ -1,0 +1,513 @@
+"""Publishers on Zenoh."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections import deque
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import zenoh
+from zenoh import ext
+
+from aionode.clock import perf_ns
+from aionode.errors import TransportError
+from aionode.graph import EndpointKind
+from aionode.qos import HistoryPolicy, depth_of
+from aionode.transport._reliability import WriterHistory
+from aionode.transport._send_thread import SendQueue, SendThread
+from aionode.transport.base import Writer
+from aionode.transport.zenoh._delivery import (
+    BLOCK,
+    BULK_BYTES,
+    DROP,
+    FLUSH_NS,
+    GIVEN_UP_NS,
+    STILL_NS,
+    has_buffers,
+    is_reliable,
+    is_transient,
+)
+from aionode.transport.zenoh._handlers import (
+    BULK_PRIORITY,
+    LOOP_PRIORITY,
+    PATIENT_PRIORITY,
+    direct,
+    reason,
+)
+from aionode.transport.zenoh._session_state import Declaration
+from aionode.wire import _acknack as acknack
+from aionode.wire import _attachment as attachment
+from aionode.wire import cdr
+from aionode.wire._acknack import Kind
+from aionode.wire._key_expression import data_key
+from aionode.wire._liveliness import endpoint_token
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.graph import EndpointInfo, Graph
+    from aionode.transport._reliability import Entry, ReaderProxy
+    from aionode.transport.base import SampleInfo
+    from aionode.transport.zenoh._session_state import SessionState
+    from aionode.wire._acknack import Submessage
+
+__all__ = ["ZenohWriter"]
+
+logger = logging.getLogger("aionode.transport.zenoh")
+
+# Sending
+
+
+class ZenohWriter(Declaration, Writer):
+    """A publisher as the subscriptions of others see it.
+
+    A message leaves in one of three ways, each with a queue of its own in Zenoh: from the loop,
+    which never waits; from the thread for large ones; or, for readers that do not acknowledge and
+    must not lose it, from a thread of this publisher that waits for them.
+    """
+
+    def __init__(self, state: SessionState, endpoint: EndpointInfo, msg_type: type[Any]) -> None:
+        super().__init__(state, endpoint_token(state.domain_id, endpoint))
+        self.endpoint = endpoint
+        qos = endpoint.qos
+        self._key = data_key(state.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
+        self._msg_type = msg_type
+        # Making a codec takes a while: not before it is needed, and not within a callback.
+        self._encode: Callable[[Any], bytes] | None = None
+        self._publisher: zenoh.Publisher | ext.AdvancedPublisher | None = None
+        self._matching: zenoh.MatchingListener[None] | None = None
+        self._matching_changed = state.queue(self._update_with, limit=1)
+        self._transient = is_transient(qos)
+        self._depth = depth_of(qos)
+        self._reliable = is_reliable(qos)
+        # What a publisher keeps for late readers before the session is open.
+        self._early: deque[tuple[bytes, bytes]] = deque(maxlen=self._depth)
+        self.active = self._transient
+        self.bounded = qos.history is HistoryPolicy.KEEP_ALL and self._reliable
+        # Who keeps messages for late readers leaves it to Zenoh to send them again.
+        self._history: WriterHistory | None = None
+        if self._reliable and not self._transient:
+            self._history = WriterHistory(
+                self._depth, keep_all=self.bounded, side=self, now_ns=perf_ns
+            )
+            state.acknowledgements.writers[self.gid] = self
+        # Large messages, and small ones behind them so that the order stays.
+        self._large = self._send_queue(state.bulk, keep_all=False)
+        self._bulk_only = self._transient and not self.bounded and has_buffers(msg_type)
+        # What waits for readers that do not acknowledge; once begun it stays so, for the order.
+        self._patient: SendQueue | None = None
+        self._patient_sender = SendThread("aionode-patient", state.waker)
+        self._patient_publisher: zenoh.Publisher | None = None
+        self._drained: list[asyncio.Future[None]] = []
+        self._dropped = 0
+        self._given_up = state.queue(self.lost)
+        self._closed = False
+        self._ends_ns = 0  # when a publisher that lingers gives up
+        self._moved: tuple[int, ...] = ()
+        self._moved_ns = 0
+        state.own_gids.add(self.gid)
+        state.on_reader.setdefault(endpoint.name, []).append(self._update)
+        state.add(self)
+
+    def _send_queue(self, send_thread: SendThread, *, keep_all: bool) -> SendQueue:
+        lost = self.lost if self._reliable else self._count_lost
+        return send_thread.send_queue(self._depth, keep_all=keep_all, lost=lost)
+
+    def declare_data(self, session: zenoh.Session) -> None:
+        """Declare the publisher, and send what was kept."""
+        reliable = self._reliable
+        reliability = zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT
+        if self._transient:
+            priority = BULK_PRIORITY if self._bulk_only else LOOP_PRIORITY
+            self._publisher = ext.declare_advanced_publisher(
+                session,
+                self._key,
+                congestion_control=BLOCK if self.bounded else DROP,
+                priority=PATIENT_PRIORITY if self.bounded else priority,
+                reliability=reliability,
+                allowed_destination=zenoh.Locality.REMOTE,
+                cache=ext.CacheConfig(max_samples=self._depth),
+                publisher_detection=True,
+                # Samples are numbered, so that readers ask again for what is missing between two.
+                # No heartbeat, which would tell of a missing last one too: undeclaring waits for
+                # its task with the GIL held, and for 10 s if that task's thread needs the GIL for
+                # a callback just then (zenoh-python 1.10).
+                sample_miss_detection=ext.MissDetectionConfig(
+                    heartbeat=None, sporadic_heartbeat=None
+                )
+                if reliable
+                else None,
+            )
+            while self._early:
+                self._put(*self._early.popleft())
+        else:
+            self._publisher = session.declare_publisher(
+                self._key,
+                congestion_control=DROP,
+                priority=LOOP_PRIORITY,
+                reliability=reliability,
+                allowed_destination=zenoh.Locality.REMOTE,
+            )
+            self._matching = self._publisher.declare_matching_listener(
+                direct(self._matching_changed.put)
+            )
+        self._update()
+
+    def undeclare_data(self) -> None:
+        """Withdraw the publisher, as soon as what was published is sent or given up."""
+        self.linger()
+        if self not in self.state.lingering or self.state.session is None:
+            self.finish()
+
+    def linger(self) -> None:
+        """Give what was published some time to arrive."""
+        if self.is_done() or self in self.state.lingering or self._publisher is None:
+            return
+        now_ns = perf_ns()
+        self._ends_ns = now_ns + FLUSH_NS
+        self._moved_ns = now_ns
+        self._moved = ()
+        self.state.lingering[self] = None
+        self.state.acknowledgements.watch(self)
+
+    def is_done(self) -> bool:
+        """Whether nothing is left to send, or to be acknowledged."""
+        return (
+            (self._history is None or self._history.done)
+            and not len(self._large)
+            and (self._patient is None or not len(self._patient))
+        )
+
+    def finish(self) -> None:
+        """Withdraw the publisher, and count what was not sent."""
+        self.state.has_lingered(self)
+        if self._history is not None and (missing := self._history.give_up()):
+            self.lost(missing)
+        for send_queue in (self._large, self._patient):
+            if send_queue is not None:
+                send_queue.abandon()
+        matching, self._matching = self._matching, None
+        if matching is not None:
+            matching.undeclare()
+        self._withdraw()
+        self._wake()
+        self._update()
+        if self._closed:
+            self._forget()
+
+    def _withdraw(self) -> None:
+        """Undeclare: Zenoh's objects are used by one at a time, and a thread may be inside."""
+        publisher, self._publisher = self._publisher, None
+        patient, self._patient_publisher = self._patient_publisher, None
+        if self._patient is not None:
+            self._patient = None
+            if patient is not None:
+                self._patient_sender.submit(partial(withdraw, patient))
+            elif publisher is not None:  # it is the thread's own
+                self._patient_sender.submit(partial(withdraw, publisher))
+                publisher = None
+        self.state.send_threads.discard(self._patient_sender)
+        self._patient_sender.close()
+        if publisher is None:
+            return
+        if len(self._large):
+            self.state.bulk.submit(partial(withdraw, publisher))
+        else:
+            withdraw(publisher)
+
+    # Who listens
+
+    def _update_with(self, _: zenoh.MatchingStatus) -> None:
+        self._update()
+
+    def _update(self) -> None:
+        """Find out whether anybody listens, and who of them acknowledges."""
+        publisher, history, graph = self._publisher, self._history, self.state.graph
+        if self._transient:
+            if self._encode is None:
+                self._encode = cdr.encoder(self._msg_type)
+            return
+        self.active = isinstance(publisher, zenoh.Publisher) and bool(
+            publisher.matching_status.matching  # type: ignore[attr-defined]  # no bool, as the stub says
+        )
+        if history is not None and graph is not None and publisher is not None:
+            acknowledging, others = self._matched(graph)
+            # The token of a reader can come before Zenoh knows the way there: what is lost until
+            # then is sent again. Somebody without a token may listen too; beside readers that
+            # acknowledge, nothing is known of them.
+            self.active = self.active or bool(acknowledging)
+            history.others = others or not acknowledging
+            self._note_readers(history, acknowledging)
+        if self.active and self._encode is None:
+            self._encode = cdr.encoder(self._msg_type)
+
+    def _note_readers(self, history: WriterHistory, acknowledging: dict[bytes, str]) -> None:
+        """Let the history know who has come and gone."""
+        for gid, known in list(history.readers.items()):
+            if gid not in acknowledging and not known.away_ns:
+                history.remove(gid)
+        if not self._closed:
+            for gid, participant in acknowledging.items():
+                reader = history.readers.get(gid)
+                if reader is None or reader.away_ns:
+                    history.add(gid, participant)
+        self._progress()
+
+    def _matched(self, graph: Graph) -> tuple[dict[bytes, str], bool]:
+        """Return the readers that acknowledge, and whether others must not lose messages."""
+        able = self.state.acknowledgements.participants
+        acknowledging: dict[bytes, str] = {}
+        others = False
+        for reader in graph.endpoints(EndpointKind.SUBSCRIPTION, name=self.endpoint.name):
+            participant = reader.node.participant
+            if participant == self.state.participant or not self.endpoint.matches(reader):
+                continue
+            if participant not in able:
+                others = True
+            elif is_reliable(reader.qos):
+                if is_transient(reader.qos):
+                    others = True
+                else:
+                    acknowledging[reader.gid] = participant
+        return acknowledging, others
+
+    # Messages
+
+    def write(self, msg: Any, sample_info: SampleInfo) -> None:
+        """Send `msg`."""
+        encode = self._encode
+        if encode is None:
+            encode = self._encode = cdr.encoder(self._msg_type)
+        payload = encode(msg)
+        extra = attachment.pack(sample_info.sequence, sample_info.source_ns, self.gid)
+        history = self._history
+        if self._publisher is None:
+            if self._transient:
+                self._early.append((payload, extra))
+        elif history is None:
+            self._put(payload, extra)
+        else:
+            history.write(sample_info.sequence, payload, extra)
+            if history.entries:
+                self.state.acknowledgements.watch(self)
+
+    def put(self, payload: bytes, extra: bytes) -> None:
+        """Send a message to every reader."""
+        self._put(payload, extra)
+
+    def _put(self, payload: bytes, extra: bytes) -> None:
+        publisher = self._publisher
+        if publisher is None:
+            return
+        history = self._history
+        others = history is None or history.others
+        size = len(payload)
+        if (
+            self._patient is not None
+            or (others and self.bounded)
+            or (
+                others
+                and self._reliable
+                and not self._transient
+                and size < BULK_BYTES
+                and not self.state.burst.spend(size)
+            )
+        ):
+            self._put_patiently(publisher, payload, extra)
+        elif size >= BULK_BYTES or self._bulk_only or len(self._large):
+            self._large.put(lambda: self._send(publisher, payload, extra))
+        else:
+            try:
+                publisher.put(payload, attachment=extra)
+            except zenoh.ZError as error:
+                raise TransportError(f"{self._key}: {reason(error)}") from error
+
+    def _put_patiently(
+        self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
+    ) -> None:
+        """Send from the thread that waits for slow readers."""
+        if self._patient is None:
+            self.state.send_threads.add(self._patient_sender)
+            self._patient = self._send_queue(self._patient_sender, keep_all=self.bounded)
+            if not self._transient and self.state.session is not None:
+                self._patient_publisher = self.state.session.declare_publisher(
+                    self._key,
+                    congestion_control=BLOCK,
+                    priority=PATIENT_PRIORITY,
+                    reliability=zenoh.Reliability.RELIABLE,
+                    allowed_destination=zenoh.Locality.REMOTE,
+                )
+        patient = self._patient_publisher or publisher
+        self._patient.put(lambda: self._send_patiently(patient, payload, extra))
+
+    def _send_patiently(
+        self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
+    ) -> None:
+        """Send in the thread; Zenoh gives up after a while, and says so to nobody."""
+        began_ns = perf_ns()
+        try:
+            publisher.put(payload, attachment=extra)
+        except zenoh.ZError as error:
+            logger.debug("%s: not sent: %s", self._key, reason(error))
+        if perf_ns() - began_ns >= GIVEN_UP_NS:
+            self._given_up.put(1)
+
+    def _send(
+        self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
+    ) -> None:
+        """Send from a thread, where nobody can be told that the session was closed meanwhile."""
+        session = self.state.session
+        try:
+            if session is None or self._transient:
+                publisher.put(payload, attachment=extra)
+            else:
+                waits = self._reliable and self.state.is_preparing_shared_memory()
+                session.put(
+                    self._key,
+                    payload,
+                    attachment=extra,
+                    congestion_control=BLOCK if waits else DROP,
+                    priority=BULK_PRIORITY,
+                    allowed_destination=zenoh.Locality.REMOTE,
+                )
+        except zenoh.ZError as error:
+            logger.debug("%s: not sent: %s", self._key, reason(error))
+
+    def has_room(self) -> bool:
+        """Whether one more message can wait to be sent."""
+        if not self.bounded:
+            return True
+        return (self._history is None or self._history.has_room()) and (
+            self._patient is None or self._patient.has_room()
+        )
+
+    async def drain(self) -> None:
+        """Wait until there is room, and everything was handed to Zenoh."""
+        while self._history is not None and (self._history.unsent or not self.has_room()):
+            waiter = asyncio.get_running_loop().create_future()
+            self._drained.append(waiter)
+            self.state.acknowledgements.watch(self)
+            await waiter
+        if self._patient is not None:
+            await self._patient.drain()
+        await self._large.drain()
+
+    def _progress(self) -> None:
+        """Let those go on who wait for it."""
+        history = self._history
+        if self._drained and (history is None or not (history.unsent or not history.has_room())):
+            self._wake()
+
+    def _wake(self) -> None:
+        drained, self._drained = self._drained, []
+        for waiter in drained:
+            if not waiter.done():
+                waiter.set_result(None)
+
+    # What readers say, and are told
+
+    def answer(self, said: Submessage) -> None:
+        """Take an ACKNACK."""
+        if self._history is not None:
+            self._history.acknack(said.reader, said.first, said.ranges())
+            self._progress()
+            if self in self.state.lingering and self.is_done():
+                self.finish()
+
+    def tick(self) -> bool:
+        """Ask readers, and give up in the end; return whether to come again."""
+        history = self._history
+        again = history is not None and history.tick()
+        self._progress()
+        if self in self.state.lingering:
+            now_ns = perf_ns()
+            moved = (
+                0 if history is None else history.sent,
+                0 if history is None else sum(r.acked for r in history.readers.values()),
+                self._large.sent,
+                0 if self._patient is None else self._patient.sent,
+            )
+            if moved != self._moved:
+                self._moved, self._moved_ns = moved, now_ns
+            if self.is_done() or now_ns > min(self._ends_ns, self._moved_ns + STILL_NS):
+                self.finish()
+                return False
+            return True
+        return again
+
+    def heartbeat(self, reader: ReaderProxy, first: int, last: int) -> None:
+        """Tell a reader how far the messages go."""
+        self._say(Kind.HEARTBEAT, reader, first, last, self.state.participant.encode())
+
+    def gap(self, reader: ReaderProxy, first: int, last: int) -> None:
+        """Tell a reader that some will not come."""
+        self._say(Kind.GAP, reader, first, last)
+
+    def resend(self, reader: ReaderProxy, entry: Entry) -> None:
+        """Send a message again to one reader."""
+        fields = attachment.unpack_fields(entry.extra)
+        source_ns = 0 if fields is None else fields[1]
+        self._say(Kind.DATA, reader, entry.sequence, source_ns, entry.payload)
+
+    def _say(
+        self, kind: Kind, reader: ReaderProxy, first: int, last: int, rest: bytes = b""
+    ) -> None:
+        data = acknack.pack(kind, self.gid, reader.gid, first, last, rest)
+        say = self.state.acknowledgements.say
+        if len(data) < BULK_BYTES:
+            say(reader.participant, data)
+        else:  # each of its fragments may wait
+            self.state.bulk.submit(partial(say, reader.participant, data, BULK_PRIORITY))
+
+    def lost(self, count: int) -> None:
+        """Count dropped messages, and say so the first time."""
+        if not self._dropped:
+            logger.warning(
+                "%s: %d of the messages published here were dropped before every reader had them: "
+                "one is too slow, hangs or has gone; more of them are only counted, in the "
+                "publisher's stats.dropped. A greater depth keeps more of them, KEEP_ALL and "
+                "`await drain()` all",
+                self.endpoint.name,
+                count,
+            )
+        self._dropped += count
+
+    def _count_lost(self, count: int) -> None:
+        self._dropped += count
+
+    @property
+    def dropped(self) -> int:
+        """How many messages were dropped on their way, as far as that can be known."""
+        return self._dropped
+
+    def route_of(self, reader: EndpointInfo) -> str | None:
+        """Return ``zenoh`` for the subscriptions of others."""
+        return "zenoh" if reader.node.participant != self.state.participant else None
+
+    def close(self) -> None:
+        """Withdraw the publisher for good; what was published has some time to arrive."""
+        self._closed = True
+        super().close()
+        self._transient = False
+        if self not in self.state.lingering:
+            self._forget()
+            self._update()
+
+    def _forget(self) -> None:
+        self.state.own_gids.discard(self.gid)
+        self.state.acknowledgements.writers.pop(self.gid, None)
+        updates = self.state.on_reader.get(self.endpoint.name, [])
+        if self._update in updates:
+            updates.remove(self._update)
+            if not updates:
+                del self.state.on_reader[self.endpoint.name]
+
+
+def withdraw(publisher: zenoh.Publisher | ext.AdvancedPublisher) -> None:
+    """Undeclare a publisher, which an end of its session may have done already."""
+    try:
+        publisher.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
+    except zenoh.ZError as error:
+        logger.debug("%s: not undeclared: %s", publisher.key_expr, error)

@@ -1,0 +1,464 @@
+"""Servers and clients on Zenoh: a request is a query, a response its reply."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import zenoh
+
+from aionode.clock import perf_ns
+from aionode.errors import DecodeError, ServiceError
+from aionode.graph import EndpointKind
+from aionode.transport.base import Request, Requester, SampleInfo
+from aionode.transport.zenoh._handlers import CALL_PRIORITY, direct, translated
+from aionode.transport.zenoh._session_state import Declaration
+from aionode.transport.zenoh._subscription import NOBODY, sample_info_of
+from aionode.wire import _attachment as attachment
+from aionode.wire import cdr
+from aionode.wire._key_expression import data_key
+from aionode.wire._liveliness import endpoint_token
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.graph import EndpointInfo, Graph
+    from aionode.transport.base import Call, ReplyTo, Serve
+    from aionode.transport.zenoh._session_state import SessionState
+
+__all__ = ["ZenohRequester", "ZenohServer", "error_payload", "parse_error"]
+
+logger = logging.getLogger("aionode.transport.zenoh")
+
+FOREVER_S = 1e9
+"""Timeout of a request for the result of a goal, which may take any time."""
+
+LONG_S = 600.0
+"""Timeout of a request, as in ROS; whoever calls sets the limit that counts, and cancels."""
+
+SHORT_S = 30.0
+"""Timeout of the requests of a client that calls often."""
+
+OFTEN = 1_000
+"""So many calls in `LONG_S` are often. Zenoh remembers a query until its timeout, answered or not:
+some 700 bytes each."""
+
+AGAIN_S = (0.005, 0.03, 0.15)
+"""When a request is sent again that found no server though there is one.
+
+The token of a server can be seen shortly before requests find their way to it. What ends later than
+`AT_ONCE_NS` was received, and is not sent again.
+"""
+
+AT_ONCE_NS = 50_000_000
+
+ARRIVING_REQUESTS = 50_000
+"""How many requests wait for the loop at most, before the service counts and refuses them.
+
+One more ends the oldest, whose client is told that nothing will come.
+"""
+
+REMEMBERED_CLIENTS = 10_000
+
+FRESH_NS = 100_000_000
+"""A request that is no older, by its stamp, shows that its client lives."""
+
+
+def error_payload(error_type: str, error_text: str) -> bytes:
+    """Return an error as it goes to a client."""
+    return json.dumps({"type": error_type, "text": error_text}).encode()
+
+
+def parse_error(payload: bytes, service: str) -> ServiceError:
+    """Return the error that a server sent: ours with its type, or anybody's plain text."""
+    text = payload.decode(errors="replace")
+    try:
+        fields = json.loads(text)
+        error_text, error_type = str(fields["text"]), str(fields["type"])
+        (error_text + error_type).encode()  # JSON can hold half a surrogate pair; UTF-8 cannot
+    except (ValueError, TypeError, LookupError, RecursionError):
+        return ServiceError(service, text or "the server sent an error without a text")
+    return ServiceError(service, error_text, error_type)
+
+
+# Servers
+
+
+class ZenohServer(Declaration):
+    """A server as the clients of others see it."""
+
+    def __init__(
+        self,
+        state: SessionState,
+        endpoint: EndpointInfo,
+        srv_type: type[Any],
+        serve: Serve,
+    ) -> None:
+        super().__init__(state, endpoint_token(state.domain_id, endpoint))
+        self.endpoint = endpoint
+        self.key = data_key(state.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
+        self.srv_type = srv_type
+        self._serve = serve
+        self._queryable: zenoh.Queryable[None] | None = None
+        self._queue = state.queue(self._take, ARRIVING_REQUESTS)
+        self.unanswered: dict[tuple[bytes, int], ZenohRequest] = {}
+        self._clients: dict[bytes, str] = {}
+        state.cancellations.listeners[self.cancel] = None
+        state.add(self)
+
+    def declare_data(self, session: zenoh.Session) -> None:
+        """Declare the queryable."""
+        self._queryable = session.declare_queryable(
+            self.key,
+            direct(self._queue.put),
+            complete=True,
+            allowed_origin=zenoh.Locality.REMOTE,
+        )
+
+    def undeclare_data(self) -> None:
+        """Withdraw it, and end the calls that were not answered."""
+        queryable, self._queryable = self._queryable, None
+        if queryable is not None:
+            queryable.undeclare()
+        self._queue.clear()
+        for request in list(self.unanswered.values()):
+            request.drop()
+
+    def close(self) -> None:
+        """Withdraw the server for good."""
+        self.state.cancellations.listeners.pop(self.cancel, None)
+        super().close()
+
+    def cancel(self, gid: bytes, sequence: int) -> None:
+        """Note that a client has given a request up."""
+        request = self.unanswered.get((gid, sequence))
+        if request is not None:
+            request.cancelled = True
+
+    def _take(self, query: zenoh.Query) -> None:
+        sample_info = sample_info_of(query.attachment)
+        if sample_info is None:
+            if query.attachment is not None:
+                self.state.note_malformed(self.key, "an attachment")
+            sample_info = SampleInfo(NOBODY, 0, 0, True)
+        payload = query.payload
+        try:
+            message = cdr.decode(
+                self.srv_type.Request, b"" if payload is None else payload.to_bytes()
+            )
+        except DecodeError as error:
+            self.state.note_malformed(self.key, str(error))
+            problem = error_payload("DecodeError", str(error))
+            self.answer(query, sample_info, lambda: query.reply_err(problem), len(problem))
+        else:
+            if abs(self.state.now_ns() - sample_info.source_ns) < FRESH_NS:
+                self.state.peers.heard(self.participant_of(sample_info.gid))
+            self._serve(
+                ZenohRequest(message, sample_info, query, self), self.state.waker.inline_deadline_ns
+            )
+
+    def participant_of(self, client: bytes) -> str:
+        """Return the context of a client; one of its own for a client without a token."""
+        participant = self._clients.get(client)
+        if participant is None:
+            graph = self.state.graph
+            for one in (
+                ()
+                if graph is None
+                else graph.endpoints(EndpointKind.CLIENT, name=self.endpoint.name)
+            ):
+                if one.gid == client:
+                    participant = one.node.participant
+                    if len(self._clients) >= REMEMBERED_CLIENTS:
+                        self._clients.clear()
+                    self._clients[client] = participant
+                    break
+            else:
+                return client.hex()
+        return participant
+
+    def answer(
+        self,
+        query: zenoh.Query,
+        sample_info: SampleInfo,
+        reply: Callable[[], None] | None,
+        size_bytes: int,
+    ) -> None:
+        """End `query`, without waiting for a client that hangs."""
+        self.state.peers.send(
+            (self.participant_of(sample_info.gid),), size_bytes, lambda: answer(query, reply)
+        )
+
+
+def answer(query: zenoh.Query, reply: Callable[[], None] | None = None) -> None:
+    """End `query`, with a reply or without; nothing happens if its client has gone."""
+    try:
+        if reply is not None:
+            reply()
+        query.drop()
+    except zenoh.ZError as error:
+        logger.debug("%s: not answered: %s", query.key_expr, error)
+
+
+class ZenohRequest(Request):
+    """One request from another process."""
+
+    def __init__(
+        self, message: Any, sample_info: SampleInfo, query: zenoh.Query, server: ZenohServer
+    ) -> None:
+        self.message = message
+        self.sample_info = sample_info
+        self._query = query
+        self._server = server
+        self._id = (sample_info.gid, sample_info.sequence)
+        # Who sends no attachment has no number either; then the object itself is unique.
+        if self._id in server.unanswered or sample_info.gid == NOBODY:
+            self._id = (sample_info.gid, id(self))
+        server.unanswered[self._id] = self
+
+    def _finish(self) -> bool:
+        """Note that the request is done with; return whether it was not yet."""
+        return self._server.unanswered.pop(self._id, None) is not None
+
+    def reply(self, response: Any) -> None:
+        """Send the response, with the client's own number."""
+        payload = cdr.encoder(self._server.srv_type.Response)(response)
+        if not self._finish():
+            return
+        query = self._query
+        extra = attachment.pack(
+            self.sample_info.sequence, self._server.state.now_ns(), self.sample_info.gid
+        )
+        self._answer(lambda: query.reply(query.key_expr, payload, attachment=extra), len(payload))
+
+    def fail(self, error_type: str, error_text: str) -> None:
+        """Send an error; a ROS client logs it and goes on waiting."""
+        if self._finish():
+            payload = error_payload(error_type, error_text)
+            query = self._query
+            self._answer(lambda: query.reply_err(payload), len(payload))
+
+    def drop(self) -> None:
+        """End the query, which tells the client that nothing will come."""
+        if self._finish():
+            self._answer(None, 0)
+
+    def _answer(self, reply: Callable[[], None] | None, size_bytes: int) -> None:
+        self._server.answer(self._query, self.sample_info, reply, size_bytes)
+
+
+# Clients
+
+
+class ZenohRequester(Declaration, Requester):
+    """A client as the servers of others see it."""
+
+    def __init__(self, state: SessionState, endpoint: EndpointInfo, srv_type: type[Any]) -> None:
+        super().__init__(state, endpoint_token(state.domain_id, endpoint))
+        self.endpoint = endpoint
+        self.key = data_key(state.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
+        self.srv_type = srv_type
+        self.unanswered: set[ZenohCall] = set()
+        self._looked_at: tuple[Graph, int] | None = None
+        self._known: list[EndpointInfo] = []
+        self._window_ns = perf_ns()
+        self._window_calls = 0
+        state.add(self)
+
+    def declare_data(self, session: zenoh.Session) -> None:
+        """A client declares nothing but its token."""
+
+    def undeclare_data(self) -> None:
+        """End the calls under way: nothing can answer them any more."""
+        for call in list(self.unanswered):
+            call.end()
+
+    def timeout_s(self) -> float:
+        """Return the timeout of the next request."""
+        if self.endpoint.name.endswith("/_action/get_result"):
+            return FOREVER_S
+        now_ns = perf_ns()
+        if now_ns - self._window_ns > LONG_S * 1e9:
+            self._window_ns, self._window_calls = now_ns, 0
+        self._window_calls += 1
+        return LONG_S if self._window_calls <= OFTEN else SHORT_S
+
+    def _matched(self) -> list[EndpointInfo]:
+        graph = self.state.graph
+        if graph is None:
+            return []
+        if self._looked_at != (graph, graph.changes):
+            self._looked_at = (graph, graph.changes)
+            self._known = [
+                server
+                for server in graph.endpoints(EndpointKind.SERVER, name=self.endpoint.name)
+                if server.node.participant != self.state.participant
+                and self.endpoint.matches(server)
+            ]
+        return self._known
+
+    def participants(self) -> set[str]:
+        """Return the contexts of the servers."""
+        return {server.node.participant for server in self._matched()}
+
+    @property
+    def servers(self) -> int:
+        """How many servers of other contexts are matched."""
+        return len(self._matched())
+
+    def tell_cancelled(self, sequence: int) -> None:
+        """Tell the servers that a request need not be served."""
+        participants = self.participants()
+        self.state.cancellations.tell(participants, self.gid, sequence)
+
+    def send(self, request: Any, sample_info: SampleInfo, reply_to: ReplyTo) -> Call:
+        """Send `request` to every server of other contexts."""
+        payload = cdr.encoder(self.srv_type.Request)(request)
+        extra = attachment.pack(sample_info.sequence, sample_info.source_ns, self.gid)
+        call = ZenohCall(self, reply_to, sample_info.sequence)
+        session = self.state.session
+        if session is None:
+            call.refuse()
+            return call
+
+        call.send(session, payload, extra, self.timeout_s())
+        return call
+
+
+class ZenohCall:
+    """One call under way."""
+
+    def __init__(self, requester: ZenohRequester, reply_to: ReplyTo, sequence: int) -> None:
+        self._requester = requester
+        self._reply_to: ReplyTo | None = reply_to
+        self._sequence = sequence
+        self._token = zenoh.CancellationToken()
+        self._unreadable: ServiceError | None = None
+        self._send_again: Callable[[], None] | None = None
+        self._sent_ns = 0
+        self._attempts = 0
+        self._queue = requester.state.queue(self._take)
+        requester.unanswered.add(self)
+
+    def send(self, session: zenoh.Session, payload: bytes, extra: bytes, timeout_s: float) -> None:
+        """Send the request without waiting for a server that hangs; on the loop."""
+        self._send_again = partial(self.send, session, payload, extra, timeout_s)
+        requester = self._requester
+        requester.state.peers.send(
+            requester.participants(),
+            len(payload),
+            partial(self._get, session, payload, extra, timeout_s),
+        )
+
+    def _get(self, session: zenoh.Session, payload: bytes, extra: bytes, timeout_s: float) -> None:
+        """Send the request, unless it was given up meanwhile; on any thread."""
+        if self._reply_to is None:
+            return
+        self._sent_ns = perf_ns()
+        try:
+            session.get(
+                self._requester.key,
+                direct(self._queue.put, lambda: self._queue.put(None)),
+                target=zenoh.QueryTarget.ALL_COMPLETE,
+                consolidation=zenoh.ConsolidationMode.NONE,
+                congestion_control=zenoh.CongestionControl.BLOCK,
+                priority=CALL_PRIORITY,
+                timeout=timeout_s,
+                payload=payload,
+                attachment=extra,
+                allowed_destination=zenoh.Locality.REMOTE,
+                cancellation_token=self._token,
+            )
+        except zenoh.ZError as error:
+            logger.debug("%s: not sent: %s", self._requester.key, error)
+            self.refuse()
+
+    def refuse(self) -> None:
+        """End the call soon: it cannot be sent."""
+        self._queue.put(None)
+
+    def _take(self, reply: zenoh.Reply | None) -> None:
+        reply_to = self._reply_to
+        if reply_to is None:
+            return
+        if reply is None:
+            if not self._try_again():
+                self.end()
+            return
+        servers = self._requester.participants()
+        if len(servers) == 1:  # else it is not known which of them lives
+            self._requester.state.peers.heard(servers.pop())
+        sample = reply.ok
+        if sample is None:
+            error = reply.err
+            self._finish()
+            reply_to.fail(
+                parse_error(
+                    b"" if error is None else error.payload.to_bytes(),
+                    self._requester.endpoint.name,
+                )
+            )
+            return
+        try:
+            response = cdr.decode(self._requester.srv_type.Response, sample.payload.to_bytes())
+        except DecodeError as decode_error:
+            # Another server may answer in a better form; else the caller gets to know this.
+            self._requester.state.note_malformed(self._requester.key, str(decode_error))
+            self._unreadable = ServiceError(
+                self._requester.endpoint.name, f"the response is unreadable: {decode_error}"
+            )
+            return
+        self._finish()
+        reply_to.reply(
+            response, sample_info_of(sample.attachment) or SampleInfo(NOBODY, 0, 0, True)
+        )
+
+    def _try_again(self) -> bool:
+        """Send the request again if no server had it though there is one; return whether."""
+        if (
+            self._send_again is None
+            or self._unreadable is not None
+            or self._attempts == len(AGAIN_S)
+            or perf_ns() - self._sent_ns > AT_ONCE_NS
+            or not self._requester.servers
+        ):
+            return False
+        delay_s = AGAIN_S[self._attempts]
+        self._attempts += 1
+        asyncio.get_running_loop().call_later(delay_s, self._go_again)
+        return True
+
+    def _go_again(self) -> None:
+        if self._reply_to is None or self._send_again is None:
+            return
+        if self._requester.state.session is not None and self._requester.servers:
+            self._send_again()
+        else:
+            self.end()
+
+    def end(self) -> None:
+        """Note that nothing will come any more."""
+        reply_to = self._reply_to
+        self._finish()
+        if reply_to is None:
+            return
+        if self._unreadable is not None:
+            reply_to.fail(self._unreadable)
+        else:
+            reply_to.end()
+
+    def _finish(self) -> None:
+        self._reply_to = None
+        self._requester.unanswered.discard(self)
+
+    def cancel(self) -> None:
+        """Forget the call, and tell the servers, as far as they can be told."""
+        if self._reply_to is None:
+            return
+        self._finish()
+        with translated(self._requester.key):
+            self._token.cancel()
+        self._requester.tell_cancelled(self._sequence)

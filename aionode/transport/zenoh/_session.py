@@ -1,0 +1,384 @@
+"""Opening and closing a Zenoh session, without blocking the event loop."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+import os
+import select
+import socket
+import threading
+from contextlib import ExitStack, closing, contextmanager, suppress
+from dataclasses import replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Final, TypeVar
+
+import zenoh
+
+from aionode.clock import perf_ns
+from aionode.errors import ConfigurationError, TransportError
+from aionode.transport._zenoh_config import (
+    EVERYWHERE,
+    LOOPBACK,
+    DiscoveryRange,
+    network_from,
+    probed_ports,
+    router_settings,
+    session_settings,
+)
+from aionode.transport.zenoh._handlers import direct, reason
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping
+
+    from aionode.transport._loop_waker import ThreadsafeQueue
+    from aionode.transport._zenoh_config import Network
+
+__all__ = [
+    "ConnectionWatcher",
+    "answering_ports",
+    "close_session",
+    "open_router",
+    "open_session",
+    "run_in_own_thread",
+]
+
+logger = logging.getLogger("aionode.transport.zenoh")
+
+T = TypeVar("T")
+
+PROBE_S = 0.2
+"""How long a port on this machine may take to accept a connection; it takes 0.1 ms."""
+
+SPEAK_S = 0.5
+"""How long somebody may take to answer Zenoh's first message; it takes a millisecond."""
+
+TURN_S = 1.0
+"""How long others may take to open their sessions before this one goes ahead; each takes 10 ms."""
+
+TURN_POLL_S = 0.002
+"""How often the turn is asked for: in a thread, and only while many start at once."""
+
+FIRST_LINK_S = 1.0
+"""How long `open` waits for the first of those who accept connections; a frozen one never comes."""
+
+NEXT_LINK_S = 0.3
+"""How long it waits for each further one."""
+
+QUIET_S = 0.015
+"""For so long nobody new has come when everybody is there: the first ones introduce the others."""
+
+CLOSE_S = 0.8
+"""How long closing may hold its caller up. A frozen peer can take longer, and ends in the back."""
+
+
+INIT: Final = 1
+CLOSE: Final = 3
+KIND: Final = 0x1F
+"""Kinds of Zenoh's messages, and the bits of the first byte that say so."""
+
+INIT_SYN: Final = bytes([INIT, 9, 0xF1])
+"""How a session introduces itself: version 9, a peer whose id of 16 bytes follows."""
+
+
+async def run_in_own_thread(work: Callable[[], T], late: Callable[[T], object] | None = None) -> T:
+    """Run `work` in a thread that ends with it, and return its result.
+
+    Cancelling gives the result up, to `late` if there is one.
+    """
+    loop = asyncio.get_running_loop()
+    done: asyncio.Future[T] = loop.create_future()
+
+    def deliver(result: T | None, error: BaseException | None) -> None:
+        if error is None and done.cancelled() and late is not None:
+            threading.Thread(target=late, args=(result,)).start()
+        elif not done.done():
+            if error is None:
+                done.set_result(result)  # type: ignore[arg-type]  # there is one without an error
+            else:
+                done.set_exception(error)
+
+    def run() -> None:
+        result, error = None, None
+        try:
+            result = work()
+        except BaseException as raised:  # noqa: BLE001  # goes to whoever waits
+            error = raised
+        try:
+            loop.call_soon_threadsafe(deliver, result, error)
+        except RuntimeError:  # the loop was closed meanwhile
+            if error is None and late is not None:
+                late(result)  # type: ignore[arg-type]  # there is one without an error
+
+    # Python waits for it at its end: a thread inside Zenoh at that moment would abort the process.
+    thread = threading.Thread(target=run, name="aionode-zenoh")
+    thread.start()
+    try:
+        return await done
+    finally:
+        if done.done() and not done.cancelled():
+            thread.join()  # it has nothing left to do, and is gone when this returns
+
+
+def answering_ports(ports: Iterable[int]) -> list[int]:
+    """Return those ports of this machine that accept a connection."""
+    pending: dict[int, tuple[int, socket.socket]] = {}
+    answering = []
+    ends_ns = perf_ns() + int(PROBE_S * 1e9)
+    try:
+        for port in ports:
+            probe = socket.socket()
+            probe.setblocking(False)
+            pending[probe.fileno()] = (port, probe)
+            with suppress(BlockingIOError):
+                # Refused at once is as good as refused later: select() shows both.
+                probe.connect_ex((LOOPBACK, port))
+        while pending and (left_s := (ends_ns - perf_ns()) / 1e9) > 0:
+            # Windows tells of a refused connection in the third list.
+            _, writable, failed = select.select([], list(pending), list(pending), left_s)
+            for fd in {*writable, *failed}:
+                port, probe = pending.pop(fd)
+                if probe.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR) == 0:
+                    answering.append(port)
+                probe.close()
+    finally:
+        for _, probe in pending.values():
+            probe.close()
+    return answering
+
+
+def meeting(network: Network, answering: set[int]) -> tuple[Network, set[int]]:
+    """Return a network whose ports can be met on, and those of them that are taken.
+
+    Args:
+        network: What the context was told.
+        answering: Those of its ports that accept a connection; if Zenoh answers at none of the
+            meeting ports, these are removed, and spare ones where it does are added.
+    """
+    subnet = network.discovery_range is DiscoveryRange.SUBNET
+    address = EVERYWHERE if subnet else LOOPBACK
+    taken = {port for port in network.meeting_ports if not can_listen(address, port)}
+    if taken < set(network.meeting_ports):
+        return network, taken
+    if speaking_ports(taken):
+        return network, taken
+    answering -= taken
+    spare = network.spare_ports
+    spare_taken = {port for port in spare if not can_listen(address, port)}
+    named = ", ".join(map(str, network.meeting_ports))
+    met = speaking_ports(spare_taken)
+    if met or spare_taken < set(spare):
+        answering |= met
+        logger.info(
+            "other programs hold the ports %s, on which processes of this machine meet: they meet "
+            "on %s instead",
+            named,
+            ", ".join(map(str, spare)),
+        )
+    elif network.router_port not in answering:
+        logger.warning(
+            "other programs hold the ports %s, on which processes of this machine meet: nodes of "
+            "other processes will not be found without a router; `ss -ltnp` names the programs, "
+            "and AIONODE_MEETING_PORTS, with three free ports, makes all processes meet elsewhere",
+            ", ".join(map(str, (*network.meeting_ports, *spare))),
+        )
+    return replace(network, meeting_ports=network.meeting_ports + spare), taken | spare_taken
+
+
+def can_listen(address: str, port: int) -> bool:
+    """Whether nobody else has a port, listening or not."""
+    with socket.socket() as one:
+        if os.name == "posix":  # elsewhere it means something else
+            one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            one.bind((address, port))
+            one.listen()
+        except OSError:
+            return False
+    return True
+
+
+def speaking_ports(ports: Iterable[int]) -> set[int]:
+    """Return ports of this machine where Zenoh answers; those that do so first are enough."""
+    syn = INIT_SYN + os.urandom(16)
+    probes: dict[socket.socket, int] = {}
+    speaking: set[int] = set()
+    with ExitStack() as stack:
+        for port in ports:
+            with suppress(OSError):
+                probe = socket.create_connection((LOOPBACK, port), SPEAK_S)
+                probes[stack.enter_context(probe)] = port
+                probe.sendall(len(syn).to_bytes(2, "little") + syn)
+        ends_ns = perf_ns() + int(SPEAK_S * 1e9)
+        while probes and not speaking and (left_s := (ends_ns - perf_ns()) / 1e9) > 0:
+            for probe in select.select(list(probes), [], [], left_s)[0]:
+                port = probes.pop(probe)
+                with suppress(OSError):
+                    answer = probe.recv(3)
+                    if len(answer) == 3 and answer[2] & KIND in (INIT, CLOSE):
+                        speaking.add(port)
+    return speaking
+
+
+@contextmanager
+def one_at_a_time(port: int | None) -> Iterator[None]:
+    """Let the processes of this machine look for a free meeting port, and take it, in turn.
+
+    Two that look at the same moment would both want the first one; the loser would have none, and
+    not dial the winner either. Whoever holds the UDP port of this number has the turn: unlike a
+    file it belongs to no user, and goes with its process.
+    """
+    if port is None:
+        yield
+        return
+    with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as turn:
+        ends_ns = perf_ns() + int(TURN_S * 1e9)
+        while perf_ns() < ends_ns:
+            with suppress(OSError):
+                turn.bind((LOOPBACK, port))
+                break
+            threading.Event().wait(TURN_POLL_S)
+        yield
+
+
+def load_config(
+    network: Network,
+    settings: dict[str, Any],
+    participant: str | None = None,
+    last: Mapping[str, Any] = MappingProxyType({}),
+) -> zenoh.Config:
+    """Return Zenoh's own form of a configuration.
+
+    Args:
+        network: The file and the overrides.
+        settings: What takes the place of Zenoh's defaults.
+        participant: The id of the session.
+        last: What takes the place of everything else.
+
+    Raises:
+        ConfigurationError: the file or an override cannot be used; the text says why.
+    """
+    config = zenoh.Config()
+    if network.config_file is not None:
+        path = network.config_file.removeprefix("file://")
+        try:
+            config = zenoh.Config.from_file(path)
+        except zenoh.ZError as error:
+            fits = f"the path of a Zenoh configuration (JSON5) fits: {reason(error)}"
+            raise ConfigurationError(network.config_source, path, fits) from error
+    for key, value in settings.items():
+        config.insert_json5(key, json.dumps(value))
+    for key, text in network.overrides:
+        try:
+            config.insert_json5(key, text)
+        except zenoh.ZError as error:
+            fits = f"key paths and values of Zenoh's configuration fit: {reason(error)}"
+            raise ConfigurationError(network.override_source, f"{key}={text}", fits) from error
+    for key, value in last.items():
+        config.insert_json5(key, json.dumps(value))
+    if participant is not None:
+        config.insert_json5("id", json.dumps(participant))
+    return config
+
+
+async def open_session(network: Network, participant: str) -> tuple[zenoh.Session, int]:
+    """Open a session, and return it with the number of neighbours that are about to be linked.
+
+    Raises:
+        ConfigurationError: the configuration cannot be used.
+        TransportError: Zenoh cannot open a session.
+    """
+
+    def work() -> tuple[zenoh.Session, int]:
+        ports = probed_ports(network)
+        try:
+            with one_at_a_time(network.meeting_ports[0] if len(ports) > 1 else None):
+                answering = set(answering_ports(ports))
+                used, taken = meeting(network, answering) if len(ports) > 1 else (network, set())
+                settings = session_settings(used, taken)
+                session = zenoh.open(load_config(network, settings, participant))
+        except zenoh.ZError as error:
+            raise TransportError(
+                f"Zenoh: no session could be opened: {reason(error)}; look at "
+                "ZENOH_SESSION_CONFIG_URI, ZENOH_CONFIG_OVERRIDE and Context(config=...)"
+            ) from error
+        # Whoever was configured is hoped for, but may not be there.
+        configured = bool(network.static_peers or network.config_file)
+        return session, len(answering) + configured
+
+    return await run_in_own_thread(work, late=lambda opened: opened[0].close())
+
+
+async def open_router(listen: Iterable[str]) -> zenoh.Session:
+    """Open a router for those who have no `rmw_zenohd`; `close_session` ends it.
+
+    ``ZENOH_CONFIG_OVERRIDE`` is honoured, for TLS and access control.
+
+    Raises:
+        ConfigurationError: the override does not fit.
+        TransportError: it cannot listen there, for example because another router does.
+    """
+    endpoints = list(listen)
+    name = "ZENOH_CONFIG_OVERRIDE"
+    network = network_from({name: os.environ.get(name, "")})
+
+    def work() -> zenoh.Session:
+        try:
+            return zenoh.open(load_config(network, router_settings(endpoints)))
+        except zenoh.ZError as error:
+            raise TransportError(
+                f"router on {', '.join(endpoints)}: {reason(error)}; "
+                "is another router running there?"
+            ) from error
+
+    return await run_in_own_thread(work, late=lambda session: session.close())
+
+
+async def close_session(session: zenoh.Session) -> None:
+    """Close a session; when that takes too long it goes on without its caller."""
+
+    def work() -> None:
+        try:
+            session.close()
+        except zenoh.ZError as error:
+            logger.debug("session: not closed properly: %s", error)
+
+    with suppress(TimeoutError):
+        async with asyncio.timeout(CLOSE_S):
+            await run_in_own_thread(work)
+
+
+class ConnectionWatcher:
+    """The connections of a session to others, as they come."""
+
+    def __init__(self, session: zenoh.Session, queue: Callable[..., ThreadsafeQueue[Any]]) -> None:
+        self._session = session
+        self._changed = asyncio.Event()
+        self._queue = queue(lambda _: self._changed.set(), 1)
+        self._listener = session.info.declare_transport_events_listener(direct(self._queue.put))
+
+    def close(self) -> None:
+        """Look no longer."""
+        self._listener.undeclare()
+
+    async def wait_until_connected(self, expected: int) -> None:
+        """Return when `expected` neighbours, and those whom they introduce, are linked.
+
+        Or when it seems that they will not be, which takes a second at most.
+        """
+        if expected == 0:
+            return
+        try:
+            while (count := len(self._session.info.transports())) < expected:
+                async with asyncio.timeout(NEXT_LINK_S if count else FIRST_LINK_S):
+                    await self._next()
+            for _ in range(expected + 8):
+                async with asyncio.timeout(QUIET_S):
+                    await self._next()
+        except TimeoutError:
+            return
+
+    async def _next(self) -> None:
+        self._changed.clear()
+        await self._changed.wait()

@@ -1,0 +1,95 @@
+"""Cutting the connections of peers that take nothing any more, so that a session can be closed.
+
+Zenoh waits in `close`, and in what blocks, until such a peer reads on or the connection is lost;
+with its socket shut down it is lost at once. Closing the socket then waits for another ten seconds
+(SO_LINGER), unless that is switched off first (zenoh 1.10). Linux only: elsewhere closing takes as
+long as Zenoh waits.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import socket
+import struct
+import sys
+from contextlib import ExitStack, contextmanager, suppress
+from os import dup, fstat
+from pathlib import Path
+from stat import S_ISSOCK
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import zenoh
+
+__all__ = ["cut_stuck"]
+
+logger = logging.getLogger("aionode.transport.zenoh")
+
+DESCRIPTORS: Final = Path("/proc/self/fd")
+
+STUCK_S: Final = 0.1
+"""A peer that takes not one byte for so long, with some waiting, is not waited for."""
+
+NO_LINGER: Final = struct.pack("ii", 1, 0)
+
+
+@contextmanager
+def connections() -> Iterator[list[tuple[str, socket.socket]]]:
+    """Return the TCP connections of this process, with the address of the other end."""
+    with ExitStack() as stack:
+        found = []
+        for entry in list(DESCRIPTORS.iterdir()):
+            with suppress(OSError):  # no socket, or closed meanwhile
+                fd = int(entry.name)
+                if not S_ISSOCK(fstat(fd).st_mode):
+                    continue
+                one = stack.enter_context(socket.socket(fileno=dup(fd)))
+                if one.type == socket.SOCK_STREAM and one.family != socket.AF_UNIX:
+                    host, port = one.getpeername()[:2]
+                    found.append((f"[{host}]:{port}" if ":" in host else f"{host}:{port}", one))
+        yield found
+
+
+def waiting_bytes(session: zenoh.Session) -> dict[str, int]:
+    """Return how many bytes wait for each peer of a session, where there are some."""
+    import fcntl
+    import termios
+
+    peers = {str(state.dst).partition("/")[2].partition("?")[0] for state in session.info.links()}
+    with connections() as found:
+        waiting = {
+            peer: int.from_bytes(fcntl.ioctl(one, termios.TIOCOUTQ, bytes(4)), sys.byteorder)
+            for peer, one in found
+            if peer in peers
+        }
+    return {peer: size for peer, size in waiting.items() if size}
+
+
+def cut(peers: set[str]) -> None:
+    """Cut the connections to some peers."""
+    with connections() as found:
+        for peer, one in found:
+            if peer in peers:
+                with suppress(OSError):  # it is lost already
+                    one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
+                    one.shutdown(socket.SHUT_RDWR)
+
+
+async def cut_stuck(session: zenoh.Session) -> None:
+    """Cut the connections of a session that is about to be closed whose peers take nothing."""
+    if not sys.platform.startswith("linux"):
+        return
+    before = waiting_bytes(session)
+    if not before:
+        return
+    with suppress(TimeoutError):
+        async with asyncio.timeout(STUCK_S):
+            await asyncio.get_running_loop().create_future()
+    after = waiting_bytes(session)
+    stuck = {peer for peer, size in before.items() if after.get(peer, 0) >= size}
+    if stuck:
+        logger.debug("%s: nothing is taken any more; the connection is cut", ", ".join(stuck))
+        cut(stuck)

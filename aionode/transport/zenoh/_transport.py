@@ -1,0 +1,149 @@
+"""The contract of transports, on Zenoh."""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
+
+from aionode.clock import perf_ns
+from aionode.transport.base import Transport
+from aionode.transport.zenoh._graph_watcher import NodeDeclaration, Watcher
+from aionode.transport.zenoh._peer_directory import ZenohPeerDirectory
+from aionode.transport.zenoh._publisher import ZenohWriter
+from aionode.transport.zenoh._recovery import Recovery
+from aionode.transport.zenoh._services import ZenohRequester, ZenohServer
+from aionode.transport.zenoh._session import ConnectionWatcher, close_session, open_session
+from aionode.transport.zenoh._session_state import SessionState
+from aionode.transport.zenoh._sockets import cut_stuck
+from aionode.transport.zenoh._subscription import ZenohReader
+
+if TYPE_CHECKING:
+    from collections import Counter
+
+    from aionode.graph import EndpointInfo, Graph, NodeInfo
+    from aionode.transport._zenoh_config import Network
+    from aionode.transport.base import LinkStatus, Reader, Registration, Requester, Serve, Writer
+
+__all__ = ["ZenohTransport"]
+
+KNOWN_S = 0.3
+"""How long `open` waits for the graph of those who are linked; it takes a millisecond."""
+
+
+class ZenohTransport(Transport):
+    """Reaches other processes and machines, and ROS 2 nodes that run rmw_zenoh_cpp.
+
+    Args:
+        participant: Id of the context and of its Zenoh session: hexadecimal, no leading zeros.
+        network: Domain, discovery and peers.
+
+    Attributes:
+        peer_directory: Who is there, for links beside this transport.
+    """
+
+    def __init__(self, participant: str, network: Network) -> None:
+        self.network = network
+        self._state = SessionState(participant, network.domain_id)
+        self._watcher = Watcher(self._state)
+        self.peer_directory = ZenohPeerDirectory(self._state)
+        # Done when those who are linked have said what there is.
+        self._answered: asyncio.Future[None] | None = None
+        self._missing = 0  # so many who accept connections were not linked in time
+        self._recovery = Recovery(self._state, network, self._watcher.check)
+
+    def __repr__(self) -> str:
+        state = "closed" if self._state.session is None else "open"
+        return (
+            f"<ZenohTransport {self._state.participant} domain={self.network.domain_id} {state} "
+            f"garbage={self.malformed.total()}>"
+        )
+
+    @property
+    def malformed(self) -> Counter[str]:
+        """How many samples in no known form came from the network, for each key."""
+        return self._state.malformed
+
+    @property
+    def other_domains(self) -> frozenset[int]:
+        """The domains of nodes that can be reached, but do not hear this one."""
+        return self._watcher.other_domains
+
+    async def link_status(self) -> LinkStatus:
+        """Ask everybody who can be linked, and who is."""
+        return await self.peer_directory.link_status()
+
+    async def open(self, graph: Graph) -> None:
+        """Connect; return when those who are there are known, as far as can be told."""
+        session, peer_directory = await open_session(self.network, self._state.participant)
+        self._state.waker.open(asyncio.get_running_loop())
+        # Before waiting for others, so that who comes meanwhile sees everything. What fails from
+        # here on is undone by `close`, which knows the session now.
+        self._state.connect(session, graph)
+        links = ConnectionWatcher(session, self._state.queue)
+        try:
+            self._watcher.start(session)
+            self.peer_directory.start(session)
+            self._recovery.start(session)
+            await links.wait_until_connected(peer_directory)
+            # Of those who were configured nobody knows whether they are there.
+            hoped_for = bool(self.network.static_peers or self.network.config_file)
+            self._missing = peer_directory - hoped_for - len(session.info.transports())
+            self._answered = asyncio.get_running_loop().create_future()
+            self._watcher.ask(session, self._answered)
+            with suppress(TimeoutError):
+                async with asyncio.timeout(KNOWN_S):
+                    await asyncio.shield(self._answered)
+            self._watcher.note_domains()
+        finally:
+            links.close()
+
+    async def all_known(self, quiet_s: float) -> bool:
+        """Wait until everybody who can be reached has said what there is."""
+        answered = self._answered
+        while answered is not None and not answered.done():
+            left_s = quiet_s - (perf_ns() - self._watcher.newest_ns) / 1e9
+            if left_s <= 0:
+                return False
+            with suppress(TimeoutError):
+                async with asyncio.timeout(left_s):
+                    await asyncio.shield(answered)
+        return self._missing <= 0
+
+    async def close(self) -> None:
+        """Withdraw everything and disconnect, within a second after `SessionState.flush`."""
+        state = self._state
+        self._answered = None
+        await state.flush()
+        self._recovery.stop()
+        self.peer_directory.stop()
+        self._watcher.stop()
+        session = state.disconnect()
+        if session is not None:
+            await cut_stuck(session)
+            await close_session(session)
+        state.waker.close()
+
+    def create_node(self, node: NodeInfo) -> Registration:
+        """Announce a node."""
+        return NodeDeclaration(self._state, node)
+
+    def create_writer(self, endpoint: EndpointInfo, msg_type: type[Any]) -> Writer:
+        """Announce a publisher."""
+        return ZenohWriter(self._state, endpoint, msg_type)
+
+    def create_reader(
+        self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
+    ) -> Registration:
+        """Announce a subscription."""
+        return ZenohReader(self._state, endpoint, msg_type, reader)
+
+    def create_server(
+        self, endpoint: EndpointInfo, srv_type: type[Any], serve: Serve
+    ) -> Registration:
+        """Announce a server."""
+        return ZenohServer(self._state, endpoint, srv_type, serve)
+
+    def create_requester(self, endpoint: EndpointInfo, srv_type: type[Any]) -> Requester:
+        """Announce a client."""
+        return ZenohRequester(self._state, endpoint, srv_type)

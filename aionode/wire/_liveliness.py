@@ -1,0 +1,237 @@
+"""Liveliness tokens: how the ROS graph is written in key expressions.
+
+Each node and each endpoint holds one token while it lives::
+
+    @ros2_lv/<domain>/<zid>/<nid>/<nid>/NN/<enclave>/<namespace>/<node>
+    @ros2_lv/<domain>/<zid>/<nid>/<eid>/<kind>/<enclave>/<namespace>/<node>/<name>/<type>/<hash>/<qos>
+
+A name is one chunk, each slash in it written as ``%``. The chunk for QoS leaves out what is equal
+to rmw_zenoh's defaults. From ROS 2 Lyrical on a 14th chunk ``backends:…`` may follow.
+
+Reading is lenient: a token in an unknown form is None, never an exception, as anybody may declare
+anything below this prefix.
+"""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import xxhash
+
+from aionode.clock import CONST_INFINITE_NS, S_TO_NS, Duration
+from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
+from aionode.qos import (
+    DEFAULT_DEPTH,
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+from aionode.wire._key_expression import dds_type, demangle, mangle, ros_type
+
+__all__ = [
+    "CPU_BACKEND",
+    "PREFIX",
+    "Token",
+    "endpoint_token",
+    "gid_of",
+    "node_token",
+    "parse_qos",
+    "parse_token",
+    "qos_chunk",
+]
+
+PREFIX: Final = "@ros2_lv"
+
+CPU_BACKEND: Final = "backends:cpu:"
+"""The 14th chunk of a subscription that takes plain bytes on the buffer key as well."""
+
+NODE_KIND: Final = "NN"
+KIND_CHUNKS: Final = {
+    EndpointKind.PUBLISHER: "MP",
+    EndpointKind.SUBSCRIPTION: "MS",
+    EndpointKind.SERVER: "SS",
+    EndpointKind.CLIENT: "SC",
+}
+KINDS: Final = {chunk: kind for kind, chunk in KIND_CHUNKS.items()}
+
+NODE_CHUNKS: Final = 9
+ENDPOINT_CHUNKS: Final = 13
+
+FOREVER: Final = divmod(CONST_INFINITE_NS, S_TO_NS)
+
+
+class Token(NamedTuple):
+    """What a liveliness token says."""
+
+    domain_id: int
+    info: NodeInfo | EndpointInfo
+
+
+# Writing
+
+
+def node_token(domain_id: int, node: NodeInfo) -> str:
+    """Return the token of a node."""
+    return "/".join(node_chunks(domain_id, node, node.node_id, NODE_KIND))
+
+
+def endpoint_token(domain_id: int, endpoint: EndpointInfo, backends: str = "") -> str:
+    """Return the token of an endpoint; its `gid` is not part of it, but made from it."""
+    chunks = [
+        *node_chunks(domain_id, endpoint.node, endpoint.endpoint_id, KIND_CHUNKS[endpoint.kind]),
+        mangle(endpoint.name),
+        mangle(dds_type(endpoint.type_name)),
+        mangle(endpoint.type_hash),
+        qos_chunk(endpoint.qos),
+    ]
+    if backends:
+        chunks.append(backends)
+    return "/".join(chunks)
+
+
+def node_chunks(domain_id: int, node: NodeInfo, entity_id: int, kind: str) -> list[str]:
+    """Return the chunks that nodes and endpoints have in common."""
+    return [
+        PREFIX,
+        str(domain_id),
+        node.participant,
+        str(node.node_id),
+        str(entity_id),
+        kind,
+        mangle(node.enclave or "/"),
+        mangle(node.namespace or "/"),
+        node.name,
+    ]
+
+
+def gid_of(token: str) -> bytes:
+    """Return the 16 bytes that name the entity of `token` in attachments and in the graph.
+
+    Everybody who sees the token comes to the same: XXH3-128, low half first, each little-endian.
+    """
+    return xxhash.xxh3_128_digest(token.encode())[::-1]
+
+
+def qos_chunk(qos: QoSProfile) -> str:
+    """Return the chunk for QoS; what the profile leaves to the system is rmw_zenoh's default."""
+    qos = qos.resolved()
+    lease = duration_text(qos.liveliness_lease_duration)
+    return ":".join(
+        (
+            elided(qos.reliability, ReliabilityPolicy.RELIABLE),
+            elided(qos.durability, DurabilityPolicy.VOLATILE),
+            f"{elided(qos.history, HistoryPolicy.KEEP_LAST)},{elided(qos.depth, DEFAULT_DEPTH)}",
+            duration_text(qos.deadline),
+            duration_text(qos.lifespan),
+            f"{elided(qos.liveliness, LivelinessPolicy.AUTOMATIC)},{lease}",
+        )
+    )
+
+
+def elided(value: int, default: int) -> str:
+    """Return `value` as text, nothing for the default."""
+    return "" if value == default else str(int(value))
+
+
+def duration_text(duration: Duration) -> str:
+    """Return seconds and nanoseconds, each left out where it is that of an infinite duration."""
+    parts = divmod(duration.nanoseconds, S_TO_NS)
+    return ",".join(elided(*pair) for pair in zip(parts, FOREVER, strict=True))
+
+
+# Reading
+
+
+def parse_token(key: str) -> Token | None:
+    """Return what a token says, or None when it is in no known form."""
+    chunks = key.split("/")
+    if len(chunks) < NODE_CHUNKS or chunks[0] != PREFIX or "" in chunks:
+        return None
+    _, domain, zid, node_id, entity_id, kind, enclave, namespace, name = chunks[:NODE_CHUNKS]
+    numbers = [number(text) for text in (domain, node_id, entity_id)]
+    if None in numbers:
+        return None
+    domain_id, nid, eid = (n or 0 for n in numbers)
+    node = NodeInfo(zid, nid, name, demangle(namespace), demangle(enclave))
+    if kind == NODE_KIND:
+        return Token(domain_id, node)
+    endpoint = parse_endpoint(key, node, eid, kind, chunks[NODE_CHUNKS:])
+    return None if endpoint is None else Token(domain_id, endpoint)
+
+
+def parse_endpoint(
+    key: str, node: NodeInfo, endpoint_id: int, kind: str, chunks: list[str]
+) -> EndpointInfo | None:
+    """Return the endpoint that the last chunks of its token tell of."""
+    if kind not in KINDS or len(chunks) < ENDPOINT_CHUNKS - NODE_CHUNKS:
+        return None
+    name, dds_name, type_hash, qos_text = chunks[:4]
+    type_name = ros_type(demangle(dds_name))
+    qos = parse_qos(qos_text)
+    if type_name is None or qos is None:
+        return None
+    return EndpointInfo(
+        KINDS[kind],
+        node,
+        endpoint_id,
+        demangle(name),
+        type_name,
+        demangle(type_hash),
+        qos,
+        gid_of(key),
+    )
+
+
+def parse_qos(chunk: str) -> QoSProfile | None:
+    """Return the profile that a QoS chunk tells of, or None when it is in no known form."""
+    fields = [field.split(",") for field in chunk.split(":")]
+    if len(fields) < 6 or any(
+        len(parts) < needed for parts, needed in zip(fields, (1, 1, 2, 2, 2, 3), strict=False)
+    ):
+        return None
+    history = fields[2]
+    liveliness = fields[5]
+    try:
+        return QoSProfile(
+            reliability=ReliabilityPolicy(value(fields[0][0], ReliabilityPolicy.RELIABLE)),
+            durability=DurabilityPolicy(value(fields[1][0], DurabilityPolicy.VOLATILE)),
+            history=HistoryPolicy(value(history[0], HistoryPolicy.KEEP_LAST)),
+            depth=value(history[1], DEFAULT_DEPTH) or DEFAULT_DEPTH,
+            deadline=parse_duration(fields[3]),
+            lifespan=parse_duration(fields[4]),
+            liveliness=LivelinessPolicy(value(liveliness[0], LivelinessPolicy.AUTOMATIC)),
+            liveliness_lease_duration=parse_duration(liveliness[1:]),
+        )
+    except ValueError:
+        return None
+
+
+def parse_duration(parts: list[str]) -> Duration:
+    """Return the duration that two parts tell of.
+
+    Raises:
+        ValueError: they are no numbers, or too large ones.
+    """
+    seconds, nanoseconds = (value(*pair) for pair in zip(parts[:2], FOREVER, strict=True))
+    return Duration(nanoseconds=min(seconds * S_TO_NS + nanoseconds, CONST_INFINITE_NS))
+
+
+def value(text: str, default: int) -> int:
+    """Return the number that `text` says, `default` where it says nothing.
+
+    Raises:
+        ValueError: it is no number.
+    """
+    if not text:
+        return int(default)
+    result = number(text)
+    if result is None:
+        raise ValueError(text)
+    return result
+
+
+def number(text: str) -> int | None:
+    """Return a decimal number, or None. int() would take signs, blanks and underscores as well."""
+    return int(text) if text.isascii() and text.isdigit() and len(text) <= 20 else None

@@ -1,0 +1,217 @@
+"""What a type consists of, in the form in which ROS 2 nodes tell each other and compute hashes.
+
+It names every field with its type, and so on for all types that are used, as in the messages of
+`type_description_interfaces`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypedDict
+
+from aionode.message import ActionType, FieldType, ServiceType, fields, type_name
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from aionode.interfaces.type_description_interfaces.msg import (
+        IndividualTypeDescription,
+        TypeDescription,
+    )
+
+__all__ = [
+    "Description",
+    "FieldDescription",
+    "FieldTypeDescription",
+    "Individual",
+    "describe",
+    "description_message",
+    "parts",
+]
+
+TYPE_IDS = {
+    "message": 1,
+    "int8": 2,
+    "uint8": 3,
+    "int16": 4,
+    "uint16": 5,
+    "int32": 6,
+    "uint32": 7,
+    "int64": 8,
+    "uint64": 9,
+    "float32": 10,
+    "float64": 11,
+    "bool": 15,
+    "byte": 16,
+    "string": 17,
+    "wstring": 18,
+    # In a .msg file, char is another word for uint8; 13 is the char of IDL.
+    "char": 3,
+}
+
+BOUNDED_TEXT = 4
+"""What a bound adds to the id of a string."""
+
+CONTAINERS = {"single": 0, "array": 48, "bounded": 96, "unbounded": 144}
+"""What a container adds to the id of its elements."""
+
+
+class FieldTypeDescription(TypedDict):
+    """The type of a field."""
+
+    type_id: int
+    capacity: int
+    string_capacity: int
+    nested_type_name: str
+
+
+class FieldDescription(TypedDict):
+    """A field."""
+
+    name: str
+    type: FieldTypeDescription
+
+
+class Individual(TypedDict):
+    """The fields of one type."""
+
+    type_name: str
+    fields: list[FieldDescription]
+
+
+class Description(TypedDict):
+    """A type, and all types that it is made of, sorted by name."""
+
+    type_description: Individual
+    referenced_type_descriptions: list[Individual]
+
+
+def describe(cls: type[Any]) -> Description:
+    """Return the description of a message, service or action class.
+
+    Raises:
+        TypeError: `cls` is no such class.
+    """
+    return {
+        "type_description": individual(cls),
+        "referenced_type_descriptions": [individual(part) for part in parts(cls)],
+    }
+
+
+def description_message(cls: type[Any]) -> TypeDescription:
+    """Return the description as the message in which nodes tell what their types are.
+
+    Raises:
+        TypeError: `cls` is not a message, service or action class.
+    """
+    # Only a node that is asked needs these classes.
+    from aionode.interfaces.type_description_interfaces.msg import (
+        TypeDescription,
+    )
+
+    return TypeDescription(
+        type_description=individual_message(cls),
+        referenced_type_descriptions=[individual_message(part) for part in parts(cls)],
+    )
+
+
+def individual_message(cls: type[Any]) -> IndividualTypeDescription:
+    """Return the description of one type alone as a message, default values included."""
+    from aionode.interfaces.type_description_interfaces import msg
+
+    form = individual(cls)
+    is_whole = issubclass(cls, ServiceType | ActionType)
+    defaults = {} if is_whole else {field.name: field.default for field in fields(cls)}
+    return msg.IndividualTypeDescription(
+        type_name=form["type_name"],
+        fields=[
+            msg.Field(
+                name=member["name"],
+                type=msg.FieldType(**member["type"]),
+                default_value=default_text(defaults.get(member["name"])),
+            )
+            for member in form["fields"]
+        ],
+    )
+
+
+def default_text(default: object) -> str:
+    """Return a default value as ROS writes it there; nothing where there is none."""
+    if default is None:
+        return ""
+    if isinstance(default, bytes):
+        return str(default[0])
+    return str(default)
+
+
+def individual(cls: type[Any]) -> Individual:
+    """Return the description of one type alone."""
+    name = type_name(cls)
+    if issubclass(cls, ServiceType | ActionType):
+        members = [nested_member(name, part) for name, part in halves(cls)]
+    else:
+        members = [member(field.name, field.type) for field in fields(cls)]
+    # Structures without fields do not exist in IDL.
+    placeholder = member("structure_needs_at_least_one_member", FieldType("uint8"))
+    return {"type_name": name, "fields": members or [placeholder]}
+
+
+def halves(cls: type[Any]) -> Iterator[tuple[str, type[Any]]]:
+    """Yield name and type of each part of a service or action."""
+    if issubclass(cls, ServiceType):
+        yield "request_message", cls.Request  # type: ignore[attr-defined] # nested classes
+        yield "response_message", cls.Response  # type: ignore[attr-defined] # nested classes
+        yield "event_message", cls.Event
+        return
+    yield "goal", cls.Goal
+    yield "result", cls.Result
+    yield "feedback", cls.Feedback
+    yield "send_goal_service", cls.Impl.SendGoalService
+    yield "get_result_service", cls.Impl.GetResultService
+    yield "feedback_message", cls.Impl.FeedbackMessage
+
+
+def member(name: str, kind: FieldType) -> FieldDescription:
+    """Return the description of a field."""
+    bounded = 0 if kind.string_bound is None else BOUNDED_TEXT
+    return {
+        "name": name,
+        "type": {
+            "type_id": TYPE_IDS[kind.kind] + bounded + CONTAINERS[kind.container],
+            "capacity": kind.size,
+            "string_capacity": kind.string_bound or 0,
+            "nested_type_name": "" if kind.nested is None else type_name(kind.nested),
+        },
+    }
+
+
+def nested_member(name: str, part: type[Any]) -> FieldDescription:
+    """Return the description of a field that holds one of `part`, which may be a service."""
+    return {
+        "name": name,
+        "type": {
+            "type_id": TYPE_IDS["message"],
+            "capacity": 0,
+            "string_capacity": 0,
+            "nested_type_name": type_name(part),
+        },
+    }
+
+
+def parts(cls: type[Any]) -> list[type[Any]]:
+    """Return every type that `cls` is made of, itself excepted, sorted by name."""
+    found: dict[str, type[Any]] = {}
+    waiting = used_by(cls)
+    while waiting:
+        part = waiting.pop()
+        name = type_name(part)
+        if name not in found:
+            found[name] = part
+            waiting += used_by(part)
+    return [found[name] for name in sorted(found)]
+
+
+def used_by(cls: type[Any]) -> list[type[Any]]:
+    """Return the types of the fields of `cls` that have fields themselves."""
+    if issubclass(cls, ServiceType | ActionType):
+        return [part for _, part in halves(cls)]
+    return [field.type.nested for field in fields(cls) if field.type.nested is not None]

@@ -1,0 +1,53 @@
+"""Messages from the YAML that a user types."""
+
+from __future__ import annotations
+
+import pytest
+
+from aionode.cli._support.formatting import PrintOptions, yaml_text
+from aionode.cli._support.yaml_messages import Filler, message_from_yaml
+from aionode.clock import Time
+from aionode.errors import CommandError
+from aionode.interfaces.geometry_msgs.msg import PoseStamped
+from aionode.interfaces.std_msgs.msg import String
+
+
+@pytest.mark.parametrize(
+    ("text", "data"),
+    [("{data: hi}", "hi"), ("data: hi", "hi"), ('{"data": "hi"}', "hi"), ("", ""), ("{}", "")],
+)
+def test_braces_are_optional(text: str, data: str) -> None:
+    """JSON is YAML, and nothing at all is a message of defaults."""
+    assert message_from_yaml(String, text) == String(data=data)
+
+
+def test_what_echo_prints_pub_reads() -> None:
+    """``aionode topic echo /a --once | aionode topic pub /b … --stdin``."""
+    printed = f"{yaml_text(PrintOptions().message(String(data='hi')))}---\n"
+
+    assert message_from_yaml(String, printed) == String(data="hi")
+
+
+def test_two_messages_are_one_too_many() -> None:
+    """The second would be lost without a word."""
+    with pytest.raises(CommandError, match="has 2 YAML documents"):
+        message_from_yaml(String, "data: a\n---\ndata: b\n")
+
+
+def test_a_stamp_is_set_deep_inside() -> None:
+    """And again for the next message."""
+    filler = Filler(PoseStamped, "{header: {stamp: now, frame_id: map}}")
+
+    seconds = [
+        filler.message(Time(seconds=at)).header.stamp.sec  # type: ignore[attr-defined]  # a PoseStamped
+        for at in (5, 7)
+    ]
+
+    assert seconds == [5, 7]
+    assert filler.message(Time()).header.frame_id == "map"  # type: ignore[attr-defined]  # the same
+
+
+def test_a_word_where_no_time_belongs_is_refused() -> None:
+    """``now`` is a string everywhere else."""
+    with pytest.raises(CommandError, match="Failed to populate field"):
+        Filler(PoseStamped, "{pose: now}")

@@ -1,0 +1,414 @@
+"""A goal that nobody awaits any more is cancelled, however its task was cancelled."""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+from collections.abc import AsyncIterator, Callable, Coroutine
+from contextlib import AsyncExitStack, suppress
+from typing import Any, NamedTuple
+
+import anyio
+import pytest
+from starlette.responses import StreamingResponse
+
+from aionode.action import ActionClient, ActionServer, CancelResponse, GoalResponse, GoalStatus
+from aionode.context import Context
+from aionode.errors import ServiceUnavailableError
+from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.node import Node
+from aionode.testing import FaultyTransport, local_context, settle
+from aionode.transport.local import LocalTransport
+from tests.support.actions import Goal, Worker
+from tests.support.peers import isolated_environment
+
+Client = ActionClient[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
+Server = ActionServer[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
+
+
+class Ends(NamedTuple):
+    """A server and a client that are matched."""
+
+    serving: Node
+    asking: Node
+    server: Server
+    client: Client
+    worker: Worker
+
+
+@pytest.fixture(params=["local", "link", "zenoh"])
+async def ends(
+    request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+) -> AsyncIterator[Ends]:
+    """Two nodes: in one context, or in two that are connected as two processes would be."""
+    for name, value in isolated_environment().items():
+        monkeypatch.setenv(name, value)
+    quiet: Any = {"enable_rosout": False, "start_parameter_services": False}
+    async with AsyncExitStack() as stack, asyncio.timeout(30):
+        if request.param == "local":
+            context = await stack.enter_async_context(local_context())
+            contexts = (context, context)
+        else:
+            link = request.param == "link"
+            contexts = (
+                await stack.enter_async_context(Context(link=link)),
+                await stack.enter_async_context(Context(link=link)),
+            )
+        serving = await stack.enter_async_context(Node("serving", context=contexts[0], **quiet))
+        asking = await stack.enter_async_context(Node("asking", context=contexts[1], **quiet))
+        worker = Worker()
+        server: Server = serving.create_action_server(
+            Fibonacci, "fibonacci", worker, cancel_callback=lambda _goal: CancelResponse.ACCEPT
+        )
+        client: Client = asking.create_action_client(Fibonacci, "fibonacci")
+        await client.wait_for_server()
+        yield Ends(serving, asking, server, client, worker)
+
+
+def beside(work: Any) -> asyncio.Task[Any]:
+    """Do something beside the test."""
+    return asyncio.ensure_future(work)  # noqa: TID251  # owned by the test
+
+
+async def until(condition: Callable[[], Any]) -> None:
+    """Wait until something is so of which nobody tells."""
+    while not condition():  # noqa: ASYNC110  # there is no event to wait for
+        await asyncio.sleep(0.001)  # noqa: TID251  # the same
+
+
+async def expect_canceled(goal: Goal) -> None:
+    """Wait for the end of the goal, and see that a request has ended it."""
+    await until(lambda: not goal.is_active)
+    assert goal.status is GoalStatus.CANCELED
+
+
+# What a program waits for
+
+
+async def by_call(client: Client) -> None:
+    """Await the whole."""
+    await client.call(Fibonacci.Goal())
+
+
+async def by_result(client: Client) -> None:
+    """Await the result."""
+    await (await client.send_goal(Fibonacci.Goal())).result()
+
+
+async def by_feedback(client: Client) -> None:
+    """Await feedback that never comes."""
+    async for _ in await client.send_goal(Fibonacci.Goal()):
+        pass
+
+
+async def by_block(client: Client) -> None:
+    """Await something else while the goal is bound to a block."""
+    async with await client.send_goal(Fibonacci.Goal()):
+        await asyncio.Event().wait()
+
+
+# How it is cancelled
+
+Wait = Callable[[Client], Coroutine[Any, Any, None]]
+
+
+async def after_timeout(wait: Wait, ends: Ends) -> None:
+    """With the limit of asyncio."""
+    with suppress(TimeoutError):
+        async with asyncio.timeout(0.1):
+            await wait(ends.client)
+
+
+async def after_move_on(wait: Wait, ends: Ends) -> None:
+    """With that of anyio, which cancels again and again until its block is left."""
+    with anyio.move_on_after(0.1):
+        await wait(ends.client)
+
+
+async def by_a_task_group(wait: Wait, ends: Ends) -> None:
+    """As the frameworks do that are built on anyio, such as those for tools of language models."""
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(wait, ends.client)
+        await until(ends.worker.begun.qsize)
+        tasks.cancel_scope.cancel()
+
+
+async def cancelled_twice(wait: Wait, ends: Ends) -> None:
+    """By somebody impatient."""
+    task = beside(wait(ends.client))
+    await until(ends.worker.begun.qsize)
+    task.cancel()
+    await asyncio.sleep(0)  # noqa: TID251  # between the two
+    task.cancel()
+    await asyncio.wait([task])
+
+
+async def by_leaving_the_node(wait: Wait, ends: Ends) -> None:
+    """Ctrl-C in a program: its task is cancelled, twice, and leaves the node at once."""
+
+    async def program() -> None:
+        async with Node("program", context=ends.asking.context) as node:
+            client: Client = node.create_action_client(Fibonacci, "fibonacci")
+            await client.wait_for_server()
+            await wait(client)
+
+    task = beside(program())
+    await until(ends.worker.begun.qsize)
+    task.cancel()
+    await asyncio.sleep(0)  # noqa: TID251  # between the two
+    task.cancel()
+    await asyncio.wait([task])
+
+
+WAITS = [by_call, by_result, by_feedback, by_block]
+CANCELS = [
+    after_timeout,
+    after_move_on,
+    by_a_task_group,
+    cancelled_twice,
+    by_leaving_the_node,
+]
+
+
+@pytest.mark.parametrize("cancel", CANCELS)
+@pytest.mark.parametrize("wait", WAITS)
+async def test_a_goal_ends_however_its_task_is_cancelled(
+    ends: Ends, wait: Wait, cancel: Callable[[Wait, Ends], Coroutine[Any, Any, None]]
+) -> None:
+    """A robot that nobody waits for must not drive on."""
+    await cancel(wait, ends)
+
+    await expect_canceled(await ends.worker.begun.get())
+
+
+async def leave(body: AsyncIterator[str], begun: asyncio.Event) -> None:
+    """Stream `body` to a browser that leaves after `begun`."""
+
+    async def receive() -> dict[str, Any]:
+        await begun.wait()
+        return {"type": "http.disconnect"}
+
+    async def send(message: Any) -> None:
+        if message.get("body") == b"stuck":
+            begun.set()
+            await asyncio.Event().wait()
+
+    scope = {"type": "http", "asgi": {"spec_version": "2.3"}}
+    await StreamingResponse(body)(scope, receive, send)
+
+
+async def test_a_browser_that_leaves_a_stream_of_feedback_ends_the_goal(ends: Ends) -> None:
+    """Starlette cancels the stream, while it waits for feedback."""
+    begun = asyncio.Event()
+
+    async def stream() -> AsyncIterator[str]:
+        yield "begin"
+        goal = await ends.client.send_goal(Fibonacci.Goal())
+        begun.set()
+        async for feedback in goal:
+            yield str(feedback)
+
+    await leave(stream(), begun)
+
+    await expect_canceled(await ends.worker.begun.get())
+
+
+async def test_a_browser_that_leaves_while_it_reads_ends_a_goal_in_a_block(ends: Ends) -> None:
+    """Then nobody awaits the goal: the stream is closed where it yields.
+
+    By Python's garbage collector, since Starlette leaves a cancelled stream to that.
+    """
+
+    async def stream() -> AsyncIterator[str]:
+        async with await ends.client.send_goal(Fibonacci.Goal()) as goal:
+            yield "stuck"
+            async for feedback in goal:
+                yield str(feedback)
+
+    await leave(stream(), asyncio.Event())
+    gc.collect()
+
+    await expect_canceled(await ends.worker.begun.get())
+
+
+async def test_a_block_leaves_a_goal_alone_that_has_ended(ends: Ends) -> None:
+    """There is nothing to cancel."""
+    ends.worker.may_end.set()
+    async with await ends.client.send_goal(Fibonacci.Goal()) as goal:
+        outcome = await goal.result()
+
+    assert outcome.status is GoalStatus.SUCCEEDED
+    assert not ends.client._withdrawals
+
+
+async def test_a_request_goes_on_when_who_awaits_its_answer_is_cancelled(ends: Ends) -> None:
+    """In ``finally``, under a limit that has run out, nothing can be awaited."""
+    sent = await ends.client.send_goal(Fibonacci.Goal())
+    goal = await ends.worker.begun.get()
+
+    with anyio.CancelScope() as scope:
+        scope.cancel()
+        await sent.cancel()
+
+    await expect_canceled(goal)
+
+
+# Before the goal is accepted
+
+
+class Doorkeeper:
+    """A `goal_callback` that thinks until the test says so."""
+
+    def __init__(self) -> None:
+        self.asked = asyncio.Queue[int]()
+        self.may_answer = asyncio.Event()
+
+    async def __call__(self, goal: Fibonacci.Goal) -> GoalResponse:
+        """Accept, later."""
+        self.asked.put_nowait(goal.order)
+        await self.may_answer.wait()
+        return GoalResponse.ACCEPT
+
+
+async def test_a_goal_that_is_cancelled_while_the_server_thinks_is_never_executed(
+    ends: Ends,
+) -> None:
+    """The server refuses it then, as its client has gone."""
+    door = Doorkeeper()
+    ends.server.register_goal_callback(door)
+    with anyio.move_on_after(5) as scope:
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(ends.client.call, Fibonacci.Goal())
+            await door.asked.get()
+            scope.cancel()
+    await until(lambda: ends.server._withdrawn)
+    door.may_answer.set()
+
+    await until(lambda: not ends.client._withdrawals)
+    assert ends.worker.begun.empty()
+    assert not ends.server._goals
+
+
+async def test_a_goal_that_is_cancelled_in_the_queue_of_the_server_is_never_executed(
+    ends: Ends,
+) -> None:
+    """Behind another one about which the server thinks."""
+    door = Doorkeeper()
+    ends.server.register_goal_callback(door)
+    first = beside(ends.client.send_goal(Fibonacci.Goal(order=1)))
+    await door.asked.get()
+    second = beside(ends.client.send_goal(Fibonacci.Goal(order=2)))
+    await asyncio.sleep(0)  # noqa: TID251  # lets it be sent
+    second.cancel()
+    await asyncio.wait([second])
+    await until(lambda: ends.server._withdrawn)
+    door.may_answer.set()
+
+    await first
+    await until(lambda: not ends.client._withdrawals)
+    assert (await ends.worker.begun.get()).request.order == 1
+    assert ends.worker.begun.empty()
+    assert door.asked.empty()
+
+
+async def test_a_goal_that_another_server_accepts_after_its_cancellation_is_cancelled(
+    ends: Ends, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One that is not of aionode says that it does not know the goal, and accepts it later."""
+    monkeypatch.setattr(ends.server, "_note_withdrawn", lambda _goal_id: None)
+    door = Doorkeeper()
+    ends.server.register_goal_callback(door)
+    task = beside(ends.client.call(Fibonacci.Goal()))
+    await door.asked.get()
+    task.cancel()
+    await asyncio.wait([task])
+    door.may_answer.set()
+    await until(lambda: ends.server._goals)
+
+    await expect_canceled(*ends.server._goals.values())
+
+
+async def test_a_goal_without_a_server_leaves_nothing_behind(ends: Ends) -> None:
+    """It was sent to nobody, so there is nothing to cancel."""
+    client: Client = ends.asking.create_action_client(Fibonacci, "nobody")
+    with anyio.move_on_after(0.01):
+        await client.call(Fibonacci.Goal())
+
+    assert not client._withdrawals
+    assert not client._send_goal._answers
+
+
+# What gets lost
+
+
+@pytest.fixture
+async def faults() -> AsyncIterator[tuple[FaultyTransport, Ends]]:
+    """Two nodes whose requests can be dropped on the way."""
+    transport = FaultyTransport(LocalTransport())
+    async with (
+        asyncio.timeout(30),
+        Context(transport=transport) as context,
+        Node("serving", context=context) as serving,
+        Node("asking", context=context) as asking,
+    ):
+        worker = Worker()
+        server: Server = serving.create_action_server(
+            Fibonacci, "fibonacci", worker, cancel_callback=lambda _goal: CancelResponse.ACCEPT
+        )
+        client: Client = asking.create_action_client(Fibonacci, "fibonacci")
+        yield transport, Ends(serving, asking, server, client, worker)
+
+
+async def test_a_lost_request_is_sent_again(faults: tuple[FaultyTransport, Ends]) -> None:
+    """Until the server has answered."""
+    transport, ends = faults
+    task = beside(ends.client.call(Fibonacci.Goal()))
+    goal = await ends.worker.begun.get()
+    await settle()
+
+    transport.drop = 1.0
+    task.cancel()
+    await asyncio.wait([task])
+    await settle()
+    assert goal.status is GoalStatus.EXECUTING
+    transport.drop = 0.0
+
+    await expect_canceled(goal)
+
+
+async def test_a_node_does_not_end_before_a_lost_request_was_sent_again(
+    faults: tuple[FaultyTransport, Ends],
+) -> None:
+    """What is cancelled last is cancelled, too."""
+    transport, ends = faults
+
+    async def program() -> None:
+        async with Node("program", context=ends.asking.context) as node:
+            await node.create_action_client(Fibonacci, "fibonacci").call(Fibonacci.Goal())
+
+    task = beside(program())
+    goal = await ends.worker.begun.get()
+    await settle()
+    transport.drop = 1.0
+    task.cancel()
+    await until(lambda: ends.asking.count_clients("/fibonacci/_action/get_result") == 1)
+    transport.drop = 0.0
+    await asyncio.wait([task])
+
+    await expect_canceled(goal)
+
+
+async def test_a_server_that_has_gone_does_not_hold_up_the_end_of_a_node(ends: Ends) -> None:
+    """It cannot answer, and there is nothing to stop."""
+    sent = await ends.client.send_goal(Fibonacci.Goal())
+    await ends.worker.begun.get()
+    ends.server.destroy()
+    await until(lambda: not ends.client.server_is_ready())
+
+    with pytest.raises(ServiceUnavailableError):
+        await sent.cancel()
+    began_s = asyncio.get_running_loop().time()
+    ends.asking.destroy_node()
+    await until(lambda: not ends.asking._entities)
+
+    assert asyncio.get_running_loop().time() - began_s < 0.9

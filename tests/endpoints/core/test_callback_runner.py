@@ -1,0 +1,402 @@
+"""What happens around a callback: errors, limits, threads, measurements, fairness."""
+
+from __future__ import annotations
+
+import asyncio
+import functools
+import threading
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from aionode._concurrency import checkpoint
+from aionode.clock import perf_ns
+from aionode.endpoints._core import callback_runner
+from aionode.endpoints._core.callback_runner import CallbackContext
+from aionode.endpoints.stats import Distribution
+from aionode.errors import CallbackCancelledError
+from aionode.interfaces.std_msgs.msg import Int32, String
+from aionode.node import Node
+from aionode.testing import settle
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.context import Context
+    from aionode.endpoints.subscription import Subscription
+
+
+def busy(milliseconds: float) -> None:
+    """Keep the loop from running, as a computation does."""
+    inline_deadline_ns = perf_ns() + round(milliseconds * 1e6)
+    while perf_ns() < inline_deadline_ns:
+        pass
+
+
+def listen(node: Node, callback: Any, **options: Any) -> Subscription[Int32]:
+    """Return a subscription to numbers, with room for a thousand."""
+    return node.create_subscription(Int32, "numbers", callback, 1000, **options)
+
+
+def send(node: Node, count: int = 1) -> None:
+    """Publish the first `count` numbers."""
+    publisher = node.create_publisher(Int32, "numbers", 10)
+    for number in range(count):
+        publisher.publish(Int32(data=number))
+
+
+# Errors
+
+
+@pytest.mark.parametrize("kind", ["sync", "async"])
+async def test_on_error_log_goes_on_and_shows_the_traceback(
+    node: Node, capfd: pytest.CaptureFixture[str], kind: str
+) -> None:
+    """One bad message does not end a node that says so."""
+    heard: list[int] = []
+
+    def sync(msg: Int32) -> None:
+        heard.append(msg.data)
+        if msg.data == 0:
+            raise ValueError("no zero please")
+
+    async def coroutine(msg: Int32) -> None:
+        sync(msg)
+
+    subscription = listen(node, sync if kind == "sync" else coroutine, on_error="log")
+    send(node, 2)
+    await settle()
+
+    assert heard == [0, 1]
+    assert subscription.stats.errors == 1
+    error = capfd.readouterr().err
+    assert "subscription of /numbers (callback" in error
+    assert "ValueError: no zero please" in error
+    assert "Traceback" in error
+
+
+async def test_on_error_may_be_a_function(node: Node) -> None:
+    """It gets the exception, and where it happened."""
+    seen: list[tuple[Exception, CallbackContext]] = []
+
+    def failing(msg: Int32) -> None:
+        raise ValueError("boom")
+
+    subscription = listen(node, failing, on_error=lambda exc, where: seen.append((exc, where)))
+    send(node)
+    await settle()
+    ((error, where),) = seen
+    assert str(error) == "boom"
+    assert where.node == "/node"
+    assert where.entity is subscription
+    assert "failing" in where.subject
+
+
+async def test_an_error_function_may_end_the_node(context: Context) -> None:
+    """By raising, itself."""
+
+    def escalate(error: Exception, where: CallbackContext) -> None:
+        raise RuntimeError("enough") from error
+
+    node = Node("node", context=context)
+    listen(node, lambda msg: 1 / 0, on_error=escalate)
+    send(node)
+    with pytest.raises(ExceptionGroup) as caught:
+        await node.run()
+    assert caught.group_contains(RuntimeError, match="enough")
+
+
+async def test_a_cancelled_wait_inside_a_callback_is_an_error_of_the_callback(
+    node: Node,
+) -> None:
+    """A task that ends by a foreign cancellation would silence its subscription for ever."""
+    heard: list[int] = []
+    seen: list[Exception] = []
+
+    async def callback(msg: Int32) -> None:
+        heard.append(msg.data)
+        gone: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        gone.cancel()
+        await gone
+
+    listen(node, callback, on_error=lambda exc, where: seen.append(exc))
+    send(node, 2)
+    await settle()
+    assert heard == [0, 1]
+    assert [type(error) for error in seen] == [CallbackCancelledError] * 2
+
+
+async def test_a_callback_may_use_asyncio_timeout(node: Node) -> None:
+    """The measuring lets cancellation through as asyncio means it."""
+    seen: list[str] = []
+
+    async def callback(msg: Int32) -> None:
+        try:
+            async with asyncio.timeout(0):
+                await asyncio.Event().wait()
+        except TimeoutError:
+            seen.append("timeout")
+
+    listen(node, callback)
+    send(node)
+    await settle()
+    assert seen == ["timeout"]
+
+
+async def test_a_function_that_returns_a_coroutine_is_awaited(node: Node) -> None:
+    """A lambda or partial around a coroutine function is not forgotten."""
+    heard: list[int] = []
+
+    async def work(msg: Int32) -> None:
+        await checkpoint()
+        heard.append(msg.data)
+
+    listen(node, functools.partial(work))
+    send(node)
+    await settle()
+    assert heard == [0]
+
+
+# Concurrency
+
+
+@pytest.mark.parametrize(("concurrent", "at_once"), [(False, 1), (2, 2), (True, 5)])
+async def test_so_many_callbacks_run_at_once(
+    node: Node, *, concurrent: bool | int, at_once: int
+) -> None:
+    """The others wait in the queue, bounded and in order."""
+    running: list[int] = []
+    gate = asyncio.Event()
+
+    async def callback(msg: Int32) -> None:
+        running.append(msg.data)
+        await gate.wait()
+
+    subscription = listen(node, callback, concurrent=concurrent)
+    send(node, 5)
+    await settle()
+    assert running == list(range(at_once))
+    gate.set()
+    await settle()
+    assert running == list(range(5))
+    assert subscription.stats.received == 5
+
+
+async def test_a_limited_subscription_drops_in_its_queue(node: Node) -> None:
+    """What cannot run yet is bounded by the profile, not by memory."""
+    gate = asyncio.Event()
+
+    async def callback(msg: Int32) -> None:
+        await gate.wait()
+
+    subscription = node.create_subscription(Int32, "numbers", callback, 3, concurrent=2)
+    publisher = node.create_publisher(Int32, "numbers", 10)
+    for number in range(10):
+        publisher.publish(Int32(data=number))
+        await settle()
+    assert subscription.stats.dropped == 10 - 2 - 3
+    gate.set()
+
+
+# Threads
+
+
+async def test_offload_runs_a_sync_callback_in_a_thread(node: Node) -> None:
+    """The loop stays free while it works."""
+    threads: list[threading.Thread] = []
+    subscription = listen(
+        node, lambda msg: threads.append(threading.current_thread()), offload=True
+    )
+    send(node)
+    await settle()
+    assert threads[0] is not threading.main_thread()
+    assert subscription.stats.run_time.count == 1
+    assert subscription.stats.blocking.max_ns == 0
+
+
+async def test_offloaded_errors_reach_the_policy(node: Node) -> None:
+    """As from any callback."""
+    subscription = listen(node, lambda msg: 1 / 0, offload=True, on_error="log")
+    send(node)
+    await settle()
+    assert subscription.stats.errors == 1
+
+
+async def test_a_coroutine_function_cannot_be_offloaded(node: Node) -> None:
+    """Its place is the loop."""
+
+    async def callback(msg: Int32) -> None: ...
+
+    with pytest.raises(ValueError, match=r"await asyncio\.to_thread"):
+        listen(node, callback, offload=True)
+
+
+# Measurements
+
+
+async def test_a_callback_that_blocks_the_loop_is_reported_once_a_second(
+    context: Context, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """With its name, its topic, how long, and what helps."""
+
+    def slow_callback(msg: Int32) -> None:
+        busy(3)
+
+    async with Node("node", context=context, callback_budget_ms=2) as node:
+        listen(node, slow_callback)
+        send(node, 3)
+        await settle()
+
+    lines = [line for line in capfd.readouterr().err.splitlines() if "blocked" in line]
+    assert len(lines) == 1
+    for part in ("slow_callback", "/numbers", "budget 2 ms", "offload=True", "[WARN]", "[node]"):
+        assert part in lines[0]
+
+
+async def test_an_async_callback_is_measured_between_its_waits(
+    context: Context, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Waiting is not blocking: only the longest stretch counts."""
+
+    async def callback(msg: Int32) -> None:
+        busy(1)
+        await checkpoint()
+        busy(4)
+        await checkpoint()
+
+    async with Node("node", context=context, callback_budget_ms=1000) as node:
+        subscription = listen(node, callback)
+        send(node)
+        await settle()
+    stats = subscription.stats
+    assert 4e6 <= stats.blocking.max_ns <= stats.run_time.max_ns
+    assert stats.run_time.max_ns >= 5e6
+    assert "blocked" not in capfd.readouterr().err
+
+
+async def test_queue_wait_is_the_time_between_arrival_and_callback(node: Node) -> None:
+    """What a message waits for while an earlier one is worked on."""
+    subscription = listen(node, lambda msg: busy(2))
+    send(node, 2)
+    await settle()
+    assert subscription.stats.queue_wait.count == 2
+    assert subscription.stats.queue_wait.max_ns >= 2e6
+
+
+@pytest.mark.parametrize("value", [0, 1, 15, 16, 17, 1000, 123_456_789, 10**12])
+def test_percentiles_are_within_three_percent(value: int) -> None:
+    """A distribution of one value is that value."""
+    distribution = Distribution()
+    distribution.record(value)
+    assert distribution.max_ns == value
+    assert distribution.p50_ns == pytest.approx(value, rel=0.035, abs=1)
+
+
+def test_percentiles_of_a_spread() -> None:
+    """The median is in the middle, p99 near the top, and memory does not grow with the count."""
+    distribution = Distribution()
+    for value in range(1, 100_001):
+        distribution.record(value)
+    assert distribution.count == 100_000
+    assert distribution.p50_ns == pytest.approx(50_000, rel=0.04)
+    assert distribution.p99_ns == pytest.approx(99_000, rel=0.04)
+    assert len(distribution._buckets) < 300  # what grows is the subject
+
+
+def test_an_empty_distribution_is_zero() -> None:
+    """It can be printed before anything happened."""
+    assert "count=0, p50_ns=0, p99_ns=0, max_ns=0" in repr(Distribution())
+
+
+# Fairness
+
+
+async def test_a_full_queue_lets_others_run_in_between(
+    node: Node, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A callback that is always ready does not keep the loop for itself."""
+    monkeypatch.setattr(callback_runner, "SLICE_NS", 0)
+    order: list[str] = []
+    listen(node, lambda msg: order.append("topic"))
+    send(node, 10)
+
+    async def other() -> None:
+        for _ in range(5):
+            await checkpoint()
+            order.append("other")
+
+    await other()
+    await settle()
+    first_half = order[:8]
+    assert "topic" in first_half
+    assert first_half.count("other") >= 2
+
+
+async def test_a_reader_of_a_full_queue_lets_others_run(node: Node) -> None:
+    """An `async for` whose body never waits would otherwise keep the loop."""
+    reader = node.create_subscription(Int32, "numbers", qos_profile=2000)
+    send(node, 1000)
+    turns = 0
+
+    async def other() -> None:
+        nonlocal turns
+        while True:
+            await checkpoint()
+            turns += 1
+
+    task = asyncio.get_running_loop().create_task(other())
+    for _ in range(1000):
+        await reader.receive()
+        busy(0.02)
+    task.cancel()
+    assert turns >= 5
+
+
+async def test_a_flooded_subscription_does_not_starve_a_timer(context: Context) -> None:
+    """A 10 ms timer keeps firing beside a topic that is faster than its sync callback.
+
+    Counted in turns of the flood and not in seconds: whatever the machine, the timer's callback
+    comes in while messages wait.
+    """
+    done = asyncio.Event()
+    ticks = 0
+    sent = 0
+
+    async with Node("node", context=context) as node:
+        publisher = node.create_publisher(String, "flood", 10)
+
+        def slow(msg: String) -> None:
+            busy(1.5)
+
+        def tick() -> None:
+            nonlocal ticks
+            ticks += 1
+            if ticks == 20:
+                done.set()
+
+        async def flood() -> None:
+            nonlocal sent
+            while not done.is_set():
+                for _ in range(5):
+                    publisher.publish(String())
+                    sent += 1
+                await checkpoint()
+
+        subscription = node.create_subscription(String, "flood", slow, 10)
+        timer = node.create_timer(0.01, tick)
+        await flood()
+        await settle()
+        stats = subscription.stats
+
+    assert stats.received + stats.dropped == sent
+    assert stats.dropped > 0
+    assert timer.stats.received >= 0.9 * (timer.stats.received + timer.stats.dropped)
+
+
+def test_callbacks_take_their_arguments_by_position() -> None:
+    """Keyword-only parameters do not count."""
+
+    def callback(msg: object, *, extra: int = 0) -> None: ...
+
+    chosen: Callable[..., int] = callback_runner.accepts
+    assert chosen(callback, 1, 2, subject="x", wanted="(message)") == 1

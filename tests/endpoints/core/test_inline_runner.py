@@ -1,0 +1,605 @@
+"""Callbacks that run within the event of a transport: when they do, and what stays the same."""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+from contextvars import ContextVar
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from aionode._concurrency import checkpoint
+from aionode.clock import perf_ns
+from aionode.errors import CallbackCancelledError
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.std_msgs.msg import Int32
+from aionode.node import Node
+from aionode.testing import settle
+from aionode.transport.base import Request, SampleInfo
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable, Callable
+
+    from aionode.context import Context
+    from aionode.endpoints._core.callback_runner import CallbackContext
+    from aionode.endpoints.subscription import MessageInfo, Subscription
+
+MINUTE_NS = 60 * 10**9
+
+place: ContextVar[str] = ContextVar("place", default="nowhere")
+
+
+def listen(node: Node, callback: Any, **options: Any) -> Subscription[Int32]:
+    """Return a subscription to numbers, with room for a thousand."""
+    return node.create_subscription(Int32, "numbers", callback, 1000, **options)
+
+
+def bring(
+    subscription: Subscription[Int32], *numbers: int, inline_deadline_ns: int | None = None
+) -> None:
+    """Deliver `numbers` as a transport does within one of its events."""
+    if inline_deadline_ns is None:
+        inline_deadline_ns = perf_ns() + MINUTE_NS
+    for number in numbers:
+        sample_info = SampleInfo(bytes(16), number, 0, remote=True)
+        subscription.deliver(Int32(data=number), sample_info, inline_deadline_ns)
+
+
+class Asked(Request):
+    """A request for the sum of two and three, which notes what becomes of it."""
+
+    def __init__(self) -> None:
+        self.message = AddTwoInts.Request(a=2, b=3)
+        self.sample_info = SampleInfo(bytes(16), 1, 0, remote=True)
+        self.outcome: list[object] = []
+
+    def reply(self, response: Any) -> None:
+        """Note a response."""
+        self.outcome.append(response.sum)
+
+    def fail(self, error_type: str, error_text: str) -> None:
+        """Note an error."""
+        self.outcome.append(f"{error_type}: {error_text}")
+
+    def drop(self) -> None:
+        """Note the end without an answer, unless there was one."""
+        if not self.outcome:
+            self.outcome.append("dropped")
+
+
+def fail(_: AddTwoInts.Request) -> AddTwoInts.Response:
+    """Answer as a handler with a bug does."""
+    raise ValueError("no sums today")
+
+
+def add(request: AddTwoInts.Request, response: AddTwoInts.Response) -> AddTwoInts.Response:
+    """Answer as the tutorial's server does."""
+    response.sum = request.a + request.b
+    return response
+
+
+# When
+
+
+async def test_an_idle_subscription_calls_back_within_the_event(node: Node) -> None:
+    """The loop need not turn once more, for any number of messages."""
+    heard: list[int] = []
+    subscription = listen(node, lambda msg: heard.append(msg.data))
+    await settle()
+    bring(subscription, 1, 2)
+    assert heard == [1, 2]
+    assert subscription.stats.received == 2
+    await settle()
+    assert heard == [1, 2]
+
+
+async def test_a_callback_that_wants_the_info_gets_it(node: Node) -> None:
+    """As from the queue."""
+    heard: list[tuple[int, int]] = []
+
+    def callback(msg: Int32, info: MessageInfo) -> None:
+        heard.append((msg.data, info["publication_sequence_number"]))
+
+    subscription = listen(node, callback)
+    await settle()
+    bring(subscription, 7)
+    assert heard == [(7, 7)]
+
+
+async def test_without_a_time_the_callback_waits_for_its_turn(node: Node) -> None:
+    """The caller is in a callback or in `publish`, and must not find others called."""
+    heard: list[int] = []
+    subscription = listen(node, lambda msg: heard.append(msg.data))
+    await settle()
+    bring(subscription, 1, inline_deadline_ns=0)
+    assert heard == []
+    await settle()
+    assert heard == [1]
+
+
+async def test_a_local_publish_calls_nobody_back(node: Node) -> None:
+    """Or callbacks would run inside callbacks."""
+    heard: list[int] = []
+    listen(node, lambda msg: heard.append(msg.data))
+    publisher = node.create_publisher(Int32, "numbers", 10)
+    await settle()
+    publisher.publish(Int32(data=1))
+    assert heard == []
+    await settle()
+    assert heard == [1]
+
+
+async def test_after_the_time_of_the_event_messages_queue(node: Node) -> None:
+    """Slow callbacks would keep the loop for a whole burst."""
+    heard: list[int] = []
+    subscription = listen(node, lambda msg: heard.append(msg.data))
+    await settle()
+    bring(subscription, 1, inline_deadline_ns=perf_ns())
+    assert heard == []
+    await settle()
+    assert heard == [1]
+
+
+async def test_what_follows_a_queued_message_queues_too(node: Node) -> None:
+    """Order is worth more than a turn of the loop."""
+    heard: list[int] = []
+    subscription = listen(node, lambda msg: heard.append(msg.data))
+    await settle()
+    bring(subscription, 1, inline_deadline_ns=0)
+    bring(subscription, 2)
+    assert heard == []
+    await settle()
+    assert heard == [1, 2]
+    bring(subscription, 3)
+    assert heard == [1, 2, 3]
+
+
+async def test_a_message_that_comes_during_a_callback_is_next(node: Node) -> None:
+    """It queues, and what comes behind it as well."""
+    heard: list[int] = []
+
+    def callback(msg: Int32) -> None:
+        if msg.data == 1:
+            bring(subscription, 2)
+        heard.append(msg.data)
+
+    subscription = listen(node, callback)
+    await settle()
+    bring(subscription, 1, 3)
+    assert heard == [1]
+    await settle()
+    assert heard == [1, 2, 3]
+
+
+@pytest.mark.parametrize("options", [{"concurrent": True}, {"concurrent": 2}, {"offload": True}])
+async def test_callbacks_with_a_task_or_a_thread_of_their_own_queue(
+    node: Node, options: dict[str, Any]
+) -> None:
+    """They run beside the loop's events by the user's wish."""
+    heard: list[int] = []
+    subscription = listen(node, lambda msg: heard.append(msg.data), **options)
+    await settle()
+    bring(subscription, 1)
+    assert len(subscription._message_queue) == 1
+    await settle()
+    assert heard == [1]
+
+
+async def test_coroutine_functions_queue(node: Node) -> None:
+    """They need a task, which the pump has; objects with an async `__call__` as well."""
+    heard: list[int] = []
+
+    class Listener:
+        async def __call__(self, msg: Int32) -> None:
+            heard.append(msg.data)
+
+    subscription = listen(node, Listener())
+    await settle()
+    bring(subscription, 1)
+    assert len(subscription._message_queue) == 1
+    await settle()
+    assert heard == [1]
+
+
+async def test_before_the_node_runs_messages_queue(context: Context) -> None:
+    """No callback runs before its node does."""
+    heard: list[int] = []
+    node = Node("node", context=context)
+    subscription = listen(node, lambda msg: heard.append(msg.data))
+    bring(subscription, 1)
+    assert heard == []
+    async with node:
+        await settle()
+        assert heard == [1]
+
+
+# What is the same
+
+
+async def test_callbacks_are_measured(node: Node) -> None:
+    """The statistics do not tell which way a message took."""
+    subscription = listen(node, lambda _: None)
+    await settle()
+    bring(subscription, 1, 2)
+    stats = subscription.stats
+    assert stats.queue_wait.count == stats.run_time.count == stats.blocking.count == 2
+    assert 0 < stats.run_time.max_ns == stats.blocking.max_ns
+
+
+async def test_lost_messages_are_counted(node: Node) -> None:
+    """By their numbers, as before the queue."""
+    subscription = listen(node, lambda _: None)
+    await settle()
+    bring(subscription, 1, 4)
+    assert subscription.stats.lost == 2
+
+
+async def test_a_slow_callback_is_reported(
+    node_factory: Callable[..., Node], capfd: pytest.CaptureFixture[str]
+) -> None:
+    """It blocks the loop just the same."""
+    node = node_factory("slow", callback_budget_ms=1e-6)
+    subscription = listen(node, lambda _: None)
+    await settle()
+    bring(subscription, 1)
+    assert "blocked the event loop" in capfd.readouterr().err
+
+
+async def test_callbacks_run_in_the_context_of_their_node(context: Context) -> None:
+    """Not in that of the transport's event, where context variables say something else."""
+    seen: list[str] = []
+    place.set("node")
+    async with Node("node", context=context) as node:
+        subscription = listen(node, lambda _: seen.append(place.get()))
+        await settle()
+        place.set("transport")
+        bring(subscription, 1)
+    assert seen == ["node"]
+
+
+# Errors
+
+
+async def test_an_error_ends_the_node(context: Context) -> None:
+    """It is the pump that raises it, not the transport's event."""
+
+    def fail(msg: Int32) -> None:
+        raise ValueError(f"no {msg.data} please")
+
+    node = Node("node", context=context)
+    subscription = listen(node, fail)
+
+    async def transport() -> None:
+        await settle()
+        bring(subscription, 1, 2)
+
+    async with asyncio.TaskGroup() as tasks:
+        tasks.create_task(transport())
+        with pytest.raises(ExceptionGroup) as caught:
+            await node.run()
+    assert caught.group_contains(ValueError, match="no 1 please")
+    assert not caught.group_contains(ValueError, match="no 2 please")
+    assert subscription.stats.errors == 1
+
+
+async def test_on_error_log_goes_on_at_once(node: Node, capfd: pytest.CaptureFixture[str]) -> None:
+    """Nothing is left for the pump."""
+    heard: list[int] = []
+
+    def callback(msg: Int32) -> None:
+        heard.append(msg.data)
+        raise ValueError("no numbers please")
+
+    subscription = listen(node, callback, on_error="log")
+    await settle()
+    bring(subscription, 1, 2)
+    assert heard == [1, 2]
+    assert subscription.stats.errors == 2
+    assert "ValueError: no numbers please" in capfd.readouterr().err
+
+
+async def test_on_error_may_be_a_function(node: Node) -> None:
+    """It is called within the event too."""
+    seen: list[tuple[Exception, CallbackContext]] = []
+    subscription = listen(
+        node, lambda _: 1 / 0, on_error=lambda error, where: seen.append((error, where))
+    )
+    await settle()
+    bring(subscription, 1)
+    ((error, where),) = seen
+    assert isinstance(error, ZeroDivisionError)
+    assert where.entity is subscription
+
+
+async def test_a_callback_that_raises_cancelled_error_ends_its_subscription(node: Node) -> None:
+    """As it does in the pump: who raises it means it."""
+    heard: list[int] = []
+
+    def callback(msg: Int32) -> None:
+        heard.append(msg.data)
+        raise asyncio.CancelledError
+
+    subscription = listen(node, callback)
+    await settle()
+    bring(subscription, 1)
+    await settle()
+    bring(subscription, 2)
+    await settle()
+    assert heard == [1]
+
+
+async def test_a_keyboard_interrupt_goes_through(node: Node) -> None:
+    """It ends the program, and no entity may hold it back."""
+    heard: list[int] = []
+
+    def callback(msg: Int32) -> None:
+        if msg.data == 1:
+            raise KeyboardInterrupt
+        heard.append(msg.data)
+
+    subscription = listen(node, callback)
+    await settle()
+    with pytest.raises(KeyboardInterrupt):
+        bring(subscription, 1)
+    bring(subscription, 2)
+    assert heard == [2]
+
+
+# Something to await
+
+
+async def test_what_a_callback_returns_is_awaited_before_the_next_message(node: Node) -> None:
+    """By the pump, in order."""
+    heard: list[str] = []
+
+    async def work(msg: Int32) -> None:
+        heard.append(f"begin {msg.data}")
+        await checkpoint()
+        heard.append(f"end {msg.data}")
+
+    subscription = listen(node, lambda msg: work(msg))  # noqa: PLW0108  # not known to be async
+    await settle()
+    bring(subscription, 1, 2)
+    assert len(subscription._message_queue) == 1
+    await settle()
+    assert heard == ["begin 1", "end 1", "begin 2", "end 2"]
+    assert subscription.stats.run_time.count == 2
+
+
+async def test_an_error_of_what_is_awaited_is_one_of_the_callback(node: Node) -> None:
+    """A foreign cancellation included."""
+    seen: list[Exception] = []
+
+    def callback(_: Int32) -> Awaitable[None]:
+        gone: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        gone.cancel()
+        return gone
+
+    subscription = listen(node, callback, on_error=lambda error, _: seen.append(error))
+    await settle()
+    bring(subscription, 1)
+    await settle()
+    assert [type(error) for error in seen] == [CallbackCancelledError]
+
+
+async def test_what_nobody_can_await_any_more_is_closed(node: Node) -> None:
+    """A coroutine that never began would be reported by Python, far from its cause."""
+    begun: list[int] = []
+
+    async def work(msg: Int32) -> None:
+        begun.append(msg.data)
+
+    coroutines: list[Any] = []
+
+    def callback(msg: Int32) -> Awaitable[None]:
+        coroutine = work(msg)
+        coroutines.append(coroutine)
+        return coroutine
+
+    subscription = listen(node, callback)
+    await settle()
+    bring(subscription, 1)
+    subscription.destroy()
+    await settle()
+    gc.collect()
+    assert begun == []
+    assert [coroutine.cr_frame for coroutine in coroutines] == [None]
+
+
+async def test_a_future_that_nobody_can_await_any_more_is_cancelled(node: Node) -> None:
+    """As it would be if the wait had begun."""
+    futures: list[asyncio.Future[None]] = []
+
+    def callback(_: Int32) -> Awaitable[None]:
+        futures.append(asyncio.get_running_loop().create_future())
+        return futures[-1]
+
+    subscription = listen(node, callback)
+    await settle()
+    bring(subscription, 1)
+    subscription.destroy()
+    await settle()
+    assert [future.cancelled() for future in futures] == [True]
+
+
+# The end
+
+
+async def test_a_callback_may_destroy_its_subscription(node: Node) -> None:
+    """What the event still brings is not taken."""
+    heard: list[int] = []
+
+    def callback(msg: Int32) -> None:
+        heard.append(msg.data)
+        node.destroy_subscription(subscription)
+
+    subscription = listen(node, callback)
+    await settle()
+    bring(subscription, 1, 2)
+    await settle()
+    assert heard == [1]
+
+
+async def test_an_error_after_destroying_ends_the_node_all_the_same(context: Context) -> None:
+    """The cancelled pump still has to raise it."""
+
+    def callback(_: Int32) -> None:
+        subscription.destroy()
+        raise ValueError("and now this")
+
+    node = Node("node", context=context)
+    subscription = listen(node, callback)
+
+    async def transport() -> None:
+        await settle()
+        bring(subscription, 1)
+
+    async with asyncio.TaskGroup() as tasks:
+        tasks.create_task(transport())
+        with pytest.raises(ExceptionGroup) as caught:
+            await node.run()
+    assert caught.group_contains(ValueError, match="and now this")
+
+
+async def test_a_callback_may_destroy_its_node(node_factory: Callable[..., Node]) -> None:
+    """Nothing is called any more, and the node ends as if somebody else had asked for it."""
+    heard: list[int] = []
+    node = node_factory("brief")
+
+    def callback(msg: Int32) -> None:
+        heard.append(msg.data)
+        node.destroy_node()
+
+    subscription = listen(node, callback)
+    await settle()
+    bring(subscription, 1, 2)
+    await settle()
+    bring(subscription, 3)
+    assert heard == [1]
+    assert subscription.destroyed
+
+
+async def test_a_node_that_fails_calls_nobody_back(context: Context) -> None:
+    """Its pumps are cancelled before its entities are destroyed."""
+    heard: list[int] = []
+    node = Node("node", context=context)
+    subscription = listen(node, lambda msg: heard.append(msg.data))
+    failing = node.create_subscription(Int32, "others", lambda _: 1 / 0)
+
+    async def transport() -> None:
+        await settle()
+        bring(failing, 1)
+        await checkpoint()  # the pump raises
+        await checkpoint()  # the task group cancels the others
+        bring(subscription, 1)
+
+    async with asyncio.TaskGroup() as tasks:
+        tasks.create_task(transport())
+        with pytest.raises(ExceptionGroup):
+            await node.run()
+    assert heard == []
+
+
+# Services
+
+
+async def test_an_idle_service_answers_within_the_event(node: Node) -> None:
+    """With the response of a sync handler."""
+    service = node.create_service(AddTwoInts, "sums", add)
+    await settle()
+    request = Asked()
+    service.serve(request, perf_ns() + MINUTE_NS)
+    assert request.outcome == [5]
+    assert service.stats.received == service.stats.run_time.count == 1
+
+
+async def test_a_handler_of_the_request_alone_answers_within_the_event(node: Node) -> None:
+    """Either signature will do."""
+    service = node.create_service(
+        AddTwoInts, "sums", lambda request: AddTwoInts.Response(sum=request.a)
+    )
+    await settle()
+    request = Asked()
+    service.serve(request, perf_ns() + MINUTE_NS)
+    assert request.outcome == [2]
+
+
+async def test_without_a_time_a_request_waits_for_its_turn(node: Node) -> None:
+    """The client may be in a callback of the same process."""
+    service = node.create_service(AddTwoInts, "sums", add)
+    await settle()
+    requests = [Asked(), Asked()]
+    service.serve(requests[0])
+    service.serve(requests[1], perf_ns() + MINUTE_NS)
+    assert [request.outcome for request in requests] == [[], []]
+    await settle()
+    assert [request.outcome for request in requests] == [[5], [5]]
+
+
+async def test_a_failing_handler_tells_the_client_at_once(node: Node) -> None:
+    """And a node that goes on does so without its pump."""
+    service = node.create_service(AddTwoInts, "sums", fail, on_error="log")
+    await settle()
+    request = Asked()
+    service.serve(request, perf_ns() + MINUTE_NS)
+    assert request.outcome == ["ValueError: no sums today"]
+    assert service.stats.errors == 1
+
+
+async def test_a_failing_handler_ends_its_node(context: Context) -> None:
+    """Through the pump, as from the queue, where `on_error` asks for it."""
+    node = Node("node", context=context)
+    service = node.create_service(AddTwoInts, "sums", fail, on_error="raise")
+    request = Asked()
+
+    async def transport() -> None:
+        await settle()
+        service.serve(request, perf_ns() + MINUTE_NS)
+
+    async with asyncio.TaskGroup() as tasks:
+        tasks.create_task(transport())
+        with pytest.raises(ExceptionGroup) as caught:
+            await node.run()
+    assert caught.group_contains(ValueError, match="no sums")
+    assert request.outcome == ["ValueError: no sums today"]
+
+
+async def test_a_handler_that_is_cancelled_drops_its_request(node: Node) -> None:
+    """Its client is not left waiting."""
+
+    def handler(_: AddTwoInts.Request) -> AddTwoInts.Response:
+        raise asyncio.CancelledError
+
+    service = node.create_service(AddTwoInts, "sums", handler)
+    await settle()
+    request = Asked()
+    service.serve(request, perf_ns() + MINUTE_NS)
+    assert request.outcome == ["dropped"]
+
+
+async def test_what_a_handler_returns_is_awaited(node: Node) -> None:
+    """By the pump, which then answers."""
+
+    async def work(request: AddTwoInts.Request) -> AddTwoInts.Response:
+        await checkpoint()
+        return AddTwoInts.Response(sum=request.a + request.b)
+
+    service = node.create_service(AddTwoInts, "sums", lambda request: work(request))  # noqa: PLW0108  # not known to be async
+    await settle()
+    request = Asked()
+    service.serve(request, perf_ns() + MINUTE_NS)
+    assert request.outcome == []
+    await settle()
+    assert request.outcome == [5]
+
+
+async def test_a_request_that_was_given_up_is_not_served(node: Node) -> None:
+    """Nobody waits for the answer."""
+    service = node.create_service(AddTwoInts, "sums", add)
+    await settle()
+    request = Asked()
+    request.cancelled = True
+    service.serve(request, perf_ns() + MINUTE_NS)
+    assert request.outcome == ["dropped"]
+    assert service.stats.dropped == 1

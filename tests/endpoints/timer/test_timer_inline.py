@@ -1,0 +1,184 @@
+"""Timers on the machine's clocks: calls within the alarm, and what stays the same."""
+
+from __future__ import annotations
+
+import asyncio
+from contextvars import ContextVar
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from aionode._concurrency import checkpoint
+from aionode.endpoints.timer import Timer
+from aionode.node import Node
+from aionode.testing import local_context
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable
+
+PERIOD_S = 0.002
+
+place: ContextVar[str] = ContextVar("place", default="nowhere")
+
+
+class Calls:
+    """A callback that notes the task that it runs in, and can be waited for."""
+
+    def __init__(self) -> None:
+        self.tasks: list[asyncio.Task[Any] | None] = []
+
+    def __call__(self) -> None:
+        """Note a call."""
+        self.tasks.append(asyncio.current_task())
+
+    async def have(self, count: int) -> None:
+        """Wait for so many."""
+        async with asyncio.timeout(20):
+            while len(self.tasks) < count:
+                await checkpoint()
+
+
+async def test_a_sync_callback_is_called_without_waking_a_task(node: Node) -> None:
+    """The alarm itself makes the call, again and again, on the grid of the timer."""
+    calls = Calls()
+    timer = node.create_timer(PERIOD_S, calls)
+    await calls.have(5)
+    assert None in calls.tasks
+    assert timer.stats.received == timer.stats.queue_wait.count == len(calls.tasks)
+
+
+async def test_a_call_has_the_context_of_its_timer_not_of_the_alarm(node: Node) -> None:
+    """All timers share one alarm, which the first has set up."""
+    first = Calls()
+    node.create_timer(PERIOD_S, first)
+    await first.have(2)
+    found: list[str] = []
+    token = place.set("here")
+    node.create_timer(PERIOD_S, lambda: found.append(place.get()))
+    place.reset(token)
+    async with asyncio.timeout(20):
+        while len(found) < 4:
+            await checkpoint()
+    assert set(found) == {"here"}
+
+
+async def test_what_a_sync_callback_returns_is_awaited_before_the_next_call(node: Node) -> None:
+    """A callback that only turns out to wait does not overlap itself."""
+    begun = ended = 0
+    go_on = asyncio.Event()
+
+    async def wait() -> None:
+        nonlocal ended
+        await go_on.wait()
+        ended += 1
+
+    def call() -> Awaitable[None]:
+        nonlocal begun
+        begun += 1
+        return wait()
+
+    node.create_timer(PERIOD_S, call)
+    others = Calls()
+    node.create_timer(PERIOD_S, others)
+    await others.have(5)
+    assert (begun, ended) == (1, 0)
+    go_on.set()
+    async with asyncio.timeout(20):
+        while ended < 3:
+            await checkpoint()
+
+
+@pytest.mark.parametrize("end", [Timer.cancel, Timer.destroy])
+async def test_a_callback_may_end_its_own_timer(node: Node, end: Any) -> None:
+    """The call that does it is the last."""
+    calls = Calls()
+
+    def call() -> None:
+        calls()
+        if len(calls.tasks) == 3:
+            end(timer)
+
+    timer = node.create_timer(PERIOD_S, call)
+    await calls.have(3)
+    others = Calls()
+    node.create_timer(PERIOD_S, others)
+    await others.have(5)
+    assert len(calls.tasks) == 3
+
+
+async def test_a_callback_may_reset_its_own_timer(node: Node) -> None:
+    """Calls go on, a period after each reset."""
+    calls = Calls()
+
+    def call() -> None:
+        calls()
+        timer.reset()
+
+    timer = node.create_timer(PERIOD_S, call)
+    await calls.have(4)
+
+
+async def test_an_error_that_is_logged_leaves_the_timer_running(node: Node) -> None:
+    """As when the task makes the call."""
+    calls = Calls()
+
+    def call() -> None:
+        calls()
+        raise ValueError("no")
+
+    timer = node.create_timer(PERIOD_S, call, on_error="log")
+    await calls.have(4)
+    assert timer.stats.errors == len(calls.tasks)
+
+
+async def test_an_error_ends_the_node_of_the_timer() -> None:
+    """It comes out where the node is awaited."""
+
+    def call() -> None:
+        raise ValueError("broken")
+
+    async def run() -> None:
+        async with local_context() as context, Node("node", context=context) as node:
+            node.create_timer(PERIOD_S, call)
+            await asyncio.Event().wait()
+
+    with pytest.raises(ExceptionGroup) as caught:
+        await run()
+    assert caught.group_contains(ValueError, match="broken")
+
+
+@pytest.mark.parametrize("action", ["cancel", "destroy", "reset", "cancel and fail"])
+async def test_a_sync_callback_may_end_its_own_timer(node: Node, action: str) -> None:
+    """Every one-shot timer does; the alarm that called it must not set what was set already."""
+    problems: list[dict[str, Any]] = []
+    asyncio.get_running_loop().set_exception_handler(lambda _, about: problems.append(about))
+    calls: list[int] = []
+    may_end = asyncio.Event()
+
+    def once() -> None:
+        calls.append(1)
+        if action == "destroy":
+            timer.destroy()
+        elif action == "reset":
+            timer.reset()
+        else:
+            timer.cancel()
+        if len(calls) == 2 or action != "reset":
+            may_end.set()
+        if action == "cancel and fail":
+            raise ValueError("broken")
+
+    timer = node.create_timer(PERIOD_S, once, on_error="log")
+    async with asyncio.timeout(20):
+        await may_end.wait()
+    for _ in range(5):
+        await checkpoint()
+
+    assert not problems
+    if action.startswith("cancel"):
+        may_end.clear()
+        timer.reset()
+        async with asyncio.timeout(20):
+            await may_end.wait()
+        assert len(calls) == 2
+    node.destroy_node()

@@ -1,0 +1,241 @@
+"""A linked process that is killed or frozen in mid-stream takes nobody with it."""
+
+from __future__ import annotations
+
+import asyncio
+import copy
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager, contextmanager
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from aionode._concurrency import checkpoint
+from aionode.context import Context
+from aionode.interfaces.std_msgs.msg import Int32, UInt8MultiArray
+from aionode.node import Node
+from aionode.transport.ipc._connection import Connection
+from aionode.transport.ipc._protocol import Route
+from aionode.transport.ipc._publisher import IpcWriter
+from aionode.transport.ipc._transport import IpcTransport
+from tests.processes.ipc_member import STREAMED_BYTES
+from tests.support.peers import isolated_environment, quiet_node
+
+MEMBER = Path(__file__).with_name("link_member.py")
+
+
+@pytest.fixture(autouse=True)
+def isolated(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """The processes of a test hear each other only, and meet in a folder of their own."""
+    root = tempfile.mkdtemp(prefix="aio")
+    monkeypatch.setenv("XDG_RUNTIME_DIR", root)
+    for name, value in isolated_environment().items():
+        monkeypatch.setenv(name, value)
+    yield
+    shutil.rmtree(root)
+
+
+@contextmanager
+def other_process(*arguments: str) -> Iterator[subprocess.Popen[bytes]]:
+    """Run the echoing process meanwhile."""
+    root = Path(__file__).parents[2]
+    with subprocess.Popen(
+        [sys.executable, MEMBER, *arguments], stdin=subprocess.PIPE, cwd=root, env=os.environ.copy()
+    ) as process:
+        try:
+            yield process
+        finally:
+            process.send_signal(signal.SIGCONT)
+            process.kill()
+
+
+class Pings:
+    """Numbers that the other process sends back."""
+
+    def __init__(self, node: Any) -> None:
+        self.node = node
+        self.there = node.create_publisher(Int32, "there", 1000)
+        self.back = node.create_subscription(Int32, "back", None, 1000)
+        self.next = 0
+
+    @property
+    def links(self) -> list[str]:
+        """Who is linked."""
+        transport = self.node.context.transports[1]
+        assert isinstance(transport, IpcTransport)
+        return transport.manager.links
+
+    @property
+    def writer(self) -> IpcWriter:
+        """The publisher's end of both ways."""
+        writer = self.there._writers[1]
+        assert isinstance(writer, IpcWriter)
+        return writer
+
+    async def go(self) -> None:
+        """Send the next number to and fro."""
+        self.there.publish(Int32(data=self.next))
+        assert (await self.back.receive()).data == self.next
+        self.next += 1
+
+    async def until_linked(self) -> None:
+        """Go on until the link is used."""
+        await self.there.wait_for_subscribers()
+        while self.back.get_publisher_count() == 0:
+            await self.node.graph.changed()
+        while self.writer.linked == 0:
+            await self.go()
+
+
+@asynccontextmanager
+async def linked_node() -> AsyncIterator[Node]:
+    """A node that may be linked."""
+    async with asyncio.timeout(40), Context(link=True) as context, quiet_node("n", context) as node:
+        yield node
+
+
+async def test_a_killed_process_ends_its_link_and_the_next_gets_one() -> None:
+    """In the middle of a stream, with what was on its way."""
+    async with linked_node() as node:
+        ping = Pings(node)
+        for _ in range(2):
+            with other_process() as process:
+                await ping.until_linked()
+                for _ in range(50):
+                    await ping.go()
+                for _ in range(200):
+                    ping.there.publish(Int32(data=-1))
+                process.kill()
+                while ping.links:
+                    ping.there.publish(Int32(data=-1))
+                    await asyncio.to_thread(lambda: None)
+            while ping.there.get_subscription_count():
+                await ping.node.graph.changed()
+            while ping.back._inbox:
+                await ping.back.receive()
+
+
+async def test_a_frozen_process_costs_nothing_but_its_messages() -> None:
+    """The publisher drops the oldest, never waits, and goes on when it goes on."""
+    async with linked_node() as node:
+        ping = Pings(node)
+        with other_process() as process:
+            await ping.until_linked()
+            process.send_signal(signal.SIGSTOP)
+            for _ in range(20_000):
+                ping.there.publish(Int32(data=-1))
+            assert ping.writer.dropped > 0
+            process.send_signal(signal.SIGCONT)
+            ping.there.publish(Int32(data=-2))
+            while (await ping.back.receive()).data != -2:
+                pass
+            while ping.back._inbox:
+                await ping.back.receive()
+            await ping.go()
+
+
+class Stream:
+    """Large arrays from the other process, over a link whose reading can be stopped."""
+
+    def __init__(self, node: Any) -> None:
+        self.node = node
+        self.subscription = node.create_subscription(UInt8MultiArray, "stream", None, 10)
+
+    @property
+    def link(self) -> Connection:
+        """The only link."""
+        manager = self.node.context.transports[1].manager
+        (participant,) = manager.links
+        return cast(Connection, manager.linked(participant))
+
+    async def next(self) -> int:
+        """Return the number that fills the next array, and nothing else but it."""
+        data = np.frombuffer((await self.subscription.receive()).data, np.uint8)
+        assert len(data) == STREAMED_BYTES
+        assert data.min() == data.max()
+        return int(data[0])
+
+    async def until_linked(self) -> None:
+        """Go on until the arrays come over the link."""
+        while not any(
+            remote_publisher.handover.route is Route.IPC
+            for reader in self.node.context.transports[1].manager.readers.values()
+            for remote_publisher in reader.remote_publishers.values()
+        ):
+            await self.next()
+
+    async def freeze_in_mid_frame(self, process: subprocess.Popen[bytes]) -> None:
+        """Read no more, and stop the sender when it waits to send the rest of a frame."""
+        asyncio.get_running_loop().remove_reader(self.link._fd)
+        while True:
+            stop(process)
+            if in_mid_frame(self.link):
+                return
+            process.send_signal(signal.SIGCONT)
+            await checkpoint()
+
+    def on_writable(self) -> None:
+        """Read again."""
+        asyncio.get_running_loop().add_reader(self.link._fd, self.link._on_readable)
+
+
+def stop(process: subprocess.Popen[bytes]) -> None:
+    """Freeze a process, and see it frozen."""
+    process.send_signal(signal.SIGSTOP)
+    os.waitpid(process.pid, os.WUNTRACED)
+
+
+def in_mid_frame(link: Connection) -> bool:
+    """Return whether what waits in the socket ends within a frame."""
+    assert link._sock is not None
+    parser = copy.deepcopy(link._parser)
+    try:
+        parser.feed(link._sock.recv(1 << 20, socket.MSG_PEEK))
+    except BlockingIOError:  # nothing waits
+        return False
+    return bool(parser._pieces)
+
+
+async def test_a_sender_that_is_killed_in_mid_frame_ends_its_stream_and_the_next_is_heard() -> None:
+    """What it has not sent to the end is nothing; what it has is whole."""
+    async with linked_node() as node:
+        stream = Stream(node)
+        for _ in range(2):
+            with other_process("stream") as process:
+                await stream.until_linked()
+                await stream.freeze_in_mid_frame(process)
+                process.kill()
+                process.wait()
+                link = stream.link
+                stream.on_writable()
+                while not link.closed:
+                    await checkpoint()
+                while stream.subscription._inbox:
+                    await stream.next()
+            while stream.subscription.get_publisher_count():
+                await stream.node.graph.changed()
+
+
+async def test_a_sender_that_is_frozen_in_mid_frame_goes_on_where_it_was() -> None:
+    """Its link stays, and the rest of the frame comes with the next."""
+    async with linked_node() as node:
+        stream = Stream(node)
+        with other_process("stream") as process:
+            await stream.until_linked()
+            await stream.freeze_in_mid_frame(process)
+            stream.on_writable()
+            while not stream.link._parser._pieces:
+                await checkpoint()
+            process.send_signal(signal.SIGCONT)
+            for _ in range(20):
+                await stream.next()
+            assert not stream.link.closed

@@ -1,0 +1,119 @@
+"""Two nodes in two contexts that may be linked, and numbers that go from one to the other."""
+
+from __future__ import annotations
+
+import asyncio
+import shutil
+import tempfile
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+
+from aionode.context import Context
+from aionode.interfaces.std_msgs.msg import Int32
+from aionode.node import Node
+from aionode.transport.ipc import _manager as manager
+from aionode.transport.ipc._connection import Connection
+from aionode.transport.ipc._publisher import IpcWriter
+from aionode.transport.ipc._transport import IpcTransport
+from tests.support.peers import quiet_node
+
+__all__ = [
+    "Counting",
+    "Two",
+    "folder",
+    "hub_of",
+    "link_of",
+    "transport_of",
+    "two_nodes",
+    "writer_of",
+]
+
+
+@pytest.fixture(autouse=True)
+def folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """Sockets of a test lie in a folder of its own, with a path short enough for a socket."""
+    root = Path(tempfile.mkdtemp(prefix="aio"))
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(root))
+    monkeypatch.setattr(manager, "AGAIN_S", 0.01)
+    yield root / "aionode"
+    shutil.rmtree(root)
+
+
+class Two(NamedTuple):
+    """Two nodes in two contexts."""
+
+    a: Node
+    b: Node
+
+
+def transport_of(node: Node) -> IpcTransport:
+    """Return the transport under test."""
+    transport = node.context.transports[1]
+    assert isinstance(transport, IpcTransport)
+    return transport
+
+
+def hub_of(node: Node) -> manager.LinkManager:
+    """Return the links of a node's context."""
+    return transport_of(node).manager
+
+
+def link_of(node: Node) -> Connection:
+    """Return the only link of a node's context."""
+    (participant,) = hub_of(node).links
+    connection = hub_of(node).linked(participant)
+    assert connection is not None
+    return connection
+
+
+def writer_of(publisher: Any) -> IpcWriter:
+    """Return the publisher's end of both ways."""
+    writer = publisher._writers[1]
+    assert isinstance(writer, IpcWriter)
+    return writer
+
+
+@asynccontextmanager
+async def two_nodes(*, links: tuple[bool, bool] = (True, True)) -> AsyncIterator[Two]:
+    """Two nodes that may be linked, or not."""
+    async with (
+        asyncio.timeout(30),
+        Context(link=links[0]) as first,
+        Context(link=links[1]) as second,
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        yield Two(a, b)
+
+
+class Counting:
+    """A publisher of rising numbers and a subscription that expects them."""
+
+    def __init__(self, nodes: Two, profile: Any = 1000, topic: str = "n") -> None:
+        self.publisher = nodes.a.create_publisher(Int32, topic, profile)
+        self.subscription = nodes.b.create_subscription(Int32, topic, None, profile)
+        self.next = 0
+
+    def publish(self, count: int = 1) -> None:
+        """Publish the next numbers."""
+        for _ in range(count):
+            self.publisher.publish(Int32(data=self.next))
+            self.next += 1
+
+    async def go(self, count: int = 1) -> None:
+        """Publish and receive so many, and expect the very next ones."""
+        first = self.next
+        self.publish(count)
+        assert [(await self.subscription.receive()).data for _ in range(count)] == list(
+            range(first, self.next)
+        )
+
+    async def until_linked(self, linked: int = 1) -> None:
+        """Go on until so many readers take the link only."""
+        await self.publisher.wait_for_subscribers()
+        while writer_of(self.publisher).linked != linked:
+            await self.go()

@@ -1,0 +1,579 @@
+"""Links between contexts: which way messages take, and what happens when a link breaks."""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+import logging
+import os
+import resource
+import socket
+import threading
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from aionode._concurrency import checkpoint
+from aionode.context import Context
+from aionode.endpoints.subscription import MessageInfo
+from aionode.errors import ConfigurationError, ServiceUnavailableError
+from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.sensor_msgs.msg import Image
+from aionode.interfaces.std_msgs.msg import Int32
+from aionode.qos import QoSProfile, ReliabilityPolicy
+from aionode.transport.ipc import _listener as listener
+from aionode.transport.ipc import _subscription as subscription
+from aionode.transport.ipc._subscription import ZenohFilter
+from aionode.transport.ipc._transport import IpcTransport
+from aionode.wire import cdr
+from aionode.wire._key_expression import data_key
+from aionode.wire.typehash import type_hash
+from tests.support.links import Counting, Two, folder, hub_of, link_of, two_nodes, writer_of
+from tests.support.peers import DOMAIN_ID, KEEP_ALL, Collector, quiet_node, raw_session
+
+__all__ = ["folder"]  # a fixture
+
+NUMBERS = data_key(DOMAIN_ID, "/n", "std_msgs/msg/Int32", type_hash(Int32))
+
+
+def number_of(sample: Any) -> int:
+    """Return what a bare session has heard."""
+    return cdr.decode(Int32, sample.payload.to_bytes()).data
+
+
+async def test_a_stream_changes_to_the_link_and_leaves_zenoh() -> None:
+    """Each message once and in order meanwhile, and Zenoh's threads rest afterwards."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.until_linked()
+        assert not writer_of(numbers.publisher).update()
+        await numbers.go(500)
+        assert numbers.subscription.stats.lost == 0
+
+
+async def test_a_message_that_is_held_has_the_time_of_its_arrival(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Not that of its release: rates that are measured would be those of the hand-over."""
+    monkeypatch.setattr(subscription, "ZENOH_LATE_S", 0.05)
+    monkeypatch.setattr(ZenohFilter, "deliver", lambda *_: None)  # Zenoh brings nothing
+    async with two_nodes() as nodes:
+        infos: list[MessageInfo] = []
+        publisher = nodes.a.create_publisher(Int32, "n", 100)
+        publisher.publish(Int32())  # which is waited for
+        nodes.b.create_subscription(Int32, "n", lambda _, info: infos.append(info), 100)
+        await publisher.wait_for_subscribers()
+        while not hub_of(nodes.a).links:
+            await checkpoint()
+        while not infos:  # a few at a time: when there are too many, none is held
+            publisher.publish(Int32())
+            await asyncio.to_thread(threading.Event().wait, 0.001)
+
+    assert infos[0]["received_timestamp"] - infos[0]["source_timestamp"] < 25_000_000
+
+
+async def test_every_kind_of_reader_gets_each_message_once() -> None:
+    """One over the link, one in the process, one that is a bare Zenoh session without tokens."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        beside = nodes.a.create_subscription(Int32, "n", None, 1000)
+        await numbers.publisher.wait_for_subscribers(2)
+        await numbers.until_linked()
+        before = numbers.next
+        with raw_session() as session:
+            samples = Collector()
+            subscriber = session.declare_subscriber(f"{DOMAIN_ID}/**", samples)
+            while not samples.items:
+                await numbers.go()
+            await numbers.go(50)
+            while number_of(samples.items[-1]) < numbers.next - 1:
+                await checkpoint()
+            subscriber.undeclare()
+        heard = [number_of(sample) for sample in samples.items]
+        assert heard == list(range(heard[0], numbers.next))
+        assert len(heard) >= 50
+        assert before <= heard[0]
+        assert [(await beside.receive()).data for _ in range(numbers.next)] == list(
+            range(numbers.next)
+        )
+        assert numbers.subscription.stats.lost == 0
+
+
+async def test_what_was_in_a_broken_link_reaches_its_reader_and_nobody_twice() -> None:
+    """Also what went both ways, and what was sent before a stranger came to listen."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes, 10_000)
+        await numbers.until_linked()
+        before = numbers.next
+        stalled = link_of(nodes.b)
+        asyncio.get_running_loop().remove_reader(stalled._fd)
+        numbers.publish(100)
+        with raw_session() as session:
+            samples = Collector()
+            subscriber = session.declare_subscriber(NUMBERS, samples)
+            while not writer_of(numbers.publisher).update():  # until the stranger is known
+                await checkpoint()
+            while not samples.items:
+                numbers.publish()
+                await checkpoint()
+            numbers.publish(20)
+            stalled.close()
+            numbers.publish(20)
+            assert [
+                (await numbers.subscription.receive()).data for _ in range(before, numbers.next)
+            ] == list(range(before, numbers.next))
+            end = numbers.next
+            while number_of(samples.items[-1]) < end:
+                numbers.publish()
+                await checkpoint()
+            subscriber.undeclare()
+        heard = [number_of(sample) for sample in samples.items]
+        assert heard == sorted(set(heard))  # Zenoh may drop some of a burst
+        assert numbers.subscription.stats.lost == 0
+
+
+async def test_a_stream_goes_on_over_zenoh_when_the_link_ends_and_back_when_it_is_there() -> None:
+    """Either end may close it; nobody notices."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        for node in nodes:
+            await numbers.until_linked()
+            link = link_of(node)
+            link.close()
+            await numbers.go(20)
+            while link in (
+                hub_of(n).linked(p) for n in nodes for p in hub_of(n).links
+            ):  # the other end has not heard yet
+                await numbers.go()
+        await numbers.until_linked()
+        assert numbers.subscription.stats.lost == 0
+
+
+async def test_the_end_is_seen_where_something_is_left_to_read_and_nothing_to_write() -> None:
+    """An event loop may tell once, and no more, of a socket whose other end left data unread."""
+    async with two_nodes() as nodes:
+        unconfirmed = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
+        numbers = Counting(nodes, unconfirmed)
+        back = Counting(Two(nodes.b, nodes.a), topic="back")
+        await numbers.until_linked()
+        await back.until_linked()
+        ends = [link_of(node) for node in nodes]
+        loop = asyncio.get_running_loop()
+        for end in ends:
+            loop.remove_reader(end._fd)
+        first = numbers.next
+        numbers.publish(20)
+        back.publish(1)
+        while not all(end.idle for end in ends):
+            await checkpoint()
+        ends[0].close()
+        loop.add_reader(ends[1]._fd, ends[1]._on_readable)
+        while not ends[1].closed:
+            await checkpoint()
+        assert [(await numbers.subscription.receive()).data for _ in range(20)] == list(
+            range(first, numbers.next)
+        )
+        assert (await back.subscription.receive()).data == back.next - 1
+
+
+@pytest.mark.parametrize(
+    "garbage", [b"no frame at all" * 10, b"\xff" * 40, b"\x00"], ids=["text", "length", "cut"]
+)
+async def test_garbage_ends_the_link_and_not_the_stream(
+    garbage: bytes, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Both ends go on over Zenoh, and say why."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.until_linked()
+        link = link_of(nodes.b)
+        assert link._sock is not None
+        link._sock.send(garbage)
+        if len(garbage) < 40:
+            link.close()
+        while not link.closed:
+            await numbers.go()
+        await numbers.go(100)
+        assert numbers.subscription.stats.lost == 0
+    assert len(garbage) < 40 or "no frame" in caplog.text
+
+
+async def test_junk_by_post_is_said_once_and_counted(
+    folder: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Anybody on the network may send any amount of it."""
+    async with quiet_node("one") as node:
+        for _ in range(500):
+            hub_of(node)._on_retransmit(b"no frame at all" * 10)
+
+        assert hub_of(node)._junk == 500
+    assert sum("came by post" in text for text in caplog.messages) == 1
+
+
+async def test_strangers_at_the_socket_get_nothing_and_stop_nothing(folder: Path) -> None:
+    """Silence, garbage, or a frame before the greeting: none of it becomes a link."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        path = folder / f"{nodes.b.context.participant}.sock"
+        for said in (b"", b"x" * 100, bytes(7)):
+            with socket.socket(socket.AF_UNIX) as stranger:
+                stranger.connect(str(path))
+                stranger.send(said)
+                await numbers.publisher.wait_for_subscribers()
+                await numbers.go(5)
+        assert hub_of(nodes.b).links in ([], [nodes.a.context.participant])
+
+
+async def test_other_users_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whoever is at the other end of the socket, it is not this user."""
+    monkeypatch.setattr(listener, "is_own_user", lambda _: False)
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.publisher.wait_for_subscribers()
+        await numbers.go(20)
+        assert hub_of(nodes.a).links == hub_of(nodes.b).links == []
+
+
+def open_to_others(folder: Path) -> None:
+    """Make the folder one that others can enter."""
+    folder.mkdir(mode=0o755)
+
+
+def a_file(folder: Path) -> None:
+    """Put a file in the folder's place."""
+    folder.touch()
+
+
+def no_parent(folder: Path) -> None:
+    """Remove the folder that it should be made in."""
+    folder.parent.rmdir()
+
+
+@pytest.mark.parametrize("spoil", [open_to_others, a_file, no_parent])
+async def test_without_a_folder_of_its_own_everything_goes_over_zenoh(
+    spoil: Any, folder: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """And it is said once what is wrong with it."""
+    spoil(folder)
+    with caplog.at_level(logging.WARNING, "aionode.transport.ipc"):
+        async with two_nodes() as nodes:
+            numbers = Counting(nodes)
+            await numbers.publisher.wait_for_subscribers()
+            await numbers.go(20)
+    assert str(folder) in caplog.text
+    folder.parent.mkdir(exist_ok=True)
+
+
+async def test_a_slow_reader_loses_the_oldest_and_the_publisher_counts_them() -> None:
+    """A full socket bounds what waits for it: the depth of the publisher."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes, 10)
+        await numbers.until_linked()
+        link = link_of(nodes.b)
+        loop = asyncio.get_running_loop()
+        loop.remove_reader(link._fd)  # it reads no more, as if it were frozen
+        numbers.publish(20_000)
+        dropped = writer_of(numbers.publisher).dropped
+        assert 0 < dropped < 20_000
+        route = writer_of(numbers.publisher)._send_queues[link_of(nodes.a)]
+        assert len(route._waiting) == 10
+        loop.add_reader(link._fd, link._on_readable)
+        while (await numbers.subscription.receive()).data != numbers.next - 1:
+            pass
+        assert numbers.subscription.stats.lost == dropped
+
+
+async def test_a_keep_all_reader_that_does_not_read_fills_the_publisher_and_loses_nothing() -> None:
+    """Back-pressure: `drain` waits for it, and `publish` refuses past the bound."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes, KEEP_ALL)
+        await numbers.until_linked()
+        begin = numbers.next
+        total = 0
+        while total < 40_000 and writer_of(numbers.publisher).has_room():
+            numbers.publish()
+            total += 1
+            if not total % 1000:
+                await asyncio.to_thread(lambda: None)  # the loop goes round meanwhile
+        assert not writer_of(numbers.publisher).has_room()
+        drained = asyncio.get_running_loop().create_future()
+
+        async def drain() -> None:
+            await numbers.publisher.drain()
+            drained.set_result(None)
+
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(drain())
+            got = [(await numbers.subscription.receive()).data for _ in range(total)]
+            assert got == list(range(begin, numbers.next))
+            await drained
+        assert numbers.subscription.stats.dropped == numbers.subscription.stats.lost == 0
+
+
+async def test_keep_all_loses_nothing_while_the_link_comes_up() -> None:
+    """However far Zenoh is behind when the reader asks for the link."""
+    async with two_nodes() as nodes:
+        heard: list[int] = []
+        nodes.b.create_subscription(Int32, "n", lambda msg: heard.append(msg.data), KEEP_ALL)
+        publisher = nodes.a.create_publisher(Int32, "n", KEEP_ALL)
+        await publisher.wait_for_subscribers()
+        for number in range(12_000):
+            if not writer_of(publisher).has_room():
+                await publisher.drain()
+            publisher.publish(Int32(data=number))
+        await publisher.drain()
+        while len(heard) < 12_000:
+            await asyncio.to_thread(lambda: None)
+        assert heard == list(range(12_000))
+
+
+# Services
+
+
+async def test_a_call_takes_the_link_and_ends_with_it() -> None:
+    """Nobody can tell whether the server has begun, so it is not sent again."""
+    async with two_nodes() as nodes:
+        begun = asyncio.Event()
+
+        async def serve(request: Any, response: Any) -> Any:
+            if request.a == 0:
+                begun.set()
+                await asyncio.Event().wait()
+            response.sum = request.a + request.b
+            return response
+
+        nodes.b.create_service(AddTwoInts, "add", serve, concurrent=True)
+        client: Any = nodes.a.create_client(AddTwoInts, "add")
+        await client.wait_for_service()
+        while not hub_of(nodes.a).links:
+            assert (await client.call(AddTwoInts.Request(a=1, b=2))).sum == 3
+        async with asyncio.TaskGroup() as tasks:
+            call = tasks.create_task(fails(client.call(AddTwoInts.Request(a=0, b=0))))
+            await begun.wait()
+            link_of(nodes.b).close()
+            assert isinstance(await call, ServiceUnavailableError)
+        assert (await client.call(AddTwoInts.Request(a=3, b=4))).sum == 7
+
+
+async def test_an_action_takes_the_link() -> None:
+    """Its services and its feedback, in order, and the result after them."""
+    async with two_nodes() as nodes:
+
+        async def execute(goal: Any) -> Any:
+            for number in range(20):
+                goal.publish_feedback(Fibonacci.Feedback(sequence=[number]))
+                await checkpoint()
+            goal.succeed()
+            return Fibonacci.Result(sequence=[1, 2])
+
+        nodes.b.create_action_server(Fibonacci, "count", execute)
+        client: Any = nodes.a.create_action_client(Fibonacci, "count")
+        await client.wait_for_server()
+        while not hub_of(nodes.a).links:
+            await checkpoint()
+        for _ in range(3):
+            goal = await client.send_goal(Fibonacci.Goal(order=20))
+            got = [list(feedback.sequence) async for feedback in goal]
+            assert got == [[number] for number in range(20)]
+            assert list((await goal.result()).result.sequence) == [1, 2]
+        assert not hub_of(nodes.a).calls
+
+
+async def fails(awaitable: Any) -> Exception | None:
+    """Return what it raises."""
+    try:
+        await awaitable
+    except ServiceUnavailableError as error:
+        return error
+    return None
+
+
+async def test_a_server_in_a_bare_session_is_asked_over_zenoh() -> None:
+    """The links do not reach it, and a query over Zenoh reaches all."""
+    async with two_nodes() as nodes:
+        served = []
+
+        def serve(request: Any, response: Any) -> Any:
+            served.append(request.a)
+            return response
+
+        nodes.b.create_service(AddTwoInts, "add", serve)
+        async with quiet_node("c", Context(link=False)) as c:
+            c.create_service(AddTwoInts, "add", serve)
+            client: Any = nodes.a.create_client(AddTwoInts, "add")
+            while client._servers() < 2:
+                await nodes.a.graph.changed()
+            await client.call(AddTwoInts.Request(a=1))
+            await client.call(AddTwoInts.Request(a=2))
+            assert hub_of(nodes.a).calls == {}
+        assert set(served) == {1, 2}
+
+
+# Large payloads
+
+
+def image(number: int) -> Image:
+    """Return an image of one colour."""
+    return Image(height=600, width=1000, step=1000, data=bytes([number]) * 600_000)
+
+
+async def linked_images(nodes: Two) -> tuple[Any, Any]:
+    """Return a publisher of images and its reader, which has the link from the first image on."""
+    numbers = Counting(nodes)
+    await numbers.until_linked()
+    publisher = nodes.a.create_publisher(Image, "images", 10)
+    subscription = nodes.b.create_subscription(Image, "images", None, 10)
+    while writer_of(publisher).linked == 0:
+        await numbers.go()
+    return publisher, subscription
+
+
+async def test_images_come_in_shared_memory_that_is_used_again() -> None:
+    """Read in place, unchanged as long as anybody looks, and given back afterwards."""
+    async with two_nodes() as nodes:
+        publisher, subscription = await linked_images(nodes)
+        assert not writer_of(publisher).update()  # and Zenoh is spared
+        kept = []
+        for number in range(1, 6):
+            publisher.publish(image(number))
+            kept.append(await subscription.receive())
+        lent = link_of(nodes.a)._lent
+        assert len(lent) == 5
+        assert [np.frombuffer(one.data, np.uint8).max() for one in kept] == [1, 2, 3, 4, 5]
+        assert all(memoryview(one.data).readonly for one in kept)
+        kept.clear()
+        gc.collect()
+        while lent:
+            await checkpoint()  # the receiver says so in its next turns
+        known = set(link_of(nodes.a)._known)
+        publisher.publish(image(7))
+        last = await subscription.receive()
+        assert link_of(nodes.a)._known == known
+        assert bytes(last.data[:1]) == bytes([7])
+
+
+async def test_without_descriptors_large_payloads_go_through_the_stream(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """It is slower, and nothing is lost."""
+
+    def exhausted(*_: Any) -> int:
+        raise OSError(24, "Too many open files")
+
+    async with two_nodes() as nodes:
+        publisher, subscription = await linked_images(nodes)
+        monkeypatch.setattr(os, "memfd_create", exhausted)
+        for number in range(5):
+            publisher.publish(image(number))
+            assert bytes((await subscription.receive()).data[:1]) == bytes([number])
+        assert not link_of(nodes.a)._lent
+
+
+async def test_a_receiver_without_descriptors_goes_on_over_zenoh_and_loses_nothing(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """The system drops the descriptor on the way in, and with it the place of the image."""
+    async with two_nodes() as nodes:
+        publisher, subscription = await linked_images(nodes)
+        pool = hub_of(nodes.a).pool
+        fresh = pool.filled(bytes(600_000))  # which the receiver has no descriptor of
+        assert fresh is not None
+        pool.release(fresh)
+        limits = resource.getrlimit(resource.RLIMIT_NOFILE)
+        free = os.open("/dev/null", os.O_RDONLY)
+        os.close(free)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (free, limits[1]))
+        link = link_of(nodes.a)
+        try:
+            for number in range(1, 4):
+                publisher.publish(image(number))
+            while not link.closed:
+                await checkpoint()
+        finally:
+            # Zenoh itself loses large messages meanwhile: it has shared memory of its own.
+            resource.setrlimit(resource.RLIMIT_NOFILE, limits)
+        for number in range(1, 4):
+            assert bytes((await subscription.receive()).data[:1]) == bytes([number])
+    assert "too many files are open" in caplog.text
+
+
+# What stays
+
+
+def descriptors() -> int:
+    """Return how many are open."""
+    return len(list(Path("/proc/self/fd").iterdir()))
+
+
+def sockets(folder: Path) -> int:
+    """Return how many lie there."""
+    return len(list(folder.iterdir()))
+
+
+async def test_nothing_stays_behind(folder: Path) -> None:
+    """No descriptor and no socket."""
+    async with two_nodes():  # what is opened once for all
+        pass
+    before = descriptors()
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.until_linked()
+        assert sockets(folder) == 2
+    assert sockets(folder) == 0
+    gc.collect()
+    assert descriptors() <= before
+
+
+async def test_sockets_of_the_killed_are_removed(folder: Path) -> None:
+    """Who was killed could not do it."""
+    os.mkdir(folder, 0o700)  # noqa: PTH102  # nothing else uses the loop here
+    with socket.socket(socket.AF_UNIX) as dead:
+        dead.bind(str(folder / "dead.sock"))
+    async with two_nodes():
+        assert not (folder / "dead.sock").exists()
+
+
+# The switch
+
+
+def test_a_link_is_used_unless_it_was_switched_off(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the variable, unless the argument says otherwise."""
+
+    def linked(**options: Any) -> bool:
+        return isinstance(Context(**options).transports[-1], IpcTransport)
+
+    monkeypatch.delenv("AIONODE_LINK", raising=False)
+    assert linked()
+    assert not linked(link=False)
+    monkeypatch.setenv("AIONODE_LINK", "off")
+    assert not linked()
+    assert linked(link=True)
+    monkeypatch.setenv("AIONODE_LINK", "on")
+    assert linked()
+    monkeypatch.setenv("AIONODE_LINK", "perhaps")
+    with pytest.raises(ConfigurationError):
+        linked()
+
+
+async def test_contexts_with_and_without_links_hear_each_other() -> None:
+    """An older release, or one that was told not to."""
+    async with two_nodes(links=(True, False)) as nodes:
+        numbers = Counting(nodes)
+        await numbers.publisher.wait_for_subscribers()
+        await numbers.go(50)
+        assert hub_of(nodes.a).links == []
+
+
+def test_a_beacon_says_who_can_be_linked() -> None:
+    """Same host, same user, same version; and what is no beacon is none."""
+    own = listener.Advertisement.own("1a")
+    assert listener.Advertisement.parse(own.text()) == own
+    assert own.is_near(own._replace(participant="2b"))
+    assert not own.is_near(own)
+    for other in (own._replace(host="x"), own._replace(uid=own.uid + 1)):
+        assert not own.is_near(other._replace(participant="2b"))
+    for text in ("", "1a/link", "../x/link/1/h/0", "1a/link/-1/h/0", f"{'1' * 33}/link/1/h/0"):
+        assert listener.Advertisement.parse(text) is None

@@ -1,0 +1,111 @@
+"""Frames on a stream: whatever goes in comes out, and garbage is noticed."""
+
+from __future__ import annotations
+
+import itertools
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from aionode.errors import FrameError
+from aionode.transport.ipc import _protocol as protocol
+from aionode.transport.ipc._protocol import BufferRef, Frame, FrameParser, Kind
+
+NUMBERS = st.integers(-(2**63), 2**63 - 1)
+GIDS = st.binary(min_size=16, max_size=16)
+ONE = st.builds(
+    Frame,
+    st.sampled_from(Kind).map(int),
+    NUMBERS,
+    NUMBERS,
+    GIDS,
+    st.binary(max_size=200),
+    st.booleans(),
+)
+FRAMES = st.lists(ONE, max_size=6)
+
+
+def packed(one: Frame) -> bytes:
+    """Return a frame as bytes."""
+    return protocol.pack(
+        one.kind, one.sequence, one.source_ns, one.gid, one.payload, in_shm=one.in_shm
+    )
+
+
+def pieces_of(stream: bytes, cuts: list[int]) -> list[bytes]:
+    """Return the stream cut at these places."""
+    places = [0, *sorted(cut % (len(stream) + 1) for cut in cuts), len(stream)]
+    return [stream[a:b] for a, b in itertools.pairwise(places)]
+
+
+@given(FRAMES, st.lists(st.integers(0, 10_000), max_size=12))
+@settings(max_examples=200)
+def test_frames_come_out_as_they_went_in_however_the_stream_is_cut(
+    frames: list[Frame], cuts: list[int]
+) -> None:
+    """A socket hands over any number of bytes."""
+    parser = FrameParser()
+    stream = b"".join(packed(one) for one in frames)
+    found = [one for piece in pieces_of(stream, cuts) for one in parser.feed(piece)]
+    assert found == frames
+    assert parser.missing == protocol.HEADER_SIZE
+
+
+@given(ONE, st.data())
+def test_what_is_cut_off_stays_missing(one: Frame, data: st.DataObject) -> None:
+    """A peer that dies in the middle of a frame has not sent it."""
+    whole = packed(one)
+    cut = data.draw(st.integers(0, len(whole) - 1))
+    parser = FrameParser()
+    assert parser.feed(whole[:cut]) == []
+    assert 0 < parser.missing <= len(whole) - cut
+    assert parser.feed(whole[cut:]) == [one]
+
+
+@given(st.binary(max_size=400), st.lists(st.integers(0, 400), max_size=4))
+@settings(max_examples=200)
+def test_garbage_is_an_error_or_waits_for_more(stream: bytes, cuts: list[int]) -> None:
+    """Nothing else may come out of it, whoever is at the other end."""
+    parser = FrameParser()
+    try:
+        for piece in pieces_of(stream, cuts):
+            parser.feed(piece)
+    except FrameError:
+        pass
+
+
+@pytest.mark.parametrize("place", [4, 5, 6, 7], ids=["kind", "flags", "mark", "mark"])
+def test_a_wrong_byte_in_the_header_is_noticed(place: int) -> None:
+    """Going on would take one thing for another."""
+    header = bytearray(packed(Frame(Kind.DATA)))
+    header[place] ^= 0xF0
+    with pytest.raises(FrameError):
+        FrameParser().feed(bytes(header))
+
+
+def test_a_wrong_length_is_noticed_before_memory_is_taken_for_it() -> None:
+    """A length of gigabytes is garbage: they would never come."""
+    header = bytearray(packed(Frame(Kind.DATA)))
+    header[:4] = (protocol.MAX_INLINE + 1).to_bytes(4, "little")
+    with pytest.raises(FrameError):
+        FrameParser().feed(bytes(header))
+
+
+def test_what_does_not_fit_is_not_packed() -> None:
+    """The other end would break the link."""
+    with pytest.raises(FrameError):
+        protocol.pack(Kind.DATA, 0, 0, bytes(16), bytes(protocol.MAX_INLINE + 1))
+
+
+@given(st.integers(0, 2**64 - 1), st.integers(0, 2**64 - 1))
+def test_a_place_comes_out_as_it_went_in(number: int, size: int) -> None:
+    """Another place would be another message."""
+    assert BufferRef.unpack(BufferRef(number, size).pack()) == (number, size)
+
+
+@given(st.binary(max_size=40).filter(lambda data: len(data) != 16))
+def test_what_is_no_place_is_refused(data: bytes) -> None:
+    """Memory is not looked for at random."""
+    with pytest.raises(FrameError):
+        BufferRef.unpack(data)

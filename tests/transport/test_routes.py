@@ -1,0 +1,128 @@
+"""Which way messages take, as statistics say it, and what contexts announce of their links."""
+
+from __future__ import annotations
+
+import asyncio
+
+from aionode._concurrency import checkpoint
+from aionode.context import Context
+from aionode.interfaces.std_msgs.msg import Int32
+from aionode.testing import FaultyTransport
+from aionode.transport.base import LinkStatus
+from aionode.transport.local import LocalTransport
+from aionode.transport.zenoh._transport import ZenohTransport
+from tests.support.links import (
+    Counting,
+    folder,
+    hub_of,
+    link_of,
+    transport_of,
+    two_nodes,
+    writer_of,
+)
+from tests.support.peers import DOMAIN_ID, kept, known, raw_session
+
+__all__ = ["folder"]  # a fixture
+
+
+async def test_a_subscription_of_another_context_is_reached_by_zenoh() -> None:
+    """Beside one of this context, which is reached without."""
+    async with two_nodes(links=(False, False)) as nodes:
+        readers = [node.create_subscription(Int32, "n") for node in nodes]
+        publisher = nodes.a.create_publisher(Int32, "n", 10)
+        await publisher.wait_for_subscribers(2)
+        assert publisher.stats.routes == {
+            f"/a {readers[0].endpoint.gid.hex()[:8]}": "local",
+            f"/b {readers[1].endpoint.gid.hex()[:8]}": "zenoh",
+        }
+
+
+async def test_a_linked_subscription_is_reached_both_ways_while_a_stranger_listens() -> None:
+    """And by the link alone otherwise."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.until_linked()
+        assert list(numbers.publisher.stats.routes.values()) == ["link"]
+        with raw_session():
+            while not writer_of(numbers.publisher).update():
+                await numbers.go()
+            assert list(numbers.publisher.stats.routes.values()) == ["link and zenoh"]
+
+
+async def test_what_late_readers_get_goes_by_zenoh() -> None:
+    """Zenoh keeps it for them, whoever is linked."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        late = nodes.a.create_publisher(Int32, "late", kept(1))
+        nodes.b.create_subscription(Int32, "late", None, kept(1))
+        await late.wait_for_subscribers()
+        await numbers.until_linked()
+        assert list(late.stats.routes.values()) == ["zenoh"]
+
+
+async def test_a_publisher_counts_what_a_slow_link_dropped() -> None:
+    """The other end cannot: it has not seen it."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes, 10)
+        await numbers.until_linked()
+        assert numbers.publisher.stats.dropped == 0
+        asyncio.get_running_loop().remove_reader(link_of(nodes.b)._fd)  # as if it were frozen
+        numbers.publish(20_000)
+        dropped = numbers.publisher.stats.dropped
+        assert 0 < dropped < 20_000
+        assert f"dropped={dropped}, routes={{'/b " in repr(numbers.publisher.stats)
+
+
+# What contexts announce
+
+
+async def links_seen_by(context: Context) -> LinkStatus:
+    """Return what a context is told."""
+    _, transport = context.transports
+    return await transport.link_status()
+
+
+async def test_a_link_is_announced_once_while_it_is_there() -> None:
+    """Also to a context that takes part in none."""
+    async with Context(link=False) as aside, two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.until_linked()
+        both = frozenset(node.context.participant for node in nodes)
+        while (seen := await links_seen_by(aside)).pairs != {both}:
+            await numbers.go()
+        assert {text.partition("/")[0] for text in seen.advertisements} == both
+        with raw_session() as session:
+            (key,) = await known(session, "@aionode/*/*/linked/*")
+        smaller, larger = sorted(both)
+        assert key == f"@aionode/{DOMAIN_ID}/{smaller}/linked/{larger}"
+        assert await links_seen_by(nodes.a.context) == seen
+
+        nodes.b.destroy_node()
+        transport_of(nodes.b).manager.close()
+        while (await links_seen_by(aside)).pairs:
+            await checkpoint()
+
+
+async def test_a_link_that_comes_again_is_announced_again() -> None:
+    """The old token has gone before."""
+    async with Context(link=False) as aside, two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.until_linked()
+        first = link_of(nodes.a)
+        first.close()
+        while first in [hub_of(nodes.a).linked(p) for p in hub_of(nodes.a).links]:
+            await numbers.go()
+        await numbers.until_linked()
+        for node in nodes:
+            zenoh = transport_of(node).zenoh
+            assert isinstance(zenoh, ZenohTransport)
+            await zenoh._state.flush()  # both announcements, and the withdrawal between them
+        both = frozenset(node.context.participant for node in nodes)
+        assert (await links_seen_by(aside)).pairs == {both}
+
+
+async def test_a_context_that_is_closed_or_has_no_network_knows_of_no_links() -> None:
+    """There is nobody to ask."""
+    closed = Context(link=True)
+    assert await links_seen_by(closed) == LinkStatus(set(), set())
+    assert await FaultyTransport(LocalTransport()).link_status() == LinkStatus(set(), set())

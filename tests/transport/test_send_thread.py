@@ -1,0 +1,138 @@
+"""Sending from a thread."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections.abc import AsyncIterator
+
+import pytest
+
+from aionode._concurrency import checkpoint
+from aionode.transport._loop_waker import LoopWaker
+from aionode.transport._send_thread import SendQueue, SendThread, end_all
+
+
+@pytest.fixture
+async def send_thread() -> AsyncIterator[SendThread]:
+    """A sender that wakes the running loop."""
+    waker = LoopWaker()
+    waker.open(asyncio.get_running_loop())
+    yield SendThread("test-sender", waker)
+    waker.close()
+
+
+def blocked(send_queue: SendQueue) -> threading.Event:
+    """Have the thread wait for the returned event."""
+    began, gate = threading.Event(), threading.Event()
+
+    def wait() -> None:
+        began.set()
+        gate.wait()
+
+    send_queue.put(wait)
+    began.wait()
+    return gate
+
+
+async def test_sends_happen_in_order_and_drain_waits_for_them(send_thread: SendThread) -> None:
+    """Order is what a topic promises."""
+    sent: list[int] = []
+    send_queue = send_thread.send_queue(1000, keep_all=True)
+    for n in range(100):
+        send_queue.put(lambda n=n: sent.append(n))  # type: ignore[misc]  # a default is no argument
+    await send_queue.drain()
+
+    assert sent == list(range(100))
+    assert len(send_queue) == 0
+    await send_thread.flush()
+
+
+async def test_a_full_queue_that_keeps_all_has_no_room(send_thread: SendThread) -> None:
+    """The publisher is told, and nothing is lost."""
+    send_queue = send_thread.send_queue(3, keep_all=True)
+    gate = blocked(send_queue)
+    send_queue.put(lambda: None)
+    assert send_queue.has_room()
+    send_queue.put(lambda: None)
+    assert not send_queue.has_room()
+
+    gate.set()
+    await send_queue.drain()
+    assert send_queue.has_room()
+    await send_thread.flush()
+
+
+async def test_a_full_queue_that_keeps_the_last_drops_its_oldest(send_thread: SendThread) -> None:
+    """A slow link gets the newest image, not a long queue of old ones."""
+    sent: list[int] = []
+    send_queue = send_thread.send_queue(2, keep_all=False)
+    gate = blocked(send_queue)
+    for n in range(10):
+        send_queue.put(lambda n=n: sent.append(n))  # type: ignore[misc]  # a default is no argument
+    gate.set()
+    await send_queue.drain()
+
+    assert sent == [8, 9]
+    assert send_queue.dropped == 8
+    await send_thread.flush()
+
+
+async def test_the_loop_goes_on_while_a_send_blocks(send_thread: SendThread) -> None:
+    """That is what the thread is for."""
+    send_queue = send_thread.send_queue(2, keep_all=True)
+    gate = blocked(send_queue)
+    drained = asyncio.get_running_loop().create_task(send_queue.drain())
+    for _ in range(100):
+        await checkpoint()
+    assert not drained.done()
+
+    gate.set()
+    await drained
+    await send_thread.flush()
+
+
+async def test_a_flushed_sender_has_no_thread_and_starts_another_when_needed(
+    send_thread: SendThread,
+) -> None:
+    """A closed context leaves no thread, and may be opened again."""
+    send_queue = send_thread.send_queue(2, keep_all=True)
+    for _ in range(2):
+        send_queue.put(lambda: None)
+        await send_thread.flush()
+        assert len(send_queue) == 0
+    for thread in threading.enumerate():
+        if thread.name == "test-sender":
+            thread.join()
+
+
+async def test_an_abandoned_queue_sends_nothing_more_and_counts_it(send_thread: SendThread) -> None:
+    """At the end of a publisher whose readers take nothing."""
+    lost: list[int] = []
+    send_queue = send_thread.send_queue(10, keep_all=True, lost=lost.append)
+    gate = blocked(send_queue)
+    sent: list[int] = []
+    for n in range(5):
+        send_queue.put(lambda n=n: sent.append(n))  # type: ignore[misc]  # a default is no argument
+    send_queue.abandon()
+    gate.set()
+    await send_queue.drain()
+
+    assert sent == []
+    assert lost == [5]
+    await send_thread.flush()
+
+
+async def test_the_end_of_the_process_waits_for_a_send_and_lets_none_begin(
+    send_thread: SendThread,
+) -> None:
+    """A thread that comes back from Zenoh while the interpreter ends aborts the process."""
+    send_queue = send_thread.send_queue(10, keep_all=True)
+    gate = blocked(send_queue)
+    sent: list[int] = []
+    send_queue.put(lambda: sent.append(1))
+    threading.Timer(0.05, gate.set).start()
+    end_all()
+
+    assert sent == []
+    assert "test-sender" not in [thread.name for thread in threading.enumerate()]

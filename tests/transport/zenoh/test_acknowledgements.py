@@ -1,0 +1,166 @@
+"""Reliable topics over Zenoh: acknowledged where both ends can, and else left to Zenoh."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+import pytest
+
+from aionode.interfaces.std_msgs.msg import Int32, String
+from aionode.qos import QoSProfile, ReliabilityPolicy
+from aionode.transport.zenoh._acknowledgements import Acknowledgements
+from aionode.transport.zenoh._publisher import ZenohWriter
+from aionode.wire import _acknack as acknack
+from aionode.wire._acknack import Kind
+from tests.support.peers import (
+    DOMAIN_ID,
+    KEEP_ALL,
+    Collector,
+    quiet_node,
+    raw_session,
+    two_contexts,
+)
+
+
+@pytest.fixture(autouse=True)
+def without_links(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As between hosts."""
+    monkeypatch.setenv("AIONODE_LINK", "off")
+
+
+def writer_of(publisher: Any) -> ZenohWriter:
+    """Return a publisher's end in Zenoh."""
+    writer = publisher._writers[1]
+    assert isinstance(writer, ZenohWriter)
+    return writer
+
+
+async def acknowledged(publisher: Any) -> None:
+    """Wait until every reader has said that it has everything."""
+    writer: Any = writer_of(publisher)
+    changed = asyncio.Event()
+    answer = writer.answer
+
+    def note(said: Any) -> None:
+        answer(said)
+        changed.set()
+
+    writer.answer = note
+    while not writer._history.readers or not writer._history.done:
+        changed.clear()
+        await changed.wait()
+
+
+@pytest.mark.parametrize("qos", [QoSProfile(depth=1000), KEEP_ALL], ids=["last", "all"])
+async def test_what_is_lost_on_the_way_is_sent_again(
+    qos: QoSProfile, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every third message here, the last one included."""
+    put, count = ZenohWriter.put, 0
+
+    def put_some(self: ZenohWriter, payload: bytes, extra: bytes) -> None:
+        nonlocal count
+        count += 1
+        if count % 3:
+            put(self, payload, extra)
+
+    monkeypatch.setattr(ZenohWriter, "put", put_some)
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        publisher = a.create_publisher(Int32, "n", qos)
+        subscription = b.create_subscription(Int32, "n", None, qos)
+        await publisher.wait_for_subscribers()
+        for number in range(300):
+            publisher.publish(Int32(data=number))
+        heard = [(await subscription.receive()).data for _ in range(300)]
+        await acknowledged(publisher)
+
+        assert heard == list(range(300))
+        assert subscription.stats.lost == 0
+        assert publisher.stats.dropped == 0
+
+
+async def test_a_peer_that_does_not_acknowledge_still_hears_everything(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """An older aionode; as a ROS 2 node, it is left to Zenoh."""
+    async with two_contexts() as (first, second):
+        for context in (first, second):
+            transport: Any = context.transports[1]
+            transport._state.acknowledgements.participants.clear()
+        monkeypatch.setattr(Acknowledgements, "_take_token", lambda *_: None)
+        async with quiet_node("a", first) as a, quiet_node("b", second) as b:
+            publisher = a.create_publisher(String, "n", KEEP_ALL)
+            subscription = b.create_subscription(String, "n", None, KEEP_ALL)
+            await publisher.wait_for_subscribers()
+            for number in range(5000):
+                if not writer_of(publisher).has_room():
+                    await publisher.drain()
+                publisher.publish(String(data=str(number)))
+            heard = [(await subscription.receive()).data for _ in range(5000)]
+
+    assert heard == [str(number) for number in range(5000)]
+
+
+@pytest.mark.parametrize(
+    "qos",
+    [QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT), QoSProfile(depth=10)],
+    ids=["best effort", "reliable"],
+)
+async def test_a_slow_stream_is_acknowledged_seldom(qos: QoSProfile) -> None:
+    """Not once for each message; a best effort one not at all."""
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        with raw_session() as session:
+            said = Collector()
+            subscriber = session.declare_subscriber(f"@aionode/{DOMAIN_ID}/*/reliable/1", said)
+            publisher = a.create_publisher(Int32, "n", qos)
+            subscription = b.create_subscription(Int32, "n", None, qos)
+            await publisher.wait_for_subscribers()
+            for number in range(256):
+                publisher.publish(Int32(data=number))
+                assert (await subscription.receive()).data == number
+            subscriber.undeclare()
+        kinds = [acknack.unpack(each.payload.to_bytes()) for each in said.items]
+        assert len(kinds) <= (0 if qos.reliability is ReliabilityPolicy.BEST_EFFORT else 20)
+        assert all(each is not None and each.kind is not Kind.DATA for each in kinds)
+
+
+async def test_garbage_instead_of_acknowledgements_is_left_out() -> None:
+    """Anybody may put anything on a key."""
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        publisher = a.create_publisher(Int32, "n", 10)
+        subscription = b.create_subscription(Int32, "n", None, 10)
+        await publisher.wait_for_subscribers()
+        publisher.publish(Int32(data=1))
+        assert (await subscription.receive()).data == 1
+        writer, state = writer_of(publisher), writer_of(publisher).state
+        reader = next(iter(state.acknowledgements.participants))
+        gid = next(iter(writer._history.readers))  # type: ignore[union-attr]
+        big = 2**63 - 1
+        with raw_session() as session:
+            for participant in (state.participant, reader):
+                key = f"@aionode/{DOMAIN_ID}/{participant}/reliable/1"
+                for data in (b"", b"\1", bytes(60), b"\1\2" + bytes(50)):
+                    session.put(key, data)
+                for kind in Kind:
+                    for numbers in ((-5, big), (big, 0), (0, 0), (-big, -big)):
+                        rest = acknack.pack_ranges([(-big, big), (5, 3)])
+                        for name in (bytes(16), gid):
+                            session.put(key, acknack.pack(kind, name, name, *numbers, rest))
+                        if kind is Kind.ACKNACK:
+                            session.put(key, acknack.pack(kind, writer.gid, gid, *numbers, rest))
+            for number in range(2, 50):
+                publisher.publish(Int32(data=number))
+                assert (await subscription.receive()).data == number

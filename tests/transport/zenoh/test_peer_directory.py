@@ -1,0 +1,296 @@
+"""Who is on the network and announces nothing, and post between contexts."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import AsyncIterator, Iterator
+from contextlib import ExitStack, asynccontextmanager, closing, contextmanager
+
+import pytest
+import zenoh  # noqa: TID251  # plays the other participants, without aionode
+
+from aionode._concurrency import checkpoint
+from aionode.graph import Graph
+from aionode.transport._zenoh_config import network_from
+from aionode.transport.zenoh._session import close_session, open_router
+from aionode.transport.zenoh._transport import ZenohTransport
+from tests.support.peers import DOMAIN_ID, Collector, known, raw_session, ros_router, zenoh_config
+
+
+class Heard:
+    """Lets a test wait until a context has been told whether there are strangers."""
+
+    def __init__(self, transport: ZenohTransport) -> None:
+        self.transport = transport
+        self.peer_directory = peer_directory = transport.peer_directory
+        self.told: list[bool] = []
+        self._changed = asyncio.Event()
+        peer_directory.on_unannounced_peers = self._on_strangers
+
+    def _on_strangers(self, has_unannounced_peers: bool) -> None:
+        assert has_unannounced_peers == self.peer_directory.has_unannounced_peers
+        self.told.append(has_unannounced_peers)
+        self._changed.set()
+
+    async def until(self, has_unannounced_peers: bool) -> None:
+        """Wait until there are strangers, or none."""
+        while self.peer_directory.has_unannounced_peers != has_unannounced_peers:
+            self._changed.clear()
+            await self._changed.wait()
+
+    async def past(self) -> None:
+        """Wait until there were strangers, and are none now; both may have been told before."""
+        while not self.told or self.peer_directory.has_unannounced_peers:
+            self._changed.clear()
+            await self._changed.wait()
+
+
+@asynccontextmanager
+async def context(
+    participant: str, *, linked: bool = True, domain_id: int = DOMAIN_ID
+) -> AsyncIterator[ZenohTransport]:
+    """A transport that is open, and announces that it can be linked."""
+    transport = ZenohTransport(participant, network_from(os.environ, domain_id=domain_id))
+    if linked:
+        transport.peer_directory.advertisement = f"{participant}/link/1/host/user"
+    await transport.open(Graph())
+    try:
+        yield transport
+    finally:
+        await transport.close()
+
+
+@pytest.fixture
+async def heard() -> AsyncIterator[Heard]:
+    """A context with nobody else around, yet."""
+    async with context("a1") as transport:
+        yield Heard(transport)
+
+
+@asynccontextmanager
+async def router() -> AsyncIterator[zenoh.Session]:
+    """A router of ROS."""
+    session = await asyncio.to_thread(ros_router)
+    try:
+        yield session
+    finally:
+        await asyncio.to_thread(session.close)
+
+
+@contextmanager
+def client(port: str) -> Iterator[zenoh.Session]:
+    """A plain Zenoh program that sees nobody but the one that it dials."""
+    config = zenoh_config(
+        {
+            "mode": "client",
+            "connect/endpoints": [f"tcp/127.0.0.1:{port}"],
+            "scouting/multicast/enabled": False,
+        }
+    )
+    with closing(zenoh.open(config)) as session:
+        yield session
+
+
+def router_port() -> str:
+    """Return the port of the router."""
+    return os.environ["AIONODE_ROUTER_PORT"]
+
+
+def meeting_port() -> str:
+    """Return the port of the first context."""
+    return os.environ["AIONODE_MEETING_PORTS"].split(",")[0]
+
+
+def announce_node(session: zenoh.Session, domain_id: int) -> zenoh.LivelinessToken:
+    """Announce a node as ROS does."""
+    return session.liveliness().declare_token(
+        f"@ros2_lv/{domain_id}/{session.zid()}/0/0/NN/%/%/theirs"
+    )
+
+
+async def until_nodes(transport: ZenohTransport, count: int) -> None:
+    """Wait until so many nodes of the domain are in the graph."""
+    graph = transport._state.graph
+    assert graph is not None
+    await graph.until(lambda: len(graph.nodes()) == count)
+
+
+def nobody(_: object) -> None:
+    """Take what was subscribed to."""
+
+
+async def test_a_plain_session_is_a_stranger_while_it_is_connected(heard: Heard) -> None:
+    """It may subscribe to anything, and nobody would know."""
+    assert not heard.peer_directory.has_unannounced_peers
+
+    with raw_session():
+        await heard.until(True)
+    await heard.until(False)
+
+    assert heard.told == [True, False]
+
+
+async def test_strangers_are_told_with_the_connection(
+    heard: Heard, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not in a later turn of the loop, in which something may be published."""
+    seen: list[bool] = []
+    there = asyncio.Event()
+
+    note = heard.peer_directory._update
+
+    def on_connected() -> None:
+        note()
+        seen.append(heard.peer_directory.has_unannounced_peers)
+        there.set()
+
+    monkeypatch.setattr(heard.peer_directory, "_update", on_connected)
+    with raw_session():
+        await there.wait()
+
+    assert seen[0]
+
+
+async def test_a_ros_node_of_another_domain_is_no_stranger(heard: Heard) -> None:
+    """All of its subscriptions are announced, in its own domain."""
+    with raw_session() as session:
+        await heard.until(True)
+        _token = announce_node(session, DOMAIN_ID + 1)
+        await heard.until(False)
+
+
+async def test_a_ros_context_stays_known_after_its_last_node(heard: Heard) -> None:
+    """It will announce its next one, and what that subscribes to."""
+    with raw_session() as session:
+        await heard.until(True)
+        token = announce_node(session, DOMAIN_ID)
+        await heard.until(False)
+        await until_nodes(heard.transport, 1)
+        token.undeclare()
+        await until_nodes(heard.transport, 0)
+        with raw_session() as second:  # what came before it has been seen
+            await heard.until(True)
+            _token = announce_node(second, DOMAIN_ID)
+            await heard.until(False)
+
+    assert heard.told == [True, False, True, False]
+
+
+@pytest.mark.parametrize("domain_id", [DOMAIN_ID, DOMAIN_ID + 1])
+async def test_a_context_is_no_stranger(heard: Heard, domain_id: int) -> None:
+    """Of any domain, and before it has a node."""
+    async with context("b2", domain_id=domain_id):
+        while "b2" not in heard.peer_directory._connected:
+            await checkpoint()
+        await heard.until(False)
+
+
+async def test_a_router_is_a_stranger(heard: Heard) -> None:
+    """Nothing tells who listens behind it, also if everybody that can be seen is known."""
+    async with context("b2"):
+        async with router():
+            await heard.until(True)
+        await heard.until(False)
+
+
+async def test_our_own_router_answers_no_question_of_its_admin_space() -> None:
+    """Whoever lists what it has in its routing table could lock that for good."""
+    session = await open_router([f"tcp/127.0.0.1:{router_port()}"])
+    try:
+        with client(router_port()) as asking:
+            remote = zenoh.Locality.REMOTE  # a session answers for itself
+            replies = await asyncio.to_thread(
+                lambda: list(asking.get("@/**", timeout=1, allowed_destination=remote))
+            )
+    finally:
+        await close_session(session)
+
+    assert replies == []
+
+
+async def test_a_client_of_one_context_is_a_stranger_to_all(heard: Heard) -> None:
+    """Zenoh brings it what the others publish, and only that context sees it."""
+    async with context("b2") as second:
+        other = Heard(second)
+        await heard.past()
+        await other.until(False)
+        with client(meeting_port()):
+            await heard.until(True)
+            await other.until(True)
+        await heard.until(False)
+        await other.until(False)
+
+
+async def test_post_arrives_in_order_at_the_one_it_is_for() -> None:
+    """All of it, however fast it is sent."""
+    count = 3000
+    async with context("a1") as first, context("b2") as second, context("c3") as third:
+        got, stray = Collector(), Collector()
+        second.peer_directory.on_retransmit = got
+        first.peer_directory.on_retransmit = third.peer_directory.on_retransmit = stray
+        for number in range(count):
+            first.peer_directory.retransmit("b2", number.to_bytes(4, "big") * 100)
+        items = await got.have(count)
+
+    assert items == [number.to_bytes(4, "big") * 100 for number in range(count)]
+    assert not stray.items
+
+
+async def test_post_without_a_connection_is_given_up() -> None:
+    """As the context that it is for is not there either."""
+    async with context("a1") as transport:
+        pass
+    transport.peer_directory.retransmit("b2", b"late")
+
+    assert transport._state.bulk._worker is None
+
+
+async def test_nothing_is_declared_without_a_beacon() -> None:
+    """Who wants no links pays nothing for them."""
+    async with context("a1", linked=False) as transport:
+        peer_directory = transport.peer_directory
+        told = Heard(transport)
+        with raw_session() as session:
+            _token = announce_node(session, DOMAIN_ID)
+            await until_nodes(transport, 1)
+            replies = session.liveliness().get("@aionode/**", timeout=1)
+            keys = [str(reply.ok.key_expr) for reply in replies if reply.ok is not None]
+
+            # That it acknowledges messages has nothing to do with links.
+            assert keys == [f"@aionode/{DOMAIN_ID}/a1/reliable/1"]
+        assert (peer_directory._declared, told.told) == ([], [])
+
+
+async def test_closing_leaves_nothing_behind() -> None:
+    """No timer, no token, and nobody is known when it opens again."""
+    with ExitStack() as stack:
+        async with router(), context("b2"):
+            async with context("a1") as transport:
+                heard = Heard(transport)
+                session = stack.enter_context(raw_session())
+                await known(session, "@aionode/*/*/link/**", 2)
+                await heard.until(True)
+            peer_directory = transport.peer_directory
+
+            assert not peer_directory.has_unannounced_peers
+            assert not peer_directory._declared
+            assert not peer_directory._known
+            assert not peer_directory._connected
+            tokens = {
+                str(each.ok.key_expr) for each in session.liveliness().get("@aionode/**") if each.ok
+            }
+            assert not any("/a1/" in token for token in tokens)
+
+
+async def test_it_opens_again() -> None:
+    """With what is there then."""
+    transport = ZenohTransport("a1", network_from(os.environ))
+    heard = Heard(transport)
+    for _ in range(2):
+        transport.peer_directory.advertisement = "a1/link/1/host/user"
+        await transport.open(Graph())
+        with raw_session():
+            await heard.until(True)
+            await transport.close()
+        assert not transport.peer_directory.has_unannounced_peers

@@ -1,0 +1,545 @@
+"""Topics between contexts, byte for byte as rmw_zenoh_cpp has them."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+import threading
+from collections.abc import Iterable
+from contextlib import ExitStack
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+import zenoh  # noqa: TID251  # plays the other participants, without aionode
+
+from aionode._concurrency import checkpoint
+from aionode.context import Context
+from aionode.errors import QueueFullError
+from aionode.graph import EndpointInfo, EndpointKind
+from aionode.interfaces import get_message
+from aionode.interfaces.sensor_msgs.msg import Image
+from aionode.interfaces.std_msgs.msg import Int32, String, UInt8MultiArray
+from aionode.message import from_builtins
+from aionode.node import Node
+from aionode.qos import QoSProfile
+from aionode.wire import _attachment as attachment
+from aionode.wire import cdr
+from aionode.wire._key_expression import buffer_key, data_key
+from aionode.wire.typehash import type_hash
+from tests.support.peers import (
+    DOMAIN_ID,
+    KEEP_ALL,
+    Collector,
+    kept,
+    known,
+    quiet_node,
+    raw_session,
+    ros_value,
+    two_contexts,
+)
+
+VECTORS: dict[str, Any] = json.loads(
+    Path(__file__).parents[2].joinpath("vectors", "vectors.json").read_text()
+)
+MESSAGES: dict[str, dict[str, Any]] = VECTORS["messages"]
+CHATTER = data_key(DOMAIN_ID, "/chatter", "std_msgs/msg/String", type_hash(String))
+
+
+def numbers(count: int) -> list[Int32]:
+    """Return messages that can be told apart."""
+    return [Int32(data=n) for n in range(count)]
+
+
+async def first_numbers(subscription: Any, count: int) -> list[int]:
+    """Return what the next messages say."""
+    return [(await subscription.receive()).data for _ in range(count)]
+
+
+async def test_messages_go_both_ways_in_order() -> None:
+    """The plainest promise, between participants."""
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        for here, there in ((a, b), (b, a)):
+            publisher = here.create_publisher(Int32, f"from_{here.get_name()}", 100)
+            subscription = there.create_subscription(Int32, f"from_{here.get_name()}", None, 100)
+            await publisher.wait_for_subscribers()
+            for msg in numbers(50):
+                publisher.publish(msg)
+            assert await first_numbers(subscription, 50) == list(range(50))
+            assert subscription.stats.lost == 0
+
+
+async def test_published_samples_are_those_of_rmw_zenoh() -> None:
+    """Key, payload and attachment: one byte off, and a ROS node hears nothing."""
+    async with quiet_node("talker") as node:
+        with raw_session() as session:
+            samples = Collector()
+            with closing_all(session.declare_subscriber(f"{DOMAIN_ID}/**", samples)):
+                for name, golden in MESSAGES.items():
+                    msg_type = get_message(name)
+                    publisher = node.create_publisher(msg_type, "/ns/topic", 10)
+                    await matched(publisher)
+                    publisher.publish(from_builtins(msg_type, ros_value(golden["value"])))
+                await samples.have(len(MESSAGES))
+
+        for golden, sample in zip(MESSAGES.values(), samples.items, strict=True):
+            extra = attachment.unpack(sample.attachment.to_bytes())
+            assert str(sample.key_expr) == (
+                f"{DOMAIN_ID}/ns/topic/{golden['dds_type']}/{golden['rihs01']}"
+            )
+            assert sample.payload.to_bytes().hex() == golden["cdr"]
+            assert len(sample.attachment.to_bytes()) == 33
+            assert extra is not None
+            assert extra.sequence == 1
+
+
+async def test_samples_of_rmw_zenoh_are_heard() -> None:
+    """What its own encoder made, with its own attachment."""
+    async with quiet_node("listener") as node:
+        with raw_session() as session:
+            for number, (name, golden) in enumerate(MESSAGES.items(), 1):
+                msg_type = get_message(name)
+                subscription = node.create_subscription(msg_type, "/ns/topic")
+                await known(session, f"@ros2_lv/{DOMAIN_ID}/**/MS/**", number)
+                session.put(
+                    f"{DOMAIN_ID}/ns/topic/{golden['dds_type']}/{golden['rihs01']}",
+                    bytes.fromhex(golden["cdr"]),
+                    attachment=bytes.fromhex(VECTORS["attachment"]["bytes"]),
+                )
+                expected = from_builtins(msg_type, ros_value(golden["value"]))
+                assert await subscription.receive() == expected
+
+
+async def test_the_graph_holds_the_ids_that_go_with_samples() -> None:
+    """Otherwise `ros2 topic info -v` and a message's info name different publishers."""
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        infos: asyncio.Queue[Any] = asyncio.Queue()
+        b.create_subscription(Int32, "n", lambda _, info: infos.put_nowait(info), 10)
+        publisher = a.create_publisher(Int32, "n", 10)
+        await publisher.wait_for_subscribers()
+        publisher.publish(Int32())
+        gid = (await infos.get())["publisher_gid"]
+
+        assert [e.gid for e in second.graph.endpoints(name="/n") if e.node.name == "a"] == [gid]
+        assert [e.gid for e in first.graph.endpoints(name="/n") if e.node.name == "a"] == [gid]
+
+
+# Who hears what, and how often
+
+
+@pytest.mark.parametrize("qos", [QoSProfile(depth=10), kept(10)], ids=["volatile", "kept"])
+async def test_a_reader_of_the_same_context_hears_each_message_once(qos: QoSProfile) -> None:
+    """Once as an object, and not again from the network; early or late."""
+    async with quiet_node("both") as node:
+        early = node.create_subscription(Int32, "n", None, qos)
+        publisher = node.create_publisher(Int32, "n", qos)
+        with raw_session() as session:
+            samples = Collector()
+            with closing_all(session.declare_subscriber(f"{DOMAIN_ID}/**", samples)):
+                await known(session, f"@ros2_lv/{DOMAIN_ID}/**/MP/**")
+                await matched(publisher)
+                publisher.publish(Int32(data=1))
+                late = node.create_subscription(Int32, "n", None, qos)
+                publisher.publish(Int32(data=2))
+                await samples.have(2)
+
+        assert await first_numbers(early, 2) == [1, 2]
+        expected = [1, 2] if qos == kept(10) else [2]
+        assert await first_numbers(late, len(expected)) == expected
+        publisher.publish(Int32(data=3))  # the next is the very next
+        assert await first_numbers(early, 1) == [3]
+        assert await first_numbers(late, 1) == [3]
+
+
+@pytest.mark.parametrize(("kept_by", "asked_for"), [(3, 5), (5, 3), (10, 10)])
+async def test_a_late_reader_gets_the_last_messages_once_and_in_order(
+    kept_by: int, asked_for: int
+) -> None:
+    """As many as both sides keep; then the new ones follow."""
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        publisher = a.create_publisher(Int32, "n", kept(kept_by))
+        for msg in numbers(8):
+            publisher.publish(msg)
+        late = b.create_subscription(Int32, "n", None, kept(asked_for))
+        count = min(kept_by, asked_for, 8)
+        assert await first_numbers(late, count) == list(range(8 - count, 8))
+        publisher.publish(Int32(data=8))
+        assert await first_numbers(late, 1) == [8]
+
+
+async def test_what_was_published_before_the_context_opened_is_kept() -> None:
+    """A node publishes in its constructor; the session comes later."""
+    async with quiet_node("b") as b:
+        late = b.create_subscription(Int32, "n", None, kept(5))
+        a = quiet_node("a", Context())
+        publisher = a.create_publisher(Int32, "n", kept(2))
+        for msg in numbers(4):
+            publisher.publish(msg)
+        async with a:
+            assert await first_numbers(late, 2) == [2, 3]
+
+
+async def test_a_late_volatile_reader_gets_nothing_old() -> None:
+    """It asked for new messages only."""
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        publisher = a.create_publisher(Int32, "n", kept(10))
+        publisher.publish(Int32(data=1))
+        late = b.create_subscription(Int32, "n", None, 10)
+        await publisher.wait_for_subscribers()
+        publisher.publish(Int32(data=2))
+
+        assert await first_numbers(late, 1) == [2]
+
+
+async def test_a_message_is_encoded_only_when_somebody_remote_listens() -> None:
+    """Within a process no bytes are made."""
+    async with quiet_node("a") as node:
+        publisher = node.create_publisher(Int32, "n", 10)
+        node.create_subscription(Int32, "n")
+        writer: Any = publisher._writers[1]
+        assert not writer.active
+
+        with raw_session() as session:
+            subscriber = session.declare_subscriber(f"{DOMAIN_ID}/**", lambda _: None)
+            await matched(publisher)
+            changed = asyncio.get_running_loop().create_future()
+            update = writer._update
+
+            def note() -> None:
+                update()
+                if not writer.active and not changed.done():
+                    changed.set_result(None)
+
+            writer._update = note
+            subscriber.undeclare()
+            await changed
+
+
+# Large messages, many messages
+
+
+async def test_small_messages_stay_behind_a_large_one() -> None:
+    """The large one goes through a thread, and order is what a topic promises."""
+    # On a busy machine the link is blocked for longer than a millisecond, and messages dropped.
+    patient = {"transport/link/tx/queue/congestion_control/drop/wait_before_drop": 5_000_000}
+    async with (
+        two_contexts(config=patient) as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        publisher = a.create_publisher(UInt8MultiArray, "bytes", 10)
+        subscription = b.create_subscription(UInt8MultiArray, "bytes", None, 10)
+        await publisher.wait_for_subscribers()
+        sizes = [5_000_000, 1, 200_000, 2]
+        for size in sizes:
+            publisher.publish(UInt8MultiArray(data=bytes([size % 251]) * size))
+        await publisher.drain()
+        heard = [await subscription.receive() for _ in sizes]
+
+        assert [len(msg.data) for msg in heard] == sizes
+        assert all(
+            bytes(msg.data) == bytes([n % 251]) * n for n, msg in zip(sizes, heard, strict=True)
+        )
+
+
+async def test_keep_all_loses_nothing() -> None:
+    """However fast the publisher: it is told to wait, and `drain` waits."""
+    count = 12_000
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        heard: list[int] = []
+        done = asyncio.Event()
+
+        def hear(msg: Int32) -> None:
+            heard.append(msg.data)
+            if msg.data == count - 1:
+                done.set()
+
+        b.create_subscription(Int32, "n", hear, KEEP_ALL)
+        publisher = a.create_publisher(Int32, "n", KEEP_ALL)
+        await publisher.wait_for_subscribers()
+        for n in range(count):
+            try:
+                publisher.publish(Int32(data=n))
+            except QueueFullError:
+                await publisher.drain()
+                publisher.publish(Int32(data=n))
+        await publisher.drain()
+        await done.wait()
+
+        assert heard == list(range(count))
+
+
+# The second key of Lyrical
+
+
+async def test_a_topic_with_bytes_has_two_keys_and_hears_each_message_once() -> None:
+    """A ROS 2 Lyrical publisher uses one of both."""
+    key = data_key(DOMAIN_ID, "/image", "sensor_msgs/msg/Image", type_hash(Image))
+    async with quiet_node("viewer") as node:
+        subscription = node.create_subscription(Image, "image")
+        with raw_session() as session:
+            (token,) = await known(session, f"@ros2_lv/{DOMAIN_ID}/**/MS/**")
+            for n, each in enumerate((key, buffer_key(key))):
+                session.put(each, cdr.encode(Image(height=n)), attachment=sent(n + 1))
+            heights = [(await subscription.receive()).height for _ in range(2)]
+
+    assert token.endswith("/backends:cpu:")
+    assert sorted(heights) == [0, 1]
+
+
+async def test_a_topic_without_bytes_has_one_key() -> None:
+    """As ROS nodes of every release announce it."""
+    async with quiet_node("listener") as node:
+        node.create_subscription(String, "chatter")
+        with raw_session() as session:
+            (token,) = await known(session, f"@ros2_lv/{DOMAIN_ID}/**/MS/**")
+
+    assert "backends" not in token
+
+
+# Strange things from the network
+
+
+async def test_garbage_is_counted_logged_once_and_stops_nothing(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """Anybody may put anything on a key."""
+    async with quiet_node("listener") as node:
+        subscription = node.create_subscription(String, "chatter")
+        with raw_session() as session:
+            await known(session, f"@ros2_lv/{DOMAIN_ID}/**/MS/**")
+            with caplog.at_level(logging.WARNING, "aionode.transport.zenoh"):
+                for payload in (b"", b"\0\1\0\0", b"\0\1\0\0\xff\xff\xff\xffabc", bytes(3)):
+                    session.put(CHATTER, payload, attachment=sent(1))
+                session.delete(CHATTER)
+                for extra in (None, b"", b"abc", bytes(33), bytes(200)):
+                    session.put(CHATTER, cdr.encode(String(data="fine")), attachment=extra)
+                session.put(CHATTER, cdr.encode(String(data="last")), attachment=sent(2))
+                texts = [(await subscription.receive()).data for _ in range(6)]
+
+        malformed = transport_of(node).malformed
+        assert texts == ["fine"] * 5 + ["last"]
+        assert subscription.stats.errors == 5
+        assert malformed[CHATTER] == 9
+        assert sum("unknown form" in record.message for record in caplog.records) == 1
+
+
+async def test_strange_tokens_are_counted_and_the_graph_goes_on(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """Anybody may declare anything below the prefix of tokens."""
+    strange = ["x", "a/0/0/NN/%/%/n", "z/0/0/XX/%/%/n", "z/0/1/MP/%/%/n/%t/not_dds/h/::,1:,:,:,,"]
+    good = "zz/0/0/NN/%/%/fine"
+    async with quiet_node("watcher") as node:
+        with raw_session() as session, caplog.at_level(logging.WARNING):
+            with closing_all(
+                *(
+                    session.liveliness().declare_token(f"@ros2_lv/{DOMAIN_ID}/{each}")
+                    for each in [*strange, good]
+                )
+            ):
+                await node.graph.until(lambda: "fine" in {n.name for n in node.graph.nodes()})
+            await node.graph.until(lambda: [n.name for n in node.graph.nodes()] == ["watcher"])
+
+        assert transport_of(node).malformed.total() == 3
+        assert sum("unknown form" in record.message for record in caplog.records) == 1
+
+
+async def test_another_domain_is_named_and_not_heard(caplog: pytest.LogCaptureFixture) -> None:
+    """The commonest reason why two terminals do not hear each other."""
+    with caplog.at_level(logging.WARNING, "aionode.transport.zenoh"):
+        async with (
+            Context(domain_id=DOMAIN_ID + 1) as elsewhere,
+            quiet_node("there", elsewhere),
+            quiet_node("again", elsewhere),
+            quiet_node("here") as here,
+        ):
+            assert [n.name for n in here.graph.nodes()] == ["here"]
+    told = [text for text in caplog.messages if f"nodes of domain {DOMAIN_ID + 1} can" in text]
+    assert len(told) == 1
+
+
+def domain_lines(caplog: pytest.LogCaptureFixture) -> list[tuple[int, str]]:
+    """Return level and beginning of each line about other domains."""
+    return [
+        (record.levelno, record.getMessage().partition(" can be reached")[0])
+        for record in caplog.records
+        if "can be reached" in record.getMessage()
+    ]
+
+
+async def test_many_other_domains_make_one_line(caplog: pytest.LogCaptureFixture) -> None:
+    """It names a few, and counts the rest; they are forgotten when they are gone."""
+    with caplog.at_level(logging.DEBUG, "aionode.transport.zenoh"), raw_session() as session:
+        async with quiet_node("here") as here, quiet_node("elsewhere") as near:
+            tokens = announced(session, range(200, 260))
+            transport = transport_of(here)
+            while len(transport.other_domains) < 60:
+                await checkpoint()
+            before = domain_lines(caplog)
+            for token in tokens:
+                token.undeclare()
+            while transport.other_domains:
+                await checkpoint()
+            assert near.context.ok()
+
+    assert len(before) <= 2 * 2  # of each of two contexts the first, and one with ten times as many
+    assert all(level == logging.DEBUG for level, _ in before)
+
+
+async def test_other_domains_are_a_warning_to_one_that_hears_nobody(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """Then the domain is likely to be a mistake."""
+    with caplog.at_level(logging.DEBUG, "aionode.transport.zenoh"), raw_session() as session:
+        async with quiet_node("first", Context(domain_id=DOMAIN_ID + 7)):
+            _tokens = announced(session, range(200, 207))
+            await known(session, "@ros2_lv/*/*/*/*/NN/**", 8)
+            async with quiet_node("here"):
+                pass
+
+    (line,) = [line for line in domain_lines(caplog) if line[0] == logging.WARNING][-1:]
+    assert line[1] == f"nodes of domain {DOMAIN_ID + 7}, 200, 201, 202, 203 and 3 more"
+
+
+def announced(session: zenoh.Session, domains: Iterable[int]) -> list[zenoh.LivelinessToken]:
+    """Announce one node in each of these domains."""
+    return [
+        session.liveliness().declare_token(
+            f"@ros2_lv/{domain_id}/{session.zid()}/0/0/NN/%/%/theirs"
+        )
+        for domain_id in domains
+    ]
+
+
+# Lifetime
+
+
+async def test_a_closed_context_leaves_no_thread_and_opens_again() -> None:
+    """Programs open and close nodes as they like."""
+    before = set(threading.enumerate())
+    context = Context()
+    publisher_node = quiet_node("a", context)
+    publisher = publisher_node.create_publisher(Int32, "n", 10)
+    await context.acquire()
+    await context.release()
+    assert [t for t in threading.enumerate() if t not in before] == []
+
+    await context.acquire()
+    async with quiet_node("b") as b:
+        subscription = b.create_subscription(Int32, "n")
+        await publisher.wait_for_subscribers()
+        publisher.publish(Int32(data=7))
+        assert await first_numbers(subscription, 1) == [7]
+    await context.release()
+    publisher_node.destroy_node()
+
+
+async def test_raw_subscriptions_get_the_bytes() -> None:
+    """For tools that record or pass on."""
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        subscription = b.create_subscription(String, "chatter", raw=True)
+        publisher = a.create_publisher(String, "chatter", 10)
+        await publisher.wait_for_subscribers()
+        publisher.publish(String(data="hi"))
+
+        assert await subscription.receive() == cdr.encode(String(data="hi"))
+
+
+# Helpers
+
+
+def closing_all(*declared: Any) -> ExitStack:
+    """Undeclare in the end."""
+    stack = ExitStack()
+    for each in declared:
+        stack.callback(each.undeclare)
+    return stack
+
+
+def sent(sequence: int) -> bytes:
+    """Return an attachment."""
+    return attachment.pack(sequence, 1, b"g" * 16)
+
+
+def transport_of(node: Node) -> Any:
+    """Return the Zenoh transport of a node's context."""
+    return node.context.transports[1]
+
+
+async def matched(publisher: Any) -> None:
+    """Wait until somebody without a token listens."""
+    writer = publisher._writers[1]
+    if writer.active:
+        return
+    future = asyncio.get_running_loop().create_future()
+    update = writer._update_with
+
+    def note(status: zenoh.MatchingStatus) -> None:
+        update(status)
+        if writer.active and not future.done():
+            future.set_result(None)
+
+    writer._matching_changed._handle = note
+    await future
+
+
+async def test_without_a_hash_every_definition_of_a_type_is_heard() -> None:
+    """For tools that look at topics whose definition they do not have."""
+    other_key = data_key(DOMAIN_ID, "/chatter", "std_msgs/msg/String", "RIHS01_" + "0" * 64)
+    async with quiet_node("tool") as node:
+        heard: asyncio.Queue[bytes] = asyncio.Queue()
+        endpoint = EndpointInfo(
+            EndpointKind.SUBSCRIPTION,
+            node.context.graph.nodes()[0],
+            node.context.new_id(),
+            "/chatter",
+            "std_msgs/msg/String",
+            "",
+            QoSProfile(depth=10),
+            b"",
+        )
+        reader: Any = SimpleNamespace(
+            endpoint=endpoint,
+            raw=True,
+            deliver=lambda data, *_: heard.put_nowait(data),
+            reject=None,
+        )
+        announcement = transport_of(node).create_reader(endpoint, String, reader)
+        with raw_session() as session:
+            publisher = session.declare_publisher(other_key)
+            matching = Collector()
+            listener = publisher.declare_matching_listener(matching)
+            if not publisher.matching_status.matching:  # type: ignore[attr-defined]  # no bool
+                await matching.have(1)
+            publisher.put(b"any")
+            assert await heard.get() == b"any"
+            listener.undeclare()
+        announcement.close()
+        announcement.close()

@@ -1,0 +1,174 @@
+"""Laws that hold for every message of every type, and for what is left of one on a bad line."""
+
+from __future__ import annotations
+
+import tracemalloc
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from aionode.errors import DecodeError
+from aionode.message import Message, check
+from aionode.wire import cdr
+from aionode.wire.cdr import _encoder as encoder
+from aionode.wire.cdr._decoder import generate_decoder
+from aionode.wire.cdr._encoder import JOIN, generate_encoder, views
+from aionode.wire.cdr._fallback_decoder import decode_slowly
+from tests.support.strategies import message_classes, messages
+
+CLASSES = message_classes()
+
+EXAMPLES = settings().max_examples
+"""100, or more under another profile of hypothesis."""
+
+few = settings(
+    max_examples=EXAMPLES * 3 // 100,
+    deadline=None,
+    database=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
+"""Few examples, as there are 400 classes."""
+
+every_class = pytest.mark.parametrize("cls", CLASSES.values(), ids=CLASSES)
+
+any_class = st.sampled_from(list(CLASSES.values()))
+
+
+@every_class
+@few
+@given(data=st.data())
+def test_decode_undoes_encode(cls: type[Message], data: st.DataObject) -> None:
+    """Every value survives the wire, from whatever memory it is read and by either decoder."""
+    message = data.draw(messages(cls))
+    encoded = cdr.encode(message)
+
+    assert cdr.decode(cls, encoded) == message
+    assert cdr.decode(cls, memoryview(encoded)) == message
+    assert decode_slowly(cls, memoryview(encoded)) == message
+    check(cdr.decode(cls, encoded))
+
+
+@every_class
+@few
+@given(data=st.data())
+def test_the_pieces_of_a_message_are_its_bytes(cls: type[Message], data: st.DataObject) -> None:
+    """Put together they are what `encode` returns, however small a piece stands for itself."""
+    message = data.draw(messages(cls, nan=True))
+    least = data.draw(st.sampled_from([1, 2, 8, encoder.LARGE]))
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(encoder, "LARGE", least)
+        pieces = cdr.parts_encoder(cls)(message)
+
+    assert b"".join(pieces) == cdr.encode(message)
+    assert all(isinstance(one, bytes) or one.readonly for one in pieces)
+    assert sum(map(len, pieces)) == len(cdr.encode(message))
+    assert cdr.has_views(cls) or all(isinstance(one, bytes) for one in pieces)
+
+
+@every_class
+def test_usual_messages_take_the_fast_way(cls: type[Message]) -> None:
+    """The generated functions do all that they can: else a codec would be right, and slow."""
+
+    def slow(_: Any) -> Any:
+        raise AssertionError
+
+    message = cls()
+    encoded = generate_encoder(cls, slow, JOIN)(message)
+
+    assert b"".join(generate_encoder(cls, slow, views)(message)) == encoded
+    assert generate_decoder(cls, slow, slow)(encoded) == message
+    assert generate_decoder(cls, slow)(memoryview(encoded)) == message
+
+
+@given(cls=any_class, data=st.data())
+@settings(few, max_examples=EXAMPLES)
+def test_what_was_decoded_is_encoded_the_same(cls: type[Message], data: st.DataObject) -> None:
+    """The bytes are the same again: NaN and -0.0, which compare badly, survive too."""
+    encoded = cdr.encode(data.draw(messages(cls, nan=True)))
+
+    assert cdr.encode(cdr.decode(cls, encoded)) == encoded
+
+
+@given(cls=any_class, data=st.data())
+@settings(few, max_examples=3 * EXAMPLES)
+def test_any_truncation_is_a_decode_error(cls: type[Message], data: st.DataObject) -> None:
+    """A short read raises DecodeError and nothing else: the last byte is always needed."""
+    whole = cdr.encode(data.draw(messages(cls)))
+    cut = whole[: data.draw(st.integers(0, len(whole) - 1))]
+
+    with pytest.raises(DecodeError) as caught:
+        cdr.decode(cls, cut)
+    assert caught.value.type_name == cls.__ros_type__
+    assert caught.value.offset <= len(cut) + 7  # the place may lie behind a gap
+    with pytest.raises(DecodeError):
+        cdr.decode(cls, memoryview(cut))
+
+
+@every_class
+def test_a_message_cut_anywhere_is_a_decode_error(cls: type[Message]) -> None:
+    """At each of the first places, for every class as it is by default."""
+    whole = cdr.encode(cls())
+
+    for size in range(min(len(whole), 200)):
+        with pytest.raises(DecodeError):
+            cdr.decode(cls, whole[:size])
+
+
+@given(cls=any_class, data=st.data())
+@settings(few, max_examples=3 * EXAMPLES)
+def test_corrupted_data_is_decoded_as_it_stands_or_refused(
+    cls: type[Message], data: st.DataObject
+) -> None:
+    """Whatever the bytes are, there is a message or a DecodeError, and both decoders agree."""
+    damaged = bytearray(cdr.encode(data.draw(messages(cls))))
+    for _ in range(data.draw(st.integers(1, 4))):
+        place = data.draw(st.integers(0, len(damaged) - 1))
+        damaged[place] = data.draw(st.sampled_from([0, 1, 4, 127, 128, 255]))
+
+    assert outcome(cdr.decode, cls, bytes(damaged)) == outcome(
+        decode_slowly, cls, memoryview(damaged)
+    )
+
+
+def outcome(decode: Any, cls: type[Message], data: Any) -> bytes | str:
+    """Return what decoding comes to, in a form that can be compared even with NaN in it."""
+    try:
+        return cdr.encode(decode(cls, data))
+    except DecodeError as error:
+        return str(error)
+
+
+@given(cls=any_class, other=any_class, data=st.data())
+@settings(few, max_examples=EXAMPLES)
+def test_bytes_of_another_type_are_no_surprise(
+    cls: type[Message], other: type[Message], data: st.DataObject
+) -> None:
+    """A type that changed under its name gives a message or a DecodeError."""
+    encoded = cdr.encode(data.draw(messages(other)))
+
+    outcome(cdr.decode, cls, encoded)
+
+
+@every_class
+def test_no_length_makes_more_memory_than_the_data_could_fill(cls: type[Message]) -> None:
+    """Every aligned word is in turn the largest length: it is believed only if bytes follow."""
+    encoded = cdr.encode(cls())
+    words = range(4, min(len(encoded) - 3, 64), 4)
+    outcome(cdr.decode, cls, encoded)  # what is made once for a type does not count
+
+    tracemalloc.start()
+    try:
+        outcome(cdr.decode, cls, encoded)
+        _, usual = tracemalloc.get_traced_memory()
+        tracemalloc.reset_peak()
+        for place in words:
+            for claimed in (0xFFFFFFFF, 0x7FFFFFFF, 0x00FFFFFF):
+                damaged = encoded[:place] + claimed.to_bytes(4, "little") + encoded[place + 4 :]
+                outcome(cdr.decode, cls, damaged)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert peak < 3 * usual + 100_000
