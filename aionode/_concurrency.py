@@ -1,7 +1,7 @@
-"""Knowing when nothing is left to run, so that a test can look at the result without sleeping.
+"""Small tools for asyncio, and `wait_all_tasks_blocked`, which lets tests wait without sleeping.
 
-The event loop knows what is ready; work in threads is known because all of it goes through
-`run_in_thread`.
+That reads the event loop's queue of ready callbacks; work in threads is counted, because all of it
+goes through `run_in_thread`.
 """
 
 from __future__ import annotations
@@ -31,16 +31,16 @@ __all__ = [
 P = ParamSpec("P")
 T = TypeVar("T")
 
-BLIND_TURNS = 5  # turns of a loop that hides its queue in which every task has to be blocked
+BLIND_TURNS = 5
+"""For how many iterations every task has to be blocked, on a loop whose queue cannot be read."""
 
 
 async def wait_all_tasks_blocked() -> None:
-    """Return when no callback can run: all wait for time, for input, or for each other.
+    """Wait until no callback can run: all wait for time, for input, or for each other.
 
-    Waits for callbacks that are ready, for those that they make ready, and for callbacks that
-    aionode runs in threads. Input from outside, such as a socket's, is not waited for.
-    Something that is always ready, such as a task that never awaits anything but
-    ``asyncio.sleep(0)``, keeps it from ever returning.
+    This includes callbacks that aionode runs in threads, but not input from outside, such as a
+    socket's. It never returns while something is always ready, such as a task that awaits nothing
+    but ``asyncio.sleep(0)``.
     """
     await activity().wait_all_tasks_blocked()
 
@@ -54,8 +54,8 @@ def checkpoint() -> Generator[None, None, None]:
 async def run_in_thread(callback: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
     """Run `callback` in a thread and return its result; `wait_all_tasks_blocked` waits for it.
 
-    A thread cannot be stopped. So cancelling waits until `callback` has returned, and raises
-    CancelledError then; cancelling once more gives the thread up.
+    A thread cannot be stopped, so cancelling waits until `callback` has returned before it raises
+    CancelledError. Cancelling once more abandons the thread.
     """
     with activity():
         loop = asyncio.get_running_loop()
@@ -64,19 +64,19 @@ async def run_in_thread(callback: Callable[P, T], *args: P.args, **kwargs: P.kwa
         try:
             return await asyncio.shield(running)
         except asyncio.CancelledError:
-            # Its exception is looked at, so that asyncio does not report it.
+            # Retrieves the exception, so that asyncio does not report it.
             running.add_done_callback(lambda done: done.cancelled() or done.exception())
             await asyncio.wait([running])
             raise
 
 
 async def to_the_end(work: Coroutine[Any, Any, T]) -> T:
-    """Return the result of `work`, which cancelling the caller does not interrupt.
+    """Return the result of `work`, which goes on even if the caller is cancelled.
 
-    For what has to be done however a task ends, such as closing connections.
+    For what has to finish however a task ends, such as closing connections.
 
     Raises:
-        CancelledError: the caller was cancelled meanwhile; `work` is done all the same.
+        CancelledError: the caller was cancelled; raised after `work` has finished.
         Exception: what `work` raised.
     """
     cancelled: asyncio.CancelledError | None = None
@@ -102,47 +102,47 @@ async def to_the_end(work: Coroutine[Any, Any, T]) -> T:
 
 
 class Activity:
-    """What goes on in one event loop. As a context manager: work that the loop cannot see."""
+    """Tracks what is running in one event loop. As a context manager: work in a thread."""
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._ready = ready_queue(loop)
-        self._hidden = 0
-        self._quiet: list[asyncio.Future[None]] = []
-        self._turning = 0
+        self._in_threads = 0
+        self._thread_waits: list[asyncio.Future[None]] = []  # done when no thread is at work
+        self._waiters = 0  # how many `_until_only_waiters` are running
 
     def __enter__(self) -> None:
-        self._hidden += 1
+        self._in_threads += 1
 
     def __exit__(self, *_: object) -> None:
-        self._hidden -= 1
-        if self._hidden == 0:
-            quiet, self._quiet = self._quiet, []
-            for future in quiet:
+        self._in_threads -= 1
+        if self._in_threads == 0:
+            waits, self._thread_waits = self._thread_waits, []
+            for future in waits:
                 if not future.done():
                     future.set_result(None)
 
     async def wait_all_tasks_blocked(self) -> None:
-        """Return when no callback of this loop can run; see the function."""
+        """Wait until no callback of this loop can run; see the function."""
         while True:
             if self._ready is None:
                 await blind_turns()
             else:
-                await self._turns(self._ready)
-            if not self._hidden:
+                await self._until_only_waiters(self._ready)
+            if not self._in_threads:
                 return
             future = asyncio.get_running_loop().create_future()
-            self._quiet.append(future)
+            self._thread_waits.append(future)
             await future
 
-    async def _turns(self, ready: Sized) -> None:
-        """Let the loop turn until its queue holds nothing but others that do just the same."""
-        self._turning += 1
+    async def _until_only_waiters(self, ready: Sized) -> None:
+        """Let the loop run until its queue holds only other calls of this method."""
+        self._waiters += 1
         try:
             await checkpoint()
-            while len(ready) >= self._turning:
+            while len(ready) >= self._waiters:
                 await checkpoint()
         finally:
-            self._turning -= 1
+            self._waiters -= 1
 
 
 ACTIVITIES: WeakKeyDictionary[asyncio.AbstractEventLoop, Activity] = WeakKeyDictionary()
@@ -158,10 +158,10 @@ def activity() -> Activity:
 
 
 def ready_queue(loop: asyncio.AbstractEventLoop) -> Sized | None:
-    """Return the queue of callbacks that `loop` is about to run, or None if it hides it.
+    """Return the queue of callbacks that `loop` is about to run, or None if it cannot be found.
 
-    asyncio's own loops keep it in `_ready`. uvloop keeps it where Python code cannot name it, but
-    it is the only deque that the loop object holds.
+    asyncio's own loops keep it in `_ready`. In uvloop it is not an attribute that Python code can
+    read, but it is the only deque that the loop object refers to.
     """
     queue = getattr(loop, "_ready", None)
     if isinstance(queue, deque):
@@ -171,7 +171,7 @@ def ready_queue(loop: asyncio.AbstractEventLoop) -> Sized | None:
 
 
 async def blind_turns() -> None:
-    """Let the loop turn until every other task was blocked for some turns in a row."""
+    """Let the loop run until every other task was blocked for `BLIND_TURNS` iterations in a row."""
     quiet_turns = 0
     while quiet_turns < BLIND_TURNS:
         await checkpoint()
@@ -181,10 +181,10 @@ async def blind_turns() -> None:
 
 
 def is_blocked(task: asyncio.Task[Any]) -> bool:
-    """Whether `task` waits for a future that is not done."""
+    """Return whether `task` waits for a future that is not done."""
     waits_for = getattr(task, "_fut_waiter", None)
     return waits_for is not None and not waits_for.done()
 
 
 SLICE_NS = 1_000_000
-"""How long a queue is emptied before timers, I/O and other callbacks get their turn."""
+"""How long a queue is emptied before timers, I/O and other callbacks get to run."""
