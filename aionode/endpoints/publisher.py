@@ -137,7 +137,7 @@ class Publisher(Entity, Generic[MsgT]):
         return self._graph_entry.count_matched(EndpointKind.SUBSCRIPTION)
 
     async def wait_for_subscribers(self, count: int = 1) -> None:
-        """Wait until `count` subscriptions or more are matched; see `asyncio.timeout` for a limit."""
+        """Wait until at least `count` subscriptions are matched, without a limit of its own."""
         await self._graph_entry.until(lambda: self.get_subscription_count() >= count)
 
     def _close(self) -> None:
