@@ -36,8 +36,8 @@ from aionode.qos import (
 )
 
 if TYPE_CHECKING:
+    from aionode.endpoints.actions._node import ActionNode
     from aionode.message import ActionClass
-    from aionode.node import Node
 
 __all__ = ["ActionClient"]
 
@@ -101,7 +101,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
 
     def __init__(
         self,
-        node: Node,
+        node: ActionNode,
         action_type: ActionClass[GoalT, ResultT, FeedbackT],
         action_name: str,
         *,
@@ -125,7 +125,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         self._waits: set[asyncio.Future[Any]] = set()
         self._futures = Futures(self.subject)
         self._withdrawals: dict[Withdrawal, None] = {}  # those that have not ended
-        self._expect_at_end = node.expect_at_end
+        self._expect_at_end = node._expect_at_end
 
         impl = self.action_type.Impl
         hidden = f"{self.action_name}/_action"
@@ -171,7 +171,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         except BaseException:
             self._close_parts()
             raise
-        node.add_entity(self)
+        node._add_entity(self)
 
     def _part(self, part: Any) -> Any:
         self._parts.append(part)

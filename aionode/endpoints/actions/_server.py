@@ -45,8 +45,8 @@ from aionode.qos import (
 if TYPE_CHECKING:
     from aionode.clock._time_base import Alarm
     from aionode.endpoints._core.callback_runner import CallbackRunner, OnError
+    from aionode.endpoints.actions._node import ActionNode
     from aionode.message import ActionClass
-    from aionode.node import Node
     from aionode.qos import QoSProfile
 
 __all__ = ["ActionServer"]
@@ -133,7 +133,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
 
     def __init__(
         self,
-        node: Node,
+        node: ActionNode,
         action_type: ActionClass[GoalT, ResultT, FeedbackT],
         action_name: str,
         execute_callback: Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any],
@@ -162,7 +162,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         self.stats = CallbackStats()
         self._clock = node.get_clock()
         self._time_base = node.context.time_base
-        self._callbacks = node.callbacks
+        self._callbacks = node._callbacks
         self._logger = node.get_logger()
         self._timeout_ns = seconds_to_ns(result_timeout, f"{self.subject}: result_timeout")
         self._concurrent = checked_concurrency(concurrent, self.subject)
@@ -232,7 +232,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         except BaseException:
             self._close_parts()
             raise
-        node.add_entity(self)
+        node._add_entity(self)
 
     def _part(self, part: Any) -> Any:
         self._parts.append(part)
