@@ -49,7 +49,7 @@ async def run_in_thread(callback: Callable[P, T], *args: P.args, **kwargs: P.kwa
     """Run `callback` in a thread and return its result.
 
     A thread cannot be stopped, so cancelling waits until `callback` has returned and then raises
-    CancelledError; cancelling a second time leaves the thread running on its own.
+    CancelledError; cancelling once more abandons the thread.
     """
     loop = asyncio.get_running_loop()
     calls = thread_calls(loop)
@@ -72,13 +72,13 @@ async def run_in_thread(callback: Callable[P, T], *args: P.args, **kwargs: P.kwa
 
 
 async def to_the_end(work: Coroutine[Any, Any, T]) -> T:
-    """Return the result of `work`, which cancelling the caller does not interrupt.
+    """Return the result of `work`, which goes on even if the caller is cancelled.
 
-    For work that must be completed however a task ends, such as closing connections.
+    For what has to finish however a task ends, such as closing connections.
 
     Raises:
-        CancelledError: the caller was cancelled meanwhile; `work` was completed nevertheless.
-        Exception: an exception from `work`.
+        CancelledError: the caller was cancelled; raised after `work` has finished.
+        Exception: what `work` raised.
     """
     cancelled: asyncio.CancelledError | None = None
     outcome: asyncio.Future[T] = asyncio.get_running_loop().create_future()
