@@ -93,7 +93,5 @@ class ManualClock(TimeBase):
 def span_ns(seconds: float, action: str) -> int:
     """Return `seconds` in nanoseconds, rounded to the nearest."""
     if seconds < 0:
-        raise ValueError(
-            f"{action}: {seconds} s is negative; time does not go back; use 0 or more"
-        )
+        raise ValueError(f"{action}: {seconds} s is negative; time does not go back; use 0 or more")
     return round(seconds * S_TO_NS)
