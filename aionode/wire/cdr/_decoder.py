@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from aionode.message import FieldType
 
-__all__ = ["FALLBACK_ERRORS", "HEADER_LAYOUT", "Reading", "RunArray", "generate_decoder"]
+__all__ = ["generate_decoder"]
 
 PLACES = 8
 """Places that differ in alignment."""
@@ -43,200 +43,6 @@ PLACES = 8
 HEADER_LAYOUT = "<Hxx"
 
 MAGIC = int.from_bytes(HEADER[:2], "little")
-
-
-@dataclass(frozen=True, slots=True)
-class RunArray:
-    """An array of fixed size in a run: where it goes, of what it is, and where it lies."""
-
-    target: str
-    kind: str
-    offset: int
-    count: int
-
-
-class Reading:
-    """Collects values into runs, and reads each run in one step.
-
-    What is known of `pos` at the start of the run being collected: its value as `_offset`, or None
-    where that depends on the data; in any case that, not counting the header, it is `_residue`
-    modulo `_modulus`.
-    """
-
-    def __init__(self) -> None:
-        self._source = CodeBuilder()
-        self._layout = "<"
-        self._targets: list[str] = []
-        self._arrays: list[RunArray] = []
-        self._magic = ""
-        self._has_view = False
-        self._offset: int | None = 0
-        self._modulus, self._residue = PLACES, -len(HEADER) % PLACES
-
-    def _read_header(self) -> None:
-        """Begin with what opens a message; it is checked with the first run."""
-        self._magic = self._source.local("magic")
-        self._value(HEADER_LAYOUT[1:], 1, self._magic)
-
-    def _count(self, kind: FieldType) -> str:
-        """Return the expression of how many elements, or bytes of text, follow."""
-        if kind.container == "array":
-            return str(kind.size)
-        if kind.nested is not None and kind.container == "single":
-            return "1"
-        count = self._source.local("n")
-        self._value("I", COUNT_SIZE, count)
-        self._flush()
-        if kind.container == "bounded":
-            self._source.require(f"{count} <= {kind.size}")
-        return count
-
-    def _value(self, code: str, alignment: int, target: str = "") -> int:
-        """Read one value of fixed size into `target`; return its offset from the run's start."""
-        if alignment > self._modulus:
-            self._align(alignment)
-        at = self._residue + struct.calcsize(self._layout)
-        gap = -at % alignment
-        offset = struct.calcsize(self._layout) + gap
-        self._layout += f"{gap}x{code}" if gap else code
-        if target:
-            self._targets.append(target)
-        return offset
-
-    def _flush(self) -> None:
-        """Read the run collected so far."""
-        packed = struct.Struct(self._layout)
-        source = self._source
-        if self._targets:
-            unpack = source.constant("unpack", packed.unpack_from)
-            at = "" if self._offset == 0 else f", {self._place()}"
-            source.line(f"{', '.join(self._targets)}, = {unpack}(data{at})")
-        elif packed.size:
-            source.require(f"len(data) >= {self._place(packed.size)}")
-        self._run_arrays()
-        if self._magic:
-            source.require(f"{self._magic} == {MAGIC}")
-        self._layout, self._targets, self._magic = "<", [], ""
-        self._advance(packed.size)
-
-    def _place(self, further: int = 0) -> str:
-        """Return the expression of where the run starts, or of what is `further`."""
-        if self._offset is not None:
-            return str(self._offset + further)
-        return f"pos + {further}" if further else "pos"
-
-    def _advance(self, size: int) -> None:
-        """Note that the next run starts `size` further."""
-        if size and self._offset is None:
-            self._source.position(f"pos += {size}")
-        elif self._offset is not None:
-            self._offset += size
-        self._residue = (self._residue + size) % self._modulus
-
-    def _align(self, alignment: int) -> None:
-        """Go to the next aligned place."""
-        self._flush()
-        if alignment <= self._modulus:
-            self._advance(-self._residue % alignment)
-            return
-        self._source.line(f"pos = {aligned(alignment)}")
-        self._modulus, self._residue = alignment, 0
-
-    def _align_elements(self, alignment: int, count: str) -> None:
-        """Go to the first of `count` elements after a count; none are not aligned."""
-        if self._offset is not None:
-            self._source.line(f"pos = {self._offset}")
-            self._offset = None
-        if alignment > COUNT_SIZE and (self._modulus < alignment or self._residue):
-            self._source.line(f"if {count}: pos = {aligned(alignment)}")
-        self._unknown(self._kept(alignment))
-
-    def _skip(self, size: str, alignment: int) -> str:
-        """Set `pos` to the end of something variable; return the expression of its start.
-
-        Args:
-            size: Expression of how long it is.
-            alignment: What that is always a multiple of.
-        """
-        source = self._source
-        if self._offset is not None:
-            start = str(self._offset)
-            source.line(f"pos = {start} + {size}")
-        else:
-            start = source.local("start")
-            source.line(f"{start} = pos")
-            source.line(f"pos += {size}")
-        self._unknown(self._kept(alignment))
-        return start
-
-    def _kept(self, alignment: int) -> int:
-        """Return what `pos` stays aligned to after a multiple of `alignment`."""
-        known = min(alignment, self._modulus)
-        while self._residue % known:
-            known //= 2
-        return known
-
-    def _unknown(self, modulus: int = 1) -> None:
-        """Note that `pos` depends on the data, and is aligned to `modulus`."""
-        self._offset = None
-        self._modulus, self._residue = modulus, 0
-
-    def _view(self) -> str:
-        """Return the name of the memoryview of `data`."""
-        if not self._has_view:
-            self._source.line("view = memoryview(data)")
-            self._has_view = True
-        return "view"
-
-    def _array(self, kind: str, count: str, place: str) -> str:
-        """Return the expression that makes an array over `data`."""
-        import numpy as np
-
-        if kind == "bool":
-            return f"{self._source.constant('bools', bools)}(data, {count}, {place})"
-        dtype = self._source.constant("dtype", np.dtype(f"<{PRIMITIVES[kind].dtype}"))
-        make = self._source.constant("frombuffer", np.frombuffer)
-        return f"{make}(data, {dtype}, {count}, {place})"
-
-    def _run_arrays(self) -> None:
-        """Make the arrays of the run: those of one kind as slices of one, which costs less."""
-        source = self._source
-        for kind in dict.fromkeys(array.kind for array in self._arrays):
-            arrays = [array for array in self._arrays if array.kind == kind]
-            first, last, size = arrays[0], arrays[-1], PRIMITIVES[kind].size
-            if len(arrays) == 1 or kind == "bool":
-                for array in arrays:
-                    made = self._array(kind, str(array.count), self._place(array.offset))
-                    source.line(f"{array.target} = {made}")
-                continue
-            count = (last.offset - first.offset) // size + last.count
-            all_ = source.local("all")
-            source.line(f"{all_} = {self._array(kind, str(count), self._place(first.offset))}")
-            for array in arrays:
-                start = (array.offset - first.offset) // size
-                part = source.constant("part", slice(start, start + array.count))
-                source.line(f"{array.target} = {all_}[{part}]")
-        self._arrays.clear()
-
-
-def aligned(alignment: int) -> str:
-    """Return the expression of the next aligned place at or after `pos`."""
-    shift = len(HEADER) % alignment
-    if shift:
-        return f"(pos + {alignment - 1 - shift} & -{alignment}) + {shift}"
-    return f"pos + {alignment - 1} & -{alignment}"
-
-
-def bools(data: Any, count: int, pos: int) -> Any:
-    """Return an array of bool over `data`; a copy if another byte than 0 and 1 means True."""
-    import numpy as np
-
-    numbers = np.frombuffer(data, np.uint8, count, pos)
-    if count and numbers.max() > 1:
-        numbers = numbers != 0
-        numbers.flags.writeable = False
-    return numbers.view(np.bool_)
-
 
 FALLBACK_ERRORS = (NeedsFallback, struct.error, IndexError, ValueError)
 """What the generated function meets when data is not as ROS writes it, or cut, or corrupted."""
@@ -263,7 +69,7 @@ def generate_decoder(
         fallback: Decodes what the function does not, or raises the error.
         other: Decodes what is not a bytes object; without it, the function takes memoryviews only.
     """
-    return Decoding(cls, of_bytes=other is not None).whole(fallback, other)
+    return DecoderGenerator(cls, of_bytes=other is not None).whole(fallback, other)
 
 
 @cache
@@ -271,16 +77,43 @@ def element_decoder(
     cls: Any, *, of_bytes: bool
 ) -> Callable[[Any, memoryview, int], tuple[Any, int]]:
     """Return the function that reads one message, and gives it and the new `pos`."""
-    return Decoding(cls, of_bytes=of_bytes).element()
+    return DecoderGenerator(cls, of_bytes=of_bytes).element()
 
 
-class Decoding(Reading):
-    """One decoder while it is being written: what a message consists of."""
+@dataclass(frozen=True, slots=True)
+class RunArray:
+    """An array of fixed size in a run: where it goes, of what it is, and where it lies."""
+
+    target: str
+    kind: str
+    offset: int
+    count: int
+
+
+class DecoderGenerator:
+    """Generates the decoder of one message type.
+
+    Adjacent values of fixed size are collected into a run, and each run is unpacked in one step.
+    `_offset` is the value of the variable `pos` at the start of the current run, or None if that
+    depends on the data. In both cases that position, not counting the header, is `_residue` modulo
+    `_modulus`, so the generator knows which alignments need no padding.
+    """
 
     def __init__(self, cls: Any, *, of_bytes: bool) -> None:
-        super().__init__()
         self._cls = cls
         self._of_bytes = of_bytes
+        self._source = CodeBuilder()
+        self._layout = "<"
+        """Format of the current run, for `struct`."""
+        self._targets: list[str] = []
+        """Variables that the values of the current run are assigned to."""
+        self._arrays: list[RunArray] = []
+        """Arrays of fixed size in the current run."""
+        self._magic = ""
+        """Variable that holds the start of the header until it is checked."""
+        self._has_view = False
+        self._offset: int | None = 0
+        self._modulus, self._residue = PLACES, -len(HEADER) % PLACES
 
     def whole(
         self, fallback: Callable[[Any], Any], other: Callable[[Any], Any] | None
@@ -472,6 +305,172 @@ class Decoding(Reading):
         elements = f"{unpack}({self._view()}[{start}:pos])"
         source.line(f"{local} = [{result} for {', '.join(targets)}, in {elements}]")
         return True
+
+    # Runs and positions
+
+    def _read_header(self) -> None:
+        """Begin with what opens a message; it is checked with the first run."""
+        self._magic = self._source.local("magic")
+        self._value(HEADER_LAYOUT[1:], 1, self._magic)
+
+    def _count(self, kind: FieldType) -> str:
+        """Return the expression of how many elements, or bytes of text, follow."""
+        if kind.container == "array":
+            return str(kind.size)
+        if kind.nested is not None and kind.container == "single":
+            return "1"
+        count = self._source.local("n")
+        self._value("I", COUNT_SIZE, count)
+        self._flush()
+        if kind.container == "bounded":
+            self._source.require(f"{count} <= {kind.size}")
+        return count
+
+    def _value(self, code: str, alignment: int, target: str = "") -> int:
+        """Read one value of fixed size into `target`; return its offset from the run's start."""
+        if alignment > self._modulus:
+            self._align(alignment)
+        at = self._residue + struct.calcsize(self._layout)
+        gap = -at % alignment
+        offset = struct.calcsize(self._layout) + gap
+        self._layout += f"{gap}x{code}" if gap else code
+        if target:
+            self._targets.append(target)
+        return offset
+
+    def _flush(self) -> None:
+        """Read the run collected so far."""
+        packed = struct.Struct(self._layout)
+        source = self._source
+        if self._targets:
+            unpack = source.constant("unpack", packed.unpack_from)
+            at = "" if self._offset == 0 else f", {self._place()}"
+            source.line(f"{', '.join(self._targets)}, = {unpack}(data{at})")
+        elif packed.size:
+            source.require(f"len(data) >= {self._place(packed.size)}")
+        self._run_arrays()
+        if self._magic:
+            source.require(f"{self._magic} == {MAGIC}")
+        self._layout, self._targets, self._magic = "<", [], ""
+        self._advance(packed.size)
+
+    def _place(self, further: int = 0) -> str:
+        """Return the expression of where the run starts, or of what is `further`."""
+        if self._offset is not None:
+            return str(self._offset + further)
+        return f"pos + {further}" if further else "pos"
+
+    def _advance(self, size: int) -> None:
+        """Note that the next run starts `size` further."""
+        if size and self._offset is None:
+            self._source.position(f"pos += {size}")
+        elif self._offset is not None:
+            self._offset += size
+        self._residue = (self._residue + size) % self._modulus
+
+    def _align(self, alignment: int) -> None:
+        """Go to the next aligned place."""
+        self._flush()
+        if alignment <= self._modulus:
+            self._advance(-self._residue % alignment)
+            return
+        self._source.line(f"pos = {aligned(alignment)}")
+        self._modulus, self._residue = alignment, 0
+
+    def _align_elements(self, alignment: int, count: str) -> None:
+        """Go to the first of `count` elements after a count; none are not aligned."""
+        if self._offset is not None:
+            self._source.line(f"pos = {self._offset}")
+            self._offset = None
+        if alignment > COUNT_SIZE and (self._modulus < alignment or self._residue):
+            self._source.line(f"if {count}: pos = {aligned(alignment)}")
+        self._unknown(self._kept(alignment))
+
+    def _skip(self, size: str, alignment: int) -> str:
+        """Set `pos` to the end of something variable; return the expression of its start.
+
+        Args:
+            size: Expression of how long it is.
+            alignment: What that is always a multiple of.
+        """
+        source = self._source
+        if self._offset is not None:
+            start = str(self._offset)
+            source.line(f"pos = {start} + {size}")
+        else:
+            start = source.local("start")
+            source.line(f"{start} = pos")
+            source.line(f"pos += {size}")
+        self._unknown(self._kept(alignment))
+        return start
+
+    def _kept(self, alignment: int) -> int:
+        """Return what `pos` stays aligned to after a multiple of `alignment`."""
+        known = min(alignment, self._modulus)
+        while self._residue % known:
+            known //= 2
+        return known
+
+    def _unknown(self, modulus: int = 1) -> None:
+        """Note that `pos` depends on the data, and is aligned to `modulus`."""
+        self._offset = None
+        self._modulus, self._residue = modulus, 0
+
+    def _view(self) -> str:
+        """Return the name of the memoryview of `data`."""
+        if not self._has_view:
+            self._source.line("view = memoryview(data)")
+            self._has_view = True
+        return "view"
+
+    def _array(self, kind: str, count: str, place: str) -> str:
+        """Return the expression that makes an array over `data`."""
+        import numpy as np
+
+        if kind == "bool":
+            return f"{self._source.constant('bools', bools)}(data, {count}, {place})"
+        dtype = self._source.constant("dtype", np.dtype(f"<{PRIMITIVES[kind].dtype}"))
+        make = self._source.constant("frombuffer", np.frombuffer)
+        return f"{make}(data, {dtype}, {count}, {place})"
+
+    def _run_arrays(self) -> None:
+        """Make the arrays of the run: those of one kind as slices of one, which costs less."""
+        source = self._source
+        for kind in dict.fromkeys(array.kind for array in self._arrays):
+            arrays = [array for array in self._arrays if array.kind == kind]
+            first, last, size = arrays[0], arrays[-1], PRIMITIVES[kind].size
+            if len(arrays) == 1 or kind == "bool":
+                for array in arrays:
+                    made = self._array(kind, str(array.count), self._place(array.offset))
+                    source.line(f"{array.target} = {made}")
+                continue
+            count = (last.offset - first.offset) // size + last.count
+            all_ = source.local("all")
+            source.line(f"{all_} = {self._array(kind, str(count), self._place(first.offset))}")
+            for array in arrays:
+                start = (array.offset - first.offset) // size
+                part = source.constant("part", slice(start, start + array.count))
+                source.line(f"{array.target} = {all_}[{part}]")
+        self._arrays.clear()
+
+
+def aligned(alignment: int) -> str:
+    """Return the expression of the next aligned place at or after `pos`."""
+    shift = len(HEADER) % alignment
+    if shift:
+        return f"(pos + {alignment - 1 - shift} & -{alignment}) + {shift}"
+    return f"pos + {alignment - 1} & -{alignment}"
+
+
+def bools(data: Any, count: int, pos: int) -> Any:
+    """Return an array of bool over `data`; a copy if another byte than 0 and 1 means True."""
+    import numpy as np
+
+    numbers = np.frombuffer(data, np.uint8, count, pos)
+    if count and numbers.max() > 1:
+        numbers = numbers != 0
+        numbers.flags.writeable = False
+    return numbers.view(np.bool_)
 
 
 def has_arrays(cls: Any) -> bool:
