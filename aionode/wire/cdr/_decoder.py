@@ -1,12 +1,8 @@
-"""The generator of decoders: one function for each message type.
+"""Generates one decoder function for each message type.
 
-The part of a decoder's generator that knows where what it reads is.
-
-Writes, for one message type, the function that decodes its messages.
-
-It reads little endian data that is as ROS writes it, without a look ahead: whatever does not fit
-raises somewhere, and the plain codec then reads the data again and finds the place, or finds that
-it may be read after all.
+The generated function assumes little-endian data as ROS writes it and validates little: invalid
+data raises an exception somewhere, and the fallback decoder then decodes the data again and either
+reports the exact position of the error or succeeds, as it is more lenient.
 """
 
 from __future__ import annotations
@@ -20,9 +16,9 @@ from aionode.message import fields, type_name
 from aionode.message._field_types import DTYPES
 from aionode.message._validation import EMPTY
 from aionode.wire.cdr._codegen import CodeBuilder, NeedsFallback
+from aionode.wire.cdr._constants import COUNT_SIZE, HEADER
 from aionode.wire.cdr._layout import (
-    COUNT_SIZE,
-    HEADER,
+    PHASES,
     PRIMITIVES,
     is_small,
     minimum_size,
@@ -37,24 +33,23 @@ if TYPE_CHECKING:
 
 __all__ = ["generate_decoder"]
 
-PLACES = 8
-"""Places that differ in alignment."""
-
 HEADER_LAYOUT = "<Hxx"
+"""Format of the message header for `struct`; its last two bytes are ignored."""
 
 MAGIC = int.from_bytes(HEADER[:2], "little")
+"""First two bytes of the header, as the generated function unpacks them."""
 
 FALLBACK_ERRORS = (NeedsFallback, struct.error, IndexError, ValueError)
-"""What the generated function meets when data is not as ROS writes it, or cut, or corrupted."""
+"""Raised by the generated function if data is truncated, corrupt or not as ROS writes it."""
 
 UNKNOWN = ()
-"""Stands for the text before the first one. Of no prefixes, none fits: bytes never begin so."""
+"""Cached text before the first message: `startswith(())` is never true."""
 
 SKIPPED = 31
-"""Messages whose text is not compared with the last known one after it was another."""
+"""Number of messages after a cache miss for which the cached text is not compared."""
 
 LONGEST_KEPT = 256
-"""Bytes of a string that is kept, in case that the next message has the same."""
+"""Largest string, in bytes, that is cached in case that the next message has the same one."""
 
 
 def generate_decoder(
@@ -66,8 +61,9 @@ def generate_decoder(
 
     Args:
         cls: A message class.
-        fallback: Decodes what the function does not, or raises the error.
-        other: Decodes what is not a bytes object; without it, the function takes memoryviews only.
+        fallback: Decodes data that the function cannot decode, or raises the error.
+        other: Decodes data that is not a bytes object. Without it, the function accepts
+            memoryviews only.
     """
     return DecoderGenerator(cls, of_bytes=other is not None).whole(fallback, other)
 
@@ -76,13 +72,13 @@ def generate_decoder(
 def element_decoder(
     cls: Any, *, of_bytes: bool
 ) -> Callable[[Any, memoryview, int], tuple[Any, int]]:
-    """Return the function that reads one message, and gives it and the new `pos`."""
+    """Return the function that decodes a nested message: it returns the message and its end."""
     return DecoderGenerator(cls, of_bytes=of_bytes).element()
 
 
 @dataclass(frozen=True, slots=True)
 class RunArray:
-    """An array of fixed size in a run: where it goes, of what it is, and where it lies."""
+    """An array of fixed size in a run: target variable, element type, offset and length."""
 
     target: str
     kind: str
@@ -113,12 +109,12 @@ class DecoderGenerator:
         """Variable that holds the start of the header until it is checked."""
         self._has_view = False
         self._offset: int | None = 0
-        self._modulus, self._residue = PLACES, -len(HEADER) % PLACES
+        self._modulus, self._residue = PHASES, -len(HEADER) % PHASES
 
     def whole(
         self, fallback: Callable[[Any], Any], other: Callable[[Any], Any] | None
     ) -> Callable[[Any], Any]:
-        """Compile the function that decodes all of `data`."""
+        """Return the function that decodes a whole message."""
         source = self._source
         fallback_name = source.constant("plain", fallback)
         misfits = source.constant("misfits", FALLBACK_ERRORS)
@@ -135,7 +131,7 @@ class DecoderGenerator:
         return source.function("def decode(data):", type_name(self._cls))
 
     def element(self) -> Callable[[Any, memoryview, int], tuple[Any, int]]:
-        """Compile the function that reads one message from anywhere."""
+        """Return the function that decodes a message starting at any `pos`."""
         self._has_view = True
         self._unknown()
         result = self._message(self._cls)
@@ -144,20 +140,20 @@ class DecoderGenerator:
         return self._source.function("def read(data, view, pos):", type_name(self._cls))
 
     def _message(self, cls: Any) -> str:
-        """Read all fields; return the expression that makes the message of them."""
+        """Decode all fields; return the expression that constructs the message."""
         described = fields(cls)
         if not described:
             self._value("x", 1)
-        # By position, in the order of the fields: by name would cost twice as much.
+        # Positional arguments, as keyword arguments would cost twice as much.
         values = [self._field(field.type, field.name) for field in described]
         return f"{self._class(cls)}({', '.join(values)})"
 
     def _class(self, cls: Any) -> str:
-        """Return the name of a class; that of its type was checked, its own may be anything."""
+        """Return the name of a class, made from its validated type name."""
         return self._source.constant(type_name(cls).rpartition("/")[2], cls)
 
     def _field(self, kind: FieldType, name: str) -> str:
-        """Read one field; return the expression of its value."""
+        """Decode one field; return the expression of its value."""
         if kind.container == "single" and kind.nested is not None and is_small(kind.nested):
             return self._message(kind.nested)
         local = self._source.local(name)
@@ -190,12 +186,12 @@ class DecoderGenerator:
             source.require(f"len({local}) <= {kind.string_bound}")
 
     def _repeated_text(self, kind: FieldType, local: str) -> None:
-        """Read a text that is probably the same as in the last message.
+        """Decode a text that is probably the same as in the last message, such as a frame id.
 
-        Frame ids, encodings and the like are: what is known need not be checked, nor made again. It
-        is compared together with its length, and at the start of a message with the header too, so
-        that data that ends early equals nothing known. After a text that was another, some are not
-        compared, so that texts that always change cost little more.
+        A text that equals the cached one need not be validated or created again. It is compared
+        together with its length, and at the start of a message with the header too, so truncated
+        data never matches. After a cache miss the comparison is skipped for `SKIPPED` messages, so
+        texts that change every time cost little more.
         """
         source = self._source
         last, skip = source.variable("last", (UNKNOWN, "")), source.variable("skip", 0)
@@ -217,17 +213,17 @@ class DecoderGenerator:
             self._remember(skip, size, f"{last} = {raw}, {local}")
 
     def _remember(self, skip: str, size: str, statement: str) -> None:
-        """Keep a new text, unless it is one of those that are passed over."""
+        """Cache a new text, unless the comparison is being skipped."""
         self._source.line(f"if {skip} > 0: {skip} -= 1")
         with self._source.block("else:"):
             self._source.line(f"{skip} = {SKIPPED}")
             self._source.line(f"if {size} <= {LONGEST_KEPT}: {statement}")
 
     def _new_text(self, local: str, start: str) -> None:
-        """Make a text, if it ends with its NUL inside the data."""
+        """Decode a text; it must end with a NUL inside the data."""
         self._source.line("if data[pos - 1]: raise NeedsFallback")
         text = f"data[{start}:pos - 1]"
-        # The first form is faster, and only slices of bytes have it.
+        # `decode` is faster, but memoryviews do not have it.
         made = f"{text}.decode()" if self._of_bytes else f"str({text}, 'utf-8')"
         self._source.line(f"{local} = {made}")
 
@@ -287,7 +283,7 @@ class DecoderGenerator:
             source.line(f"{local}.append({item})")
 
     def _uniform_messages(self, cls: Any, count: str, local: str) -> bool:
-        """Read messages of scalars without padding by one Struct, if `cls` is so."""
+        """Decode messages of equally aligned scalars with one Struct; return False for others."""
         alignment = uniform_alignment(cls)
         if alignment is None or has_arrays(cls):
             return False
@@ -309,12 +305,12 @@ class DecoderGenerator:
     # Runs and positions
 
     def _read_header(self) -> None:
-        """Begin with what opens a message; it is checked with the first run."""
+        """Read the header as part of the first run, which also checks it."""
         self._magic = self._source.local("magic")
         self._value(HEADER_LAYOUT[1:], 1, self._magic)
 
     def _count(self, kind: FieldType) -> str:
-        """Return the expression of how many elements, or bytes of text, follow."""
+        """Return the expression of the number of elements, or bytes of text, that follow."""
         if kind.container == "array":
             return str(kind.size)
         if kind.nested is not None and kind.container == "single":
@@ -327,7 +323,7 @@ class DecoderGenerator:
         return count
 
     def _value(self, code: str, alignment: int, target: str = "") -> int:
-        """Read one value of fixed size into `target`; return its offset from the run's start."""
+        """Add a value of fixed size to the run; return its offset from the start of the run."""
         if alignment > self._modulus:
             self._align(alignment)
         at = self._residue + struct.calcsize(self._layout)
@@ -339,7 +335,7 @@ class DecoderGenerator:
         return offset
 
     def _flush(self) -> None:
-        """Read the run collected so far."""
+        """Unpack the current run and begin a new one."""
         packed = struct.Struct(self._layout)
         source = self._source
         if self._targets:
@@ -355,13 +351,13 @@ class DecoderGenerator:
         self._advance(packed.size)
 
     def _place(self, further: int = 0) -> str:
-        """Return the expression of where the run starts, or of what is `further`."""
+        """Return the expression of the start of the run plus `further` bytes."""
         if self._offset is not None:
             return str(self._offset + further)
         return f"pos + {further}" if further else "pos"
 
     def _advance(self, size: int) -> None:
-        """Note that the next run starts `size` further."""
+        """Move the start of the next run by `size` bytes."""
         if size and self._offset is None:
             self._source.position(f"pos += {size}")
         elif self._offset is not None:
@@ -369,7 +365,7 @@ class DecoderGenerator:
         self._residue = (self._residue + size) % self._modulus
 
     def _align(self, alignment: int) -> None:
-        """Go to the next aligned place."""
+        """Move to the next aligned position."""
         self._flush()
         if alignment <= self._modulus:
             self._advance(-self._residue % alignment)
@@ -378,7 +374,7 @@ class DecoderGenerator:
         self._modulus, self._residue = alignment, 0
 
     def _align_elements(self, alignment: int, count: str) -> None:
-        """Go to the first of `count` elements after a count; none are not aligned."""
+        """Move to the first of `count` elements; an empty sequence has no padding."""
         if self._offset is not None:
             self._source.line(f"pos = {self._offset}")
             self._offset = None
@@ -387,11 +383,11 @@ class DecoderGenerator:
         self._unknown(self._kept(alignment))
 
     def _skip(self, size: str, alignment: int) -> str:
-        """Set `pos` to the end of something variable; return the expression of its start.
+        """Skip a value of variable size; return the expression of its start.
 
         Args:
-            size: Expression of how long it is.
-            alignment: What that is always a multiple of.
+            size: Expression of its size.
+            alignment: A number that the size is always a multiple of.
         """
         source = self._source
         if self._offset is not None:
@@ -405,14 +401,14 @@ class DecoderGenerator:
         return start
 
     def _kept(self, alignment: int) -> int:
-        """Return what `pos` stays aligned to after a multiple of `alignment`."""
+        """Return the alignment of `pos` after skipping a multiple of `alignment` bytes."""
         known = min(alignment, self._modulus)
         while self._residue % known:
             known //= 2
         return known
 
     def _unknown(self, modulus: int = 1) -> None:
-        """Note that `pos` depends on the data, and is aligned to `modulus`."""
+        """Record that `pos` depends on the data and is only known to be aligned to `modulus`."""
         self._offset = None
         self._modulus, self._residue = modulus, 0
 
@@ -424,7 +420,7 @@ class DecoderGenerator:
         return "view"
 
     def _array(self, kind: str, count: str, place: str) -> str:
-        """Return the expression that makes an array over `data`."""
+        """Return the expression of an array that is a view of `data`."""
         import numpy as np
 
         if kind == "bool":
@@ -434,7 +430,7 @@ class DecoderGenerator:
         return f"{make}(data, {dtype}, {count}, {place})"
 
     def _run_arrays(self) -> None:
-        """Make the arrays of the run: those of one kind as slices of one, which costs less."""
+        """Create the arrays of the run; slices of one array for each element type are cheaper."""
         source = self._source
         for kind in dict.fromkeys(array.kind for array in self._arrays):
             arrays = [array for array in self._arrays if array.kind == kind]
@@ -455,7 +451,7 @@ class DecoderGenerator:
 
 
 def aligned(alignment: int) -> str:
-    """Return the expression of the next aligned place at or after `pos`."""
+    """Return the expression of the next aligned position at or after `pos`."""
     shift = len(HEADER) % alignment
     if shift:
         return f"(pos + {alignment - 1 - shift} & -{alignment}) + {shift}"
@@ -463,7 +459,7 @@ def aligned(alignment: int) -> str:
 
 
 def bools(data: Any, count: int, pos: int) -> Any:
-    """Return an array of bool over `data`; a copy if another byte than 0 and 1 means True."""
+    """Return a bool array that is a view of `data`, or a copy if bytes other than 0 and 1 occur."""
     import numpy as np
 
     numbers = np.frombuffer(data, np.uint8, count, pos)
@@ -474,7 +470,7 @@ def bools(data: Any, count: int, pos: int) -> Any:
 
 
 def has_arrays(cls: Any) -> bool:
-    """Tell whether a message of fixed size holds arrays."""
+    """Return whether a message of fixed size contains arrays."""
     kinds = [field.type for field in fields(cls)]
     return any(
         kind.container == "array" or (kind.nested is not None and has_arrays(kind.nested))
