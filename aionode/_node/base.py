@@ -376,5 +376,5 @@ class NodeBase:
     def _refuse_if_destroyed(self, wanted: str) -> None:
         if self.destroyed:
             raise EntityDestroyedError(
-                f"node {self.get_fully_qualified_name()}", f"given a {wanted}"
+                f"node {self.get_fully_qualified_name()}", f"create {wanted}"
             )

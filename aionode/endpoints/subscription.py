@@ -162,7 +162,7 @@ class Subscription(Entity, Generic[ItemT]):
             await checkpoint()
             self._turn_ends_ns = perf_ns() + SLICE_NS
         while not self._message_queue:
-            self.refuse_if_destroyed("read")
+            self.refuse_if_destroyed("read messages")
             await self._message_queue.wait()
         entered_ns, item = self._message_queue.pop()
         self.stats.received += 1

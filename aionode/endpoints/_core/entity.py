@@ -84,7 +84,7 @@ class Entity:
     def _close(self) -> None:
         """Release what the entity holds; called once, by `destroy`."""
 
-    def refuse_if_destroyed(self, action: str = "used") -> None:
+    def refuse_if_destroyed(self, action: str = "") -> None:
         """Raise EntityDestroyedError after `destroy`."""
         if self.destroyed:
             raise EntityDestroyedError(self.subject, action)
