@@ -36,7 +36,7 @@ def make_runner(
     callback: Callable[..., Any], timer: Timer, stats: CallbackStats, *, offload: bool = False
 ) -> CallbackRunner:
     """Run callbacks as a node does, without a node."""
-    context = CallbackContext("/node", timer.subject, timer)
+    context = CallbackContext("/node", timer._subject, timer)
     return CallbackRunner(
         callback,
         context,
@@ -76,7 +76,7 @@ async def running(*timers: Timer) -> AsyncIterator[None]:
     """Run timers for the length of the block."""
     async with asyncio.TaskGroup() as tasks:
         for timer in timers:
-            timer.start(tasks)
+            timer._start(tasks)
         await settle()
         yield
         for timer in timers:
@@ -226,7 +226,7 @@ async def test_a_timer_of_period_zero_leaves_room_for_others() -> None:
 async def running_on_machine(timer: Timer) -> AsyncIterator[None]:
     """Run a timer that never settles."""
     async with asyncio.TaskGroup() as tasks:
-        timer.start(tasks)
+        timer._start(tasks)
         yield
         timer.destroy()
 
