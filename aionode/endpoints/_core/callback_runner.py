@@ -156,7 +156,7 @@ class CallbackRunner:
             stats.queue_wait.record(began_ns - entered_ns)
             return self._finish(_Measured(self, outcome))
         took_ns = perf_ns() - began_ns
-        stats.record_call(began_ns - entered_ns, took_ns)
+        stats._record_call(began_ns - entered_ns, took_ns)
         if took_ns > self.budget_ns:
             self.report_blocking(took_ns)
         return None
@@ -231,7 +231,7 @@ class CallbackRunner:
         return self._context.subject
 
     def _record_sync(self, took_ns: int) -> None:
-        self.stats.record_took(took_ns)
+        self.stats._record_took(took_ns)
         if took_ns > self.budget_ns:
             self.report_blocking(took_ns)
 
