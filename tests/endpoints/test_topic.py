@@ -507,7 +507,7 @@ async def test_the_statistics_name_each_subscription_and_its_way(node: Node) -> 
     node.create_subscription(Int8, "words")
 
     assert publisher.stats.routes == {
-        f"/node {reader.endpoint.gid.hex()[:8]}": "local" for reader in readers
+        f"/node {reader._reader.endpoint.gid.hex()[:8]}": "local" for reader in readers
     }
     readers[0].destroy()
     (name,) = publisher.stats.routes
