@@ -26,7 +26,7 @@ from aionode.transport.ipc import (
 )
 from aionode.transport.ipc._listener import Listener
 from aionode.transport.ipc._protocol import Kind
-from tests.support.links import Counting, folder, hub_of, link_of, two_nodes, writer_of
+from tests.support.links import Counting, folder, link_of, manager_of, two_nodes, writer_of
 from tests.support.peers import DOMAIN_ID, quiet_node
 
 __all__ = ["folder"]  # a fixture
@@ -66,7 +66,7 @@ async def test_who_does_not_say_who_he_is_is_hung_up_on(
     async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
         with closing(await dialled(folder, node.context)) as sock:
             await until_closed(sock)
-        assert not hub_of(node)._opening
+        assert not manager_of(node)._opening
 
 
 async def test_of_many_silent_sockets_the_oldest_are_closed(folder: Path) -> None:
@@ -79,7 +79,7 @@ async def test_of_many_silent_sockets_the_oldest_are_closed(folder: Path) -> Non
                 await checkpoint()  # or the backlog is full
             for sock in socks[:20]:
                 await until_closed(sock)
-            assert len(hub_of(node)._opening) == manager.MAX_OPENING
+            assert len(manager_of(node)._opening) == manager.MAX_OPENING
 
 
 async def test_a_frame_cannot_begin_in_place_of_the_greeting(folder: Path) -> None:
@@ -110,7 +110,7 @@ async def test_frames_without_an_end_take_so_much_memory_and_no_more(
                 rest = bytes(megabytes << 20)
                 await loop.sock_sendall(sock, greeting(number) + head + rest)
             await until_closed(socks[0])
-            assert len(hub_of(node).links) == 3
+            assert len(manager_of(node).links) == 3
 
 
 async def test_a_reader_that_takes_no_answers_is_hung_up_on(
@@ -139,7 +139,7 @@ async def test_a_reader_that_confirms_nothing_is_not_kept_everything_for(
         numbers = Counting(nodes)
         await numbers.until_linked()
         (remote_publisher,) = next(
-            iter(hub_of(nodes.b).readers.values())
+            iter(manager_of(nodes.b).readers.values())
         ).remote_publishers.values()
         remote_publisher._confirms = False
         await numbers.go(1000)
@@ -178,8 +178,8 @@ async def test_a_publisher_that_goes_gives_its_memory_back() -> None:
             await numbers.go()
         publisher.publish(Image(height=1, width=600_000, data=bytes(600_000)))
         publisher.destroy()  # before any confirmation can have come
-        assert hub_of(nodes.a)._ending
-        while hub_of(nodes.a)._ending:
+        assert manager_of(nodes.a)._ending
+        while manager_of(nodes.a)._ending:
             await checkpoint()
 
 
@@ -215,7 +215,7 @@ async def test_a_context_that_did_not_answer_is_dialled_again(
         await numbers.publisher.wait_for_subscribers()
         for _ in range(20):
             await numbers.go()
-        assert hub_of(nodes.a).links == []
+        assert manager_of(nodes.a).links == []
         monkeypatch.setattr(manager, "MAX_OPENING", 64)
         await numbers.until_linked()
 
