@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.transport._reliability import RETURN_NS, ReaderProxy, WriterHistory, WriterProxy
+from aionode.transport._reliability import RETURN_NS, ReaderProxy, WriterHistory
+from aionode.transport._writer_proxy import WriterProxy
 
 WRITER = b"w" * 16
 
@@ -62,7 +63,7 @@ class Wire:
         assert extra == b""
         for name in self.names:
             reader = self.history.readers.get(name)
-            if reader is not None and not reader.away_ns:
+            if reader is not None and not reader.away_until_ns:
                 self.topic[name].append((int.from_bytes(payload, "big"), payload))
 
     def resend(self, reader: ReaderProxy, entry: Any) -> None:
@@ -113,8 +114,9 @@ class Wire:
             proxy = self.proxies.get(name)
             if not lose and proxy is not None:
                 free = self.room[name] and not self.full[name]
-                if free and proxy.takes_at_once(number, len(payload)):
+                if free and number == proxy.expected:
                     self.heard[name].append(number)
+                    proxy.note_in_order(len(payload))
                 else:
                     proxy.take(number, number, len(payload))
 
