@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 __all__ = [
+    "FLAPPING_NS",
     "NEVER",
     "OVERHEAD_BYTES",
     "QUIET_NS",

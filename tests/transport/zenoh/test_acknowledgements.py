@@ -9,8 +9,10 @@ import pytest
 
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.qos import QoSProfile, ReliabilityPolicy
+from aionode.transport._writer_proxy import WriterProxy
 from aionode.transport.zenoh._acknowledgements import Acknowledgements
 from aionode.transport.zenoh._publisher import ZenohWriter
+from aionode.transport.zenoh._subscription import GONE_TICKS, ZenohReader
 from aionode.wire import _acknack as acknack
 from aionode.wire._acknack import SubmessageKind
 from tests.support.peers import (
@@ -164,3 +166,17 @@ async def test_garbage_instead_of_acknowledgements_is_left_out() -> None:
             for number in range(2, 50):
                 publisher.publish(Int32(data=number))
                 assert (await subscription.receive()).data == number
+
+
+async def test_a_subscription_that_was_frozen_does_not_give_its_publisher_up() -> None:
+    """When it goes on, its clock has jumped, and the publisher is not in the graph yet."""
+    async with two_contexts() as (first, _), quiet_node("a", first) as a:
+        subscription: Any = a.create_subscription(Int32, "n", None, KEEP_ALL)
+        reader = next(each for each in subscription._registrations if isinstance(each, ZenohReader))
+        proxy = WriterProxy(b"p" * 16, "f", 1, reader, lambda: 0)
+        proxy.last = 3
+        reader._proxies[proxy.gid] = proxy
+        assert all(reader.tick() for _ in range(GONE_TICKS - 1))
+        assert proxy.next == 1
+        assert not reader.tick()
+        assert proxy.next == 4
