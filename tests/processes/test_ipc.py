@@ -30,7 +30,7 @@ from aionode.transport.ipc._transport import IpcTransport
 from tests.processes.ipc_member import STREAMED_BYTES
 from tests.support.peers import isolated_environment, quiet_node
 
-MEMBER = Path(__file__).with_name("link_member.py")
+MEMBER = Path(__file__).with_name("ipc_member.py")
 
 
 @pytest.fixture(autouse=True)

@@ -22,7 +22,7 @@ from tests.support.peers import KEEP_ALL, quiet_node
 
 __all__ = ["folder"]  # a fixture
 
-ENDER = Path(__file__).with_name("link_ender.py")
+ENDER = Path(__file__).with_name("ipc_ender.py")
 
 
 @contextmanager
