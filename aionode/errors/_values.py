@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from aionode.errors import MAX_NAME, shortened
-
 __all__ = [
     "AionodeError",
     "DecodeError",
@@ -29,6 +27,32 @@ __all__ = [
     "ParameterUninitializedException",
     "UnknownROSArgsError",
 ]
+
+MAX_TEXT = 2_000
+"""How long the text of an error becomes, in characters; values are given that are far longer."""
+
+MAX_NAME = 160
+"""How much is shown of a name that breaks the rules, in characters."""
+
+
+def shortened(text: str, limit: int = MAX_TEXT) -> str:
+    """Return `text` without its middle if it is longer than `limit` characters."""
+    if len(text) <= limit:
+        return text
+    half = limit // 2
+    return f"{text[:half]} […{len(text) - 2 * half} characters…] {text[-half:]}"
+
+
+def brief(value: object) -> str:
+    """Return how `value` is shown in the text of an error: as Python writes it, but not at length.
+
+    Of numbers with thousands of digits Python writes only how many there are.
+    """
+    try:
+        text = repr(value)
+    except ValueError as error:
+        text = f"a {type(value).__name__} that cannot be written ({error})"
+    return shortened(text, MAX_NAME)
 
 
 class AionodeError(Exception):
