@@ -65,7 +65,7 @@ def run(
     """
     if not nodes:
         raise TypeError("run: give at least one node, or a function that makes one")
-    if asyncio._get_running_loop() is not None:  # noqa: SLF001  # get_running_loop raises instead
+    if asyncio._get_running_loop() is not None:  # get_running_loop raises instead
         raise RuntimeError(
             "run: an event loop runs already; `await node.run()` or `async with node:` runs a node "
             "in it"
@@ -77,7 +77,7 @@ def run(
         stop = Stop()
         # The end of the loop waits for threads, so signals are watched for until after that.
         with (
-            Context.obeying(arguments),
+            Context._obeying(arguments),
             signals_to(stop),
             asyncio.Runner(loop_factory=loop_factory or best_loop_factory()) as runner,
         ):
@@ -120,7 +120,7 @@ def refuse_made_before(
     if not any(shaping) and arguments.rosout_logs:
         return
     for node in nodes:
-        if isinstance(node, Node) and node.uses_global_arguments:
+        if isinstance(node, Node) and node._uses_global_arguments:
             given = args[args.index("--ros-args") + 1 :]
             raise InvalidROSArgsError(
                 " ".join(given),

@@ -179,7 +179,7 @@ async def test_a_context_that_could_not_be_opened_is_not_in_use() -> None:
     transport = Failing()
     context = Context(transport=transport)
     with pytest.raises(ConnectionError):
-        await context.acquire()
+        await context._acquire()
     transport.fails = False
 
     async def use() -> None:

@@ -272,8 +272,8 @@ class Time:
 def time_at(ns: int, clock_type: ClockType) -> Time:
     """Return a `Time` without looking at its parts: for clocks, which know that they fit."""
     time = Time.__new__(Time)
-    time._ns = ns  # noqa: SLF001 - a second constructor, on the path of every stamp
-    time._clock_type = clock_type  # noqa: SLF001
+    time._ns = ns
+    time._clock_type = clock_type
     return time
 
 

@@ -45,7 +45,7 @@ ROOT, OWN = "ros", "aionode"
 EVERYTHING = 1  # in `logging`, 0 at the top would mean the level of its own root
 
 machine = MachineTime()
-caller = sys._getframe  # noqa: SLF001  # inspect's way to the same frame takes longer than the line
+caller = sys._getframe  # inspect's way to the same frame takes longer than the line
 
 
 class RcutilsLogger:

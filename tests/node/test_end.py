@@ -231,7 +231,7 @@ async def test_callbacks_that_do_not_end_are_named_and_given_up(
     async with asyncio.timeout(10), Node("robot", context=context) as robot:
         robot.create_timer(1e-3, stubborn)
         async with asyncio.timeout(10):
-            while not robot.callbacks.waiting:
+            while not robot._callbacks.waiting:
                 await checkpoint()
 
     err = capsys.readouterr().err

@@ -123,7 +123,7 @@ def test_a_context_serves_one_loop_after_the_other() -> None:
 async def test_a_node_that_runs_cannot_be_run_again(node: Node) -> None:
     """Two owners of one lifetime would both end it."""
     await settle()
-    with pytest.raises(RuntimeError, match="/node runs already"):
+    with pytest.raises(RuntimeError, match="/node is already running"):
         await node.run()
 
 

@@ -22,6 +22,8 @@ import sys
 import tempfile  # noqa: F401
 from typing import Any, NoReturn
 
+import numpy as np  # noqa: F401  # the build for Linux looks at Linux's attributes
+
 NOT_ON_MACOS = {
     os: "eventfd eventfd_read eventfd_write EFD_NONBLOCK EFD_CLOEXEC memfd_create MFD_CLOEXEC "
     "MFD_ALLOW_SEALING sched_setaffinity sched_getaffinity timerfd_create pidfd_open",

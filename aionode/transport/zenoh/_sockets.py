@@ -55,9 +55,11 @@ def connections() -> Iterator[list[tuple[str, socket.socket]]]:
 
 def waiting_bytes(session: zenoh.Session) -> dict[str, int]:
     """Return how many bytes wait for each peer of a session, where there are some."""
-    import fcntl
-    import termios
-
+    try:
+        import fcntl
+        import termios
+    except ImportError:  # Windows
+        return {}
     peers = {str(state.dst).partition("/")[2].partition("?")[0] for state in session.info.links()}
     with connections() as found:
         waiting = {

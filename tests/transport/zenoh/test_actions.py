@@ -312,8 +312,8 @@ async def test_a_cancelled_caller_cancels_the_goal_of_a_plain_server(node: Node)
             async with asyncio.timeout(0.1):
                 await goal.result()
 
-        assert ("cancel_goal", cancel_request(GOAL_ID)) in server.asked
         assert (await goal.result()).status is GoalStatus.CANCELED
+        assert ("cancel_goal", cancel_request(GOAL_ID)) in server.asked
 
 
 GOAL_NUMBER = int.from_bytes(GOAL_ID, "big")
