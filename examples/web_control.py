@@ -142,7 +142,7 @@ async def until_left(websocket: WebSocket) -> None:
 
 
 async def progress(operator: Operator, distance: float) -> AsyncGenerator[tuple[str, str], None]:
-    """Drive, and yield how far the robot is; whoever closes this, or is cancelled, stops it."""
+    """Drive, and yield how far the robot is; closing or cancelling the stream stops it."""
     try:
         async with asyncio.timeout(ANSWER_SEC):
             goal = await operator.drive.send_goal(Drive.Goal(distance=distance))
@@ -157,7 +157,7 @@ async def progress(operator: Operator, distance: float) -> AsyncGenerator[tuple[
     except AionodeError as error:  # the robot has gone
         yield "failure", str(error)
     finally:
-        if not goal.done:  # the stream was dropped between two events, while nobody awaited
+        if not goal.done:  # the stream was dropped between two events, not awaited just then
             with contextlib.suppress(AionodeError):
                 await goal.cancel()
 

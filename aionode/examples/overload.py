@@ -41,7 +41,7 @@ class Overload(Node):
         self.create_timer(seconds, self.context.shutdown)
 
     def burst(self) -> None:
-        """Publish faster than anybody reads; publishing never waits."""
+        """Publish faster than the reader reads; publishing never waits."""
         for _ in range(BURST):
             self.publisher.publish(Int64(data=self.sent))
             self.sent += 1

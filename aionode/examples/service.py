@@ -39,7 +39,7 @@ class Adder(Node):
 
 
 async def application() -> None:
-    """Ask once, ten times at once, wrongly, and where nobody answers; then end."""
+    """Ask once, ten times at once, wrongly, and without a server; then end."""
     async with Adder(), Node("application") as node:
         client = node.create_client(AddTwoInts, "/adder/add_two_ints")
         await client.wait_for_service()
@@ -71,7 +71,7 @@ async def ask_wrongly(client: Asker) -> None:
 
 
 async def ask_nobody(client: Asker) -> None:
-    """Notice that nobody answers: a limit is part of the call."""
+    """Notice that there is no server: a limit is part of the call."""
     try:
         await client.call(AddTwoInts.Request(a=2, b=3), timeout_sec=0.5)
     except TimeoutError as error:
