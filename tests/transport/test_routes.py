@@ -14,8 +14,8 @@ from aionode.transport.zenoh._transport import ZenohTransport
 from tests.support.links import (
     Counting,
     folder,
-    manager_of,
     link_of,
+    manager_of,
     transport_of,
     two_nodes,
     writer_of,
