@@ -525,7 +525,7 @@ def sockets(folder: Path) -> int:
 async def test_nothing_stays_behind(folder: Path) -> None:
     """No descriptor and no socket.
 
-    Zenoh closes the segments of its shared memory in a thread of its own, a moment after the session.
+    Zenoh closes its shared memory in a thread of its own, a moment after the session.
     """
     async with two_nodes():  # what is opened once for all
         pass
