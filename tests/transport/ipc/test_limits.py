@@ -13,6 +13,7 @@ import pytest
 
 from aionode._concurrency import checkpoint
 from aionode.context import Context
+from aionode.errors import TransportError
 from aionode.interfaces.sensor_msgs.msg import Image
 from aionode.transport.ipc import (
     _connection as connection,
@@ -24,7 +25,7 @@ from aionode.transport.ipc import _protocol as protocol
 from aionode.transport.ipc import (
     _send_queue as send_queue,
 )
-from aionode.transport.ipc._listener import Listener
+from aionode.transport.ipc._listener import Advertisement, Listener, socket_folder
 from aionode.transport.ipc._protocol import Kind
 from tests.support.links import Counting, folder, link_of, manager_of, two_nodes, writer_of
 from tests.support.peers import DOMAIN_ID, quiet_node
@@ -220,7 +221,110 @@ async def test_a_context_that_did_not_answer_is_dialled_again(
         await numbers.until_linked()
 
 
+async def test_a_context_whose_advertisement_flaps_is_dialled_once(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """At the start tokens come and go; the second socket was refused with a warning."""
+    attempts: list[str] = []
+    dial = Listener.dial
+
+    async with two_nodes() as nodes:
+        managers = [manager_of(node) for node in nodes]
+
+        def flapping(self: Listener, participant: str) -> socket.socket | None:
+            attempts.append(participant)
+            (dialling,) = (one for one in managers if one.participant != participant)
+            own = Advertisement.own(participant)
+
+            def flap() -> None:  # while neither Hello has come
+                dialling.on_advertisement(own, False)
+                dialling.on_advertisement(own, True)
+
+            asyncio.get_running_loop().call_soon(flap)
+            return dial(self, participant)
+
+        monkeypatch.setattr(Listener, "dial", flapping)
+        await Counting(nodes).until_linked()
+
+    assert len(attempts) == 1
+    assert "second link" not in caplog.text
+
+
+async def test_a_context_that_dials_again_replaces_a_link_whose_end_is_unread(
+    folder: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Its new socket can be read before the end of the old one."""
+    loop = asyncio.get_running_loop()
+    async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
+        with closing(await dialled(folder, node.context)) as first:
+            await loop.sock_sendall(first, greeting(1))
+            while not manager_of(node).links:
+                await checkpoint()
+            old = link_of(node)
+            loop.remove_reader(old._fd)
+        with closing(await dialled(folder, node.context)) as second:
+            await loop.sock_sendall(second, greeting(1))
+            while manager_of(node).linked("1") in (None, old):
+                await checkpoint()
+        assert old.closed
+    assert "second link" not in caplog.text
+
+
+# Closing
+
+
+async def test_each_part_of_a_large_frame_that_the_socket_takes_is_progress() -> None:
+    """Or a reader that takes a large message slowly would be given up when the context closes."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.until_linked()
+        link, other = link_of(nodes.a), link_of(nodes.b)
+        loop = asyncio.get_running_loop()
+        loop.remove_reader(other._fd)
+        assert link.write(protocol.pack(Kind.DATA, 1, 1, bytes(16), bytes(8 << 20)))
+        for _ in range(3):
+            progress = link.progress()
+            assert not link.idle
+            while not progress.done():
+                other._on_readable()
+                await checkpoint()
+        assert not link.idle
+        loop.add_reader(other._fd, other._on_readable)
+
+
 # The folder
+
+
+@pytest.mark.parametrize("size", [69, 70])
+def test_a_folder_is_refused_whose_path_leaves_no_room_for_the_name_of_a_socket(
+    size: int, folder: Path
+) -> None:
+    """The name of a longer id would not fit, though that of this context may."""
+    runtime = folder.parent / ("x" * (size - len(str(folder)) - 1))
+    runtime.mkdir()
+    environ = {"XDG_RUNTIME_DIR": str(runtime)}
+    longest = runtime / "aionode" / ("f" * 32 + ".sock")
+    if size == 69:
+        assert socket_folder(environ).is_dir()
+        with socket.socket(socket.AF_UNIX) as sock:
+            sock.bind(str(longest))
+        return
+    with pytest.raises(TransportError, match="set XDG_RUNTIME_DIR to a shorter path"):
+        socket_folder(environ)
+
+
+async def test_a_folder_with_a_long_path_is_reported_and_everything_goes_over_zenoh(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Links are missing then, and nothing else says why."""
+    runtime = folder.parent / ("x" * 100)
+    runtime.mkdir()
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(runtime))
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.publisher.wait_for_subscribers()
+        await numbers.go(20)
+    assert "too long for the path of a Unix socket" in caplog.text
 
 
 def test_a_socket_that_was_never_finished_is_removed(tmp_path: Path) -> None:
