@@ -392,7 +392,7 @@ def test_switching_the_source_calls_those_who_asked(
 
 
 def test_setting_a_clock_that_is_not_driven_is_no_leap() -> None:
-    """Nobody sees that time yet."""
+    """That time is not visible yet."""
     clock = ROSClock()
     watch = Watch(clock, 0.1, -0.1, change=True)
     clock.set_ros_time_override(ros(50))
@@ -528,7 +528,7 @@ async def test_switching_ros_time_ends_a_sleep_with_an_error(active: bool) -> No
 
 
 async def test_destroying_a_clock_cancels_its_sleepers() -> None:
-    """Nobody will tell them the time any more."""
+    """Their clock will never be set again."""
     clock = ROSClock(time_base=ManualClock())
     asyncio.get_running_loop().call_soon(clock.destroy)
     with pytest.raises(asyncio.CancelledError):
