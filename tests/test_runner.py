@@ -181,7 +181,7 @@ def test_ctrl_c_names_the_thread_that_it_waits_for_and_a_second_one_ends_at_once
 
 
 def test_a_second_ctrl_c_ends_a_program_whose_stderr_nobody_reads() -> None:
-    """A full pipe would block the writer of the last line."""
+    """A full pipe would block the write of the last line."""
     full = """
     def callback():
         try:
@@ -422,7 +422,7 @@ def test_signal_handlers_are_restored() -> None:
 
 
 def test_running_nothing_is_a_mistake() -> None:
-    """It would end at once for no visible reason."""
+    """It would end at once, without a reason."""
     with pytest.raises(TypeError, match="at least one node"):
         aionode.run()
 

@@ -274,7 +274,7 @@ async def test_nodes_that_fail_are_restarted_and_nothing_drives_on(
             publisher.publish(Float32(data=-1.0))
             await wheels.until(turning=False)
 
-        line = robots.now.line_with("starts again")
-        assert re.search(r"node /robot failed; it starts again in 0\.5 s", line)
+        line = robots.now.line_with("restarting in")
+        assert re.search(r"node /robot failed; restarting in 0\.5 s", line)
         await healthy(web, restarts=1)
         await drives_again(web, app)
