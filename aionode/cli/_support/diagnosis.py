@@ -89,7 +89,10 @@ def mismatches(endpoints: Iterable[EndpointInfo]) -> Iterator[Finding]:
 def mismatch(publisher: EndpointInfo, handler_for: EndpointInfo) -> Iterator[Finding]:
     """Yield why two endpoints of one name do not talk."""
     pair = f"{who(publisher)} and {who(handler_for)}"
-    if publisher.type_name != handler_for.type_name:
+    found = publisher.compare(handler_for)
+    if found is None:
+        return
+    if found.aspect == "type":
         yield Finding(
             "problem",
             subject_of(publisher),
@@ -97,7 +100,7 @@ def mismatch(publisher: EndpointInfo, handler_for: EndpointInfo) -> Iterator[Fin
             "use one type on both sides, or another name",
         )
         return
-    if publisher.type_hash != handler_for.type_hash:
+    if found.aspect == "definition":
         yield Finding(
             "problem",
             subject_of(publisher),
@@ -106,21 +109,18 @@ def mismatch(publisher: EndpointInfo, handler_for: EndpointInfo) -> Iterator[Fin
             "use the same version of the interface package on both sides",
         )
         return
-    reason = publisher.qos_mismatch(handler_for)
-    if reason is None:
-        return
     if publisher.node.participant == handler_for.node.participant:
         yield Finding(
             "problem",
             subject_of(publisher),
-            f"{pair} do not talk: QoS {reason}",
+            f"{pair} do not talk: QoS {found.reason}",
             "ask for no more than is offered, or offer more",
         )
     else:
         yield Finding(
             "hint",
             subject_of(publisher),
-            f"{pair} talk over rmw_zenoh, but would not over DDS: QoS {reason}",
+            f"{pair} talk over rmw_zenoh, but would not over DDS: QoS {found.reason}",
             "ask for no more than is offered, or offer more",
         )
 
