@@ -304,7 +304,7 @@ def test_only_ros_time_can_be_set(clock: Clock) -> None:
 
 def test_ros_time_is_set_with_a_time() -> None:
     """A bare number could be seconds or nanoseconds."""
-    with pytest.raises(TypeError, match="a Time is needed"):
+    with pytest.raises(TypeError, match="pass a Time"):
         ROSClock().set_ros_time_override(5)  # type: ignore[arg-type]
 
 
@@ -392,7 +392,7 @@ def test_switching_the_source_calls_those_who_asked(
 
 
 def test_setting_a_clock_that_is_not_driven_is_no_leap() -> None:
-    """Nobody sees that time yet."""
+    """That time is not visible yet."""
     clock = ROSClock()
     watch = Watch(clock, 0.1, -0.1, change=True)
     clock.set_ros_time_override(ros(50))
@@ -528,7 +528,7 @@ async def test_switching_ros_time_ends_a_sleep_with_an_error(active: bool) -> No
 
 
 async def test_destroying_a_clock_cancels_its_sleepers() -> None:
-    """Nobody will tell them the time any more."""
+    """Their clock will never be set again."""
     clock = ROSClock(time_base=ManualClock())
     asyncio.get_running_loop().call_soon(clock.destroy)
     with pytest.raises(asyncio.CancelledError):
@@ -741,7 +741,7 @@ async def test_a_false_alarm_calls_nothing() -> None:
     rung = asyncio.Event()
     alarms = timerfd.KernelAlarms(asyncio.get_running_loop())
     alarm = alarms.add(10**18, rung.set)
-    alarms._ring()
+    alarms._expired()
     assert not rung.is_set()
     assert len(alarms) == 1
     alarm.cancel()
