@@ -29,48 +29,20 @@ LONG_FOR_NOW: frozenset[str] = frozenset(
 )
 """Modules that are being split. Take a module off the list when it fits; add none."""
 
-CYCLES_FOR_NOW: tuple[frozenset[str], ...] = (
-    frozenset(f"aionode.message.{name}" for name in ("_field_types", "_message", "_validation")),
-    frozenset(
-        ["aionode.arguments", "aionode.arguments._usage", "aionode.parameter"]
-        + [
-            f"aionode.parameter.{name}"
-            for name in (
-                "_constraints",
-                "_qos_overrides",
-                "_services",
-                "_store",
-                "_struct",
-                "_value",
-            )
-        ]
-    ),
-    frozenset(
-        f"aionode.transport.ipc.{name}"
-        for name in ("_manager", "_publisher", "_service", "_subscription")
-    ),
-    frozenset(
-        f"aionode.transport.zenoh.{name}" for name in ("_acknowledgements", "_session_state")
-    ),
-    frozenset(
-        [
-            "aionode._node.actions",
-            "aionode._node.builtin_services",
-            "aionode.action",
-            "aionode.context",
-            "aionode.node",
-        ]
-        + [
-            f"aionode.endpoints.actions.{name}"
-            for name in ("_client", "_client_goal", "_server", "_server_goal", "_withdrawal")
-        ]
-    ),
+CYCLES_FOR_NOW = (
+    ("aionode.arguments", "aionode.parameter"),
+    ("aionode.endpoints.actions",),
+    ("aionode.message",),
+    ("aionode.transport.ipc",),
+    ("aionode.transport.zenoh",),
 )
-"""Cycles of type-only imports that are being undone. A part of one passes; nothing else does."""
+"""Packages with cycles of type-only imports that are being undone. Take them off, one by one."""
 
 SHARED = {
     "aionode.arguments._parameter_yaml": "the command line reads and writes parameter files too",
     "aionode.clock._time_base": "timers and goals have alarms, which users do not",
+    "aionode.clock._timer_heap": "the manual clock of tests keeps its alarms in one",
+    "aionode.clock._values": "the manual clock of tests converts seconds as the others do",
     "aionode.endpoints._core": "nodes are made of it, and tools report callbacks by it",
     "aionode.endpoints.actions": "aionode.action is its public name",
     "aionode.endpoints.timer._timer": "Node.create_timer builds one",
@@ -104,10 +76,16 @@ def test_no_imports_form_a_cycle() -> None:
     new = [
         sorted(cycle)
         for cycle in cycles(graph(types=True))
-        if not any(cycle <= known for known in CYCLES_FOR_NOW)
+        if not any(is_within(cycle, packages) for packages in CYCLES_FOR_NOW)
     ]
 
     assert new == []
+
+
+def is_within(cycle: frozenset[str], packages: tuple[str, ...]) -> bool:
+    """Whether a cycle stays in these packages."""
+    prefixes = tuple(f"{package}." for package in packages)
+    return all(f"{module}.".startswith(prefixes) for module in cycle)
 
 
 def cycles(imports: grimp.ImportGraph) -> set[frozenset[str]]:
