@@ -542,8 +542,6 @@ class LinkManager:
         for remote_publisher in list(remote_publishers):
             if one.kind == Kind.GONE:
                 remote_publisher.gone()
-                self.forget(remote_publisher)
-                remote_publisher.reader.remote_publishers.pop(one.gid, None)
             elif remote_publisher.gid == one.payload:
                 remote_publisher.opened(one.sequence)
 

@@ -42,6 +42,9 @@ RECOVERY_S: Final = 0.5
 other process has to notice.
 """
 
+GONE_S: Final = 10.0
+"""How long a publisher that has gone is remembered: what it sent may come over Zenoh as well."""
+
 
 class ZenohFilter:
     """What Zenoh delivers to in place of the subscription: it leaves out what the link brings."""
@@ -238,10 +241,21 @@ class RemotePublisher:
             self.connection.send(Kind.CREDIT, used, self.publisher, self.gid, last)
 
     def gone(self) -> None:
-        """Wait for nothing more: the publisher has said its last."""
-        self.handover.switch()
-        self.handover.finish()
-        self._confirm()  # or the publisher's process keeps it until the link ends
+        """Note that the publisher has said its last over the link; Zenoh may still be behind.
+
+        What is held until Zenoh has brought what came before it is waited for as ever. Copies that
+        Zenoh brings afterwards are left out, for `GONE_S`.
+        """
+        if self.handover.waits:
+            self._after()
+        else:
+            self.handover.finish()
+            self._confirm()  # or the publisher's process keeps it until the link ends
+        self._manager.later(GONE_S, self._forget)
+
+    def _forget(self) -> None:
+        self._manager.forget(self)
+        self.reader.remote_publishers.pop(self.publisher, None)
 
     def broken(self) -> None:
         """Take Zenoh again."""
