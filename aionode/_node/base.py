@@ -338,7 +338,7 @@ class NodeBase:
         An action server or client, made of other entities, adds itself here.
         """
         self._entities[entity] = None
-        entity.adopt(self._forget_entity)
+        entity._adopt(self._forget_entity)
         if graph_entry is not None:
             graph_entry.open()
         if self._tasks is not None:
@@ -347,8 +347,8 @@ class NodeBase:
 
     def _start_entity(self, entity: Entity, tasks: asyncio.TaskGroup) -> None:
         """Start `entity`; the end of the node waits for those that run callbacks."""
-        task = entity.start(tasks)
-        if task is not None and entity.stage is EndStage.CALLBACKS:
+        task = entity._start(tasks)
+        if task is not None and entity._stage is EndStage.CALLBACKS:
             self._ending.watch(task)
 
     def _forget_entity(self, entity: Entity) -> None:
@@ -378,7 +378,7 @@ class NodeBase:
     def _refuse_if_destroyed(self, wanted: str) -> None:
         if self.destroyed:
             raise EntityDestroyedError(
-                f"node {self.get_fully_qualified_name()}", f"given a {wanted}"
+                f"node {self.get_fully_qualified_name()}", f"create {wanted}"
             )
 
 

@@ -244,7 +244,7 @@ class TimeSource:
             self._subscription = self._node.create_subscription(
                 ClockMsg, "/clock", self._on_tick, CLOCK_QOS
             )
-            self._subscription.stage = (
+            self._subscription._stage = (
                 EndStage.GOALS
             )  # until callbacks have ended: their cleanup may sleep
         elif not active and self._subscription is not None:

@@ -181,10 +181,10 @@ class NodeEndpoints(NodeParameters):
             on_error=on_error,
             offload=offload,
         )
-        subscription.add_registrations(
+        subscription._add_registrations(
             self._register(
                 lambda transport: transport.create_reader(
-                    graph_entry.endpoint, msg_type, subscription
+                    graph_entry.endpoint, msg_type, subscription._reader
                 )
             )
         )
@@ -233,10 +233,10 @@ class NodeEndpoints(NodeParameters):
             on_error=on_error,
             offload=offload,
         )
-        service.add_registrations(
+        service._add_registrations(
             self._register(
                 lambda transport: transport.create_server(
-                    graph_entry.endpoint, srv_type, service.serve
+                    graph_entry.endpoint, srv_type, service._serve
                 )
             )
         )

@@ -416,7 +416,7 @@ class Clock:
 
     def _refuse_if_destroyed(self) -> None:
         if self._destroyed:
-            raise EntityDestroyedError(repr(self), "slept on")
+            raise EntityDestroyedError(repr(self), "sleep")
 
 
 class ROSClock(Clock):

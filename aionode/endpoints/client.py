@@ -61,7 +61,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         self._check = checker(srv_type.Request)
         self._now_ns = time_base.system_ns
         self._answers: set[asyncio.Future[Any]] = set()
-        self._futures = Futures(self.subject)
+        self._futures = Futures(self._subject)
         self._warned = False
 
     def __repr__(self) -> str:
@@ -95,7 +95,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
             EntityDestroyedError: the client was already destroyed (a RuntimeError).
             CancelledError: the client was destroyed during the wait.
         """
-        self.refuse_if_destroyed()
+        self._refuse_if_destroyed()
         try:
             async with asyncio.timeout(timeout_sec):
                 await self._graph_entry.until(self.service_is_ready)
@@ -125,7 +125,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
             CancelledError: the client was destroyed during the call.
         """
         if self.destroyed:
-            self.refuse_if_destroyed("called")
+            self._refuse_if_destroyed("call service")
         if type(request) is not self.srv_type.Request:
             self._check(request)
         began_ns = perf_ns()
@@ -168,24 +168,24 @@ class Client(Entity, Generic[RequestT, ResponseT]):
             EntityDestroyedError: the client was destroyed (a RuntimeError).
             RuntimeError: no event loop is running.
         """
-        self.refuse_if_destroyed("called")
+        self._refuse_if_destroyed("call service")
         return self._futures.begin(self.call(request))
 
-    def start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:
+    def _start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:
         """Send the calls that were made before the node ran."""
-        task = super().start(tasks)
+        task = super()._start(tasks)
         self._futures.start(tasks)
         return task
 
     async def _exchange(self, request: RequestT) -> Any:
         """Send through every transport and return the first answer."""
-        exchange = self.begin(request)
+        exchange = self._begin(request)
         try:
             return await exchange.answer
         finally:
             exchange.cancel()
 
-    def begin(self, request: RequestT) -> Exchange:
+    def _begin(self, request: RequestT) -> Exchange:
         """Send `request` to the servers matched now, and return what takes the answer.
 
         For requests that must outlive the task that sends them.
@@ -233,7 +233,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         self._graph_entry.close()
         # First, so that the calls do not fail as if the servers had gone.
         for answer in list(self._answers):
-            answer.cancel(f"{self.subject}: destroyed")
+            answer.cancel(f"{self._subject}: destroyed")
         self._futures.close()
         for requester in self._requesters:
             requester.close()

@@ -93,7 +93,7 @@ class Publisher(Entity, Generic[MsgT]):
             self._affinity.wait_for(self.publish, msg)
             return
         if self.destroyed:
-            raise EntityDestroyedError(self.subject)
+            raise EntityDestroyedError(self._subject)
         if type(msg) is not self.msg_type:
             msg = self._fitting(msg)
         for writer in self._writers:
@@ -110,7 +110,7 @@ class Publisher(Entity, Generic[MsgT]):
             if not used:
                 self._check(msg)
         except MessageError as error:
-            error.add_note(f"published by {self.subject}")
+            error.add_note(f"published by {self._subject}")
             raise
         stats.published += 1
 

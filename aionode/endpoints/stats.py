@@ -62,7 +62,7 @@ class Distribution:
         except KeyError:
             self._buckets[bucket] = 1
 
-    def record_all(self, durations_ns: Sequence[int], *others: Distribution) -> None:
+    def _record_all(self, durations_ns: Sequence[int], *others: Distribution) -> None:
         """Record each duration, in this and in `others`, in a third of the time of `record`."""
         found: dict[int, int] = {}
         for duration_ns in durations_ns:  # `record`, with local names only
@@ -72,9 +72,9 @@ class Distribution:
             found[bucket] = found.get(bucket, 0) + 1
         longest_ns = max(durations_ns, default=0)
         for one in (self, *others):
-            one.merge(found, longest_ns)
+            one._merge(found, longest_ns)
 
-    def merge(self, buckets: dict[int, int], longest_ns: int) -> None:
+    def _merge(self, buckets: dict[int, int], longest_ns: int) -> None:
         """Add buckets that were counted elsewhere."""
         self._max_ns = max(self._max_ns, longest_ns)
         for bucket, count in buckets.items():
@@ -162,12 +162,12 @@ class CallbackStats:
         self._waited_ns: list[int] = []
         self._took_ns: list[int] = []
 
-    def record_call(self, waited_ns: int, took_ns: int) -> None:
+    def _record_call(self, waited_ns: int, took_ns: int) -> None:
         """Add a callback that did not await: how long its item was queued, and how long it ran."""
         self._waited_ns.append(waited_ns)
-        self.record_took(took_ns)
+        self._record_took(took_ns)
 
-    def record_took(self, took_ns: int) -> None:
+    def _record_took(self, took_ns: int) -> None:
         """Add a callback that did not await and had no queued item: how long it ran."""
         took = self._took_ns
         took.append(took_ns)
@@ -175,8 +175,8 @@ class CallbackStats:
             self._record_noted()
 
     def _record_noted(self) -> None:
-        self.queue_wait.record_all(self._waited_ns)
-        self.run_time.record_all(self._took_ns, self.blocking)
+        self.queue_wait._record_all(self._waited_ns)
+        self.run_time._record_all(self._took_ns, self.blocking)
         self._waited_ns.clear()
         self._took_ns.clear()
 

@@ -422,7 +422,7 @@ async def test_publishing_on_a_destroyed_publisher_is_an_error(node: Node) -> No
     """A RuntimeError, as in rclpy."""
     publisher = node.create_publisher(String, "words", 10)
     publisher.destroy()
-    with pytest.raises(RuntimeError, match="publisher of /words: destroyed"):
+    with pytest.raises(RuntimeError, match="publisher of /words is destroyed"):
         publisher.publish(String())
 
 
@@ -507,7 +507,7 @@ async def test_the_statistics_name_each_subscription_and_its_way(node: Node) -> 
     node.create_subscription(Int8, "words")
 
     assert publisher.stats.routes == {
-        f"/node {reader.endpoint.gid.hex()[:8]}": "local" for reader in readers
+        f"/node {reader._reader.endpoint.gid.hex()[:8]}": "local" for reader in readers
     }
     readers[0].destroy()
     (name,) = publisher.stats.routes

@@ -203,5 +203,5 @@ def test_a_definition_can_be_given_as_text() -> None:
     assert definition_text(service) == "Words w\n---\n"
     with pytest.raises(InterfaceNotFoundError):
         get_interface("tutorial/msg/Words")
-    with pytest.raises(TypeError, match="not the name of a ROS type"):
+    with pytest.raises(TypeError, match="not a valid ROS type name"):
         define("Words", "string text")

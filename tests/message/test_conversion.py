@@ -138,7 +138,7 @@ def test_the_arrays_of_a_new_message_can_be_changed() -> None:
         (
             Empty,
             "x: 1",
-            "std_msgs/msg/Empty.x: no such field; std_msgs/msg/Empty has none",
+            "std_msgs/msg/Empty.x: no such field; std_msgs/msg/Empty has no fields",
         ),
         (
             Twist,

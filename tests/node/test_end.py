@@ -76,7 +76,7 @@ async def test_a_callback_can_publish_in_finally(context: Context, node: Node, k
             node.create_publisher(Float64, "go", 10).publish(Float64())
         elif kind == "service":
             robot.create_service(AddTwoInts, "go", drive)
-            node.create_client(AddTwoInts, "go").begin(AddTwoInts.Request())
+            node.create_client(AddTwoInts, "go")._begin(AddTwoInts.Request())
         else:
             accept = CancelResponse.ACCEPT
             robot.create_action_server(Fibonacci, "go", drive, cancel_callback=lambda _goal: accept)

@@ -19,7 +19,6 @@ from aionode.errors import CallbackCancelledError, CallbackSignatureError, brief
 
 if TYPE_CHECKING:
     from aionode.endpoints._core.entity import Entity
-    from aionode.endpoints._core.inline_runner import InlineRunner
     from aionode.endpoints._core.message_queue import MessageQueue
     from aionode.endpoints.stats import CallbackStats
     from aionode.logging import RcutilsLogger
@@ -126,20 +125,12 @@ class CallbackRunner:
         Raises:
             Exception: what the callback raised, if `on_error` is ``"raise"``.
         """
-        if self._offload:
-            return self._finish(_Offloaded(self, args))
-        # `enter` written out: a call less for each message
-        began_ns = perf_ns()
         try:
-            outcome = self.callback(*args)
+            entered = self.enter(*args)
         except Exception as error:  # noqa: BLE001  # the policy decides, see `fail`
-            self._record_sync(perf_ns() - began_ns)
             self.fail(error)
             return None
-        if outcome is not None and isinstance(outcome, Awaitable):
-            return self._finish(_Measured(self, outcome))
-        self._record_sync(perf_ns() - began_ns)
-        return None
+        return self._finish(entered) if is_unfinished(entered) else None
 
     def receive(self, entered_ns: int, *args: Any) -> Coroutine[Any, Any, None] | None:
         """Do `run` for a message that arrived at `entered_ns`; count it, and record its wait.
@@ -165,7 +156,7 @@ class CallbackRunner:
             stats.queue_wait.record(began_ns - entered_ns)
             return self._finish(_Measured(self, outcome))
         took_ns = perf_ns() - began_ns
-        stats.record_call(began_ns - entered_ns, took_ns)
+        stats._record_call(began_ns - entered_ns, took_ns)
         if took_ns > self.budget_ns:
             self.report_blocking(took_ns)
         return None
@@ -240,7 +231,7 @@ class CallbackRunner:
         return self._context.subject
 
     def _record_sync(self, took_ns: int) -> None:
-        self.stats.record_took(took_ns)
+        self.stats._record_took(took_ns)
         if took_ns > self.budget_ns:
             self.report_blocking(took_ns)
 
@@ -291,7 +282,7 @@ class Callbacks:
             ValueError: `on_error` is an unknown string, or a coroutine function is to be offloaded.
         """
         name = getattr(callback, "__qualname__", repr(callback))
-        subject = f"{entity.subject} (callback {name})"
+        subject = f"{entity._subject} (callback {name})"
         return CallbackRunner(
             callback,
             CallbackContext(self.node, subject, entity),
@@ -394,20 +385,19 @@ def is_unfinished(entered: object) -> bool:
 async def consume(
     message_queue: MessageQueue[T],
     handle: Callable[[int, T], Coroutine[Any, Any, None] | None],
-    concurrent: bool | int,  # a number, where True and False are numbers too
-    inline_runner: InlineRunner[T] | None = None,
+    concurrent: bool | int,  # an int is a number of callbacks, not a truth value
+    *,
+    inline: bool = False,
 ) -> None:
     """Hand everything that arrives in `message_queue` to `handle`, until cancelled.
 
     `handle` runs what can run at once and returns what is left to await, if anything. With
     `concurrent` that runs beside the next items in a TaskGroup, any number at once or at most the
-    given number, while the others stay queued. Without it, `inline_runner` may bypass the queue
-    while it is empty.
+    given number, while the others stay queued. Without it, `inline` lets items
+    bypass the queue while it is empty, see `MessageQueue`; not for coroutine functions.
     """
     if concurrent is False:
-        await _consume_in_order(
-            message_queue, handle, message_queue if inline_runner is None else inline_runner
-        )
+        await _consume_in_order(message_queue, handle, inline=inline)
     else:
         limit = None if concurrent is True else concurrent
         async with asyncio.TaskGroup() as tasks:
@@ -417,11 +407,12 @@ async def consume(
 async def _consume_in_order(
     message_queue: MessageQueue[T],
     handle: Callable[[int, T], Coroutine[Any, Any, None] | None],
-    signal: MessageQueue[T] | InlineRunner[T],
+    *,
+    inline: bool,
 ) -> None:
     queue = message_queue.items  # `len(message_queue)` is one more call for each item
     while True:
-        await signal.wait()
+        await (message_queue.wait_inline(handle) if inline else message_queue.wait())
         turn_ends_ns = perf_ns() + SLICE_NS
         while queue:
             rest = handle(*message_queue.pop())

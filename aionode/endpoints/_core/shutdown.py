@@ -74,7 +74,7 @@ class Ending:
     def _destroy(self, stage: EndStage) -> None:
         self._stage = stage + 1
         for entity in reversed(list(self._entities)):
-            if entity.stage <= stage:
+            if entity._stage <= stage:
                 entity.destroy()
 
     def _go_on(self) -> None:

@@ -123,7 +123,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         self._accepted: MessageQueue[Any] = MessageQueue(UNLIMITED, CallbackStats(), keep_all=True)
         # What tasks of the user wait for here, to be cancelled with the client.
         self._waits: set[asyncio.Future[Any]] = set()
-        self._futures = Futures(self.subject)
+        self._futures = Futures(self._subject)
         self._withdrawals: dict[Withdrawal, None] = {}  # those that have not ended
         self._expect_at_end = node._expect_at_end
 
@@ -209,7 +209,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
             EntityDestroyedError: the client was already destroyed (a RuntimeError).
             CancelledError: the client was destroyed during the wait.
         """
-        self.refuse_if_destroyed()
+        self._refuse_if_destroyed()
         try:
             async with asyncio.timeout(timeout_sec):
                 while not self.server_is_ready():
@@ -229,7 +229,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         wait.add_done_callback(self._waits.discard)
         await wait
         if self.destroyed:  # just after the change had ended the wait
-            raise asyncio.CancelledError(f"{self.subject}: destroyed")
+            raise asyncio.CancelledError(f"{self._subject}: destroyed")
 
     # Goals
 
@@ -258,7 +258,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         handle = await self.send_goal(goal, feedback_callback)
         outcome = await handle.result()
         if feedback_callback is not None:
-            await handle.heard_out()
+            await handle._wait_for_feedback()
         if outcome.status is GoalStatus.SUCCEEDED:
             return outcome.result
         if outcome.status is GoalStatus.CANCELED:
@@ -314,54 +314,54 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
             EntityDestroyedError: the client was destroyed (a RuntimeError).
             RuntimeError: no event loop is running.
         """
-        self.refuse_if_destroyed("given a goal")
+        self._refuse_if_destroyed("send goal")
         return self._futures.begin(self._send(goal, feedback_callback, goal_uuid))
 
-    def in_future(self, work: Coroutine[Any, Any, T]) -> asyncio.Future[T]:
+    def _in_future(self, work: Coroutine[Any, Any, T]) -> asyncio.Future[T]:
         """Return the result of `work` as a future. For goal handles."""
         return self._futures.begin(work)
 
-    def start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:
+    def _start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:
         """Send the goals that were submitted before the node ran."""
-        task = super().start(tasks)
+        task = super()._start(tasks)
         self._futures.start(tasks)
         return task
 
     async def _send(
         self, goal: GoalT, feedback_callback: Callable[[Any], Any] | None, goal_uuid: Any
     ) -> ClientGoalHandle[ResultT, FeedbackT]:
-        self.refuse_if_destroyed("given a goal")
+        self._refuse_if_destroyed("send goal")
         self._check(goal)
         if feedback_callback is not None:
-            accepts(feedback_callback, 1, subject=self.subject, wanted="(feedback_message)")
+            accepts(feedback_callback, 1, subject=self._subject, wanted="(feedback_message)")
         handle: ClientGoalHandle[ResultT, FeedbackT] = ClientGoalHandle(
             self, uuid_message(uuid4().bytes) if goal_uuid is None else goal_uuid, feedback_callback
         )
         # Registered first, because feedback may be faster than the answer.
-        self._goals.setdefault(handle.key, handle)
+        self._goals.setdefault(handle._key, handle)
         try:
-            handle.sending = self._send_goal.begin(
+            handle._sending = self._send_goal._begin(
                 self.action_type.Impl.SendGoalService.Request(goal_id=handle.goal_id, goal=goal)
             )
             # It continues when the caller is cancelled, so that `Withdrawal` learns the answer.
-            response = await self.awaiting(handle, self._kept(handle.sending.answer))
+            response = await self._awaiting(handle, self._kept(handle._sending.answer))
         except BaseException:
             self._forget(handle)
             raise
-        handle.sending.cancel()  # it is answered
+        handle._sending.cancel()  # it is answered
         if not response.accepted:
             self._forget(handle)
-            handle.end(lost=GoalLostError(self.action_name, handle.text, "the server rejected it"))
+            handle._end(lost=GoalLostError(self.action_name, handle.text, "the server rejected it"))
             return handle
         handle.accepted = True
         handle.stamp = response.stamp
-        handle.tell(GoalStatus.ACCEPTED)
+        handle._update_status(GoalStatus.ACCEPTED)
         self._accepted.put(handle)
         return handle
 
     def _forget(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
-        if self._goals.get(goal.key) is goal:
-            del self._goals[goal.key]
+        if self._goals.get(goal._key) is goal:
+            del self._goals[goal._key]
 
     async def _kept(self, answer: asyncio.Future[T]) -> T:
         """Wait for `answer`, which a cancelled wait leaves open; `_close` cancels the wait."""
@@ -370,27 +370,27 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         wait.add_done_callback(self._waits.discard)
         return await wait
 
-    async def awaiting(self, goal: ClientGoalHandle[ResultT, FeedbackT], wait: Awaitable[T]) -> T:
+    async def _awaiting(self, goal: ClientGoalHandle[ResultT, FeedbackT], wait: Awaitable[T]) -> T:
         """Return the result of `wait`; if cancelled, cancel `goal` as well. For its handle."""
-        goal.waiting += 1
+        goal._waiting += 1
         try:
             return await wait
         except asyncio.CancelledError:
             if not (self.destroyed or goal.done):
-                self.withdraw(goal)
+                self._withdraw(goal)
             raise
         finally:
-            goal.waiting -= 1
+            goal._waiting -= 1
 
-    def withdraw(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
+    def _withdraw(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
         """Begin to cancel `goal` at the server, without waiting. For its handle."""
-        if goal.sending is not None and not goal.sending.calls:
-            goal.sending.cancel()  # no server can have received it
-        elif not goal.withdrawn:
-            goal.withdrawn = True  # one request is enough, however many tasks wait
+        if goal._sending is not None and not goal._sending.calls:
+            goal._sending.cancel()  # no server can have received it
+        elif not goal._withdrawn:
+            goal._withdrawn = True  # one request is enough, however many tasks wait
 
             def answered(_: asyncio.Future[Any]) -> None:
-                goal.withdrawn = False
+                goal._withdrawn = False
 
             self._begin_to_cancel(goal).answer.add_done_callback(answered)
 
@@ -405,9 +405,9 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         if self.destroyed:
             self._close_parts()
 
-    async def cancel_goal(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> Any:
+    async def _request_cancel(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> Any:
         """Ask the server to cancel `goal`. For its handle."""
-        self.refuse_if_destroyed("asked to cancel a goal")
+        self._refuse_if_destroyed("cancel goal")
         if not self._cancel_goal.service_is_ready():  # it was ready, so it has gone
             raise ServiceUnavailableError(self._cancel_goal.srv_name)
         return await self._kept(self._begin_to_cancel(goal).answer)
@@ -418,9 +418,9 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         goal = self._goals.get(message.goal_id.uuid.tobytes())
         if goal is None:
             return None  # of another client, or late
-        if goal.feedback_callback is not None:
-            return goal.feedback_callback(message)
-        goal.take(message.feedback)
+        if goal._feedback_callback is not None:
+            return goal._feedback_callback(message)
+        goal._take(message.feedback)
         return None
 
     def _on_status(self, message: Any) -> None:
@@ -429,9 +429,9 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         for each in message.status_list:
             goal = self._goals.get(each.goal_info.goal_id.uuid.tobytes())
             if goal is not None:
-                goal.tell(GoalStatus(each.status))
+                goal._update_status(GoalStatus(each.status))
 
-    async def run(self) -> None:
+    async def _run(self) -> None:
         """Wait for the results of all goals, until cancelled."""
         await consume(self._accepted, self._follow, concurrent=True)
 
@@ -450,15 +450,15 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
             text = await self._reason(goal) if status is GoalStatus.ABORTED else ""
         except ServiceUnavailableError:
             problem = "the server went away before it ended"
-            goal.end(lost=GoalLostError(self.action_name, goal.text, problem))
+            goal._end(lost=GoalLostError(self.action_name, goal.text, problem))
         except ServiceError as error:
             problem = f"the server could not tell its result ({error})"
-            goal.end(lost=GoalLostError(self.action_name, goal.text, problem))
+            goal._end(lost=GoalLostError(self.action_name, goal.text, problem))
         else:
-            goal.end(ActionResult(status, response.result, text))
+            goal._end(ActionResult(status, response.result, text))
             if status is not GoalStatus.UNKNOWN:
                 await self._hear_out()
-            goal.end_feedback()
+            goal._end_feedback()
         finally:
             self._forget(goal)
 
@@ -494,7 +494,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
     async def _reason(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> str:
         """Return why `goal` was aborted, if the server runs aionode and knows; else ""."""
         try:
-            await self._ask(uuid_message(reason_id(goal.key)), ANSWER_LIMIT_S)
+            await self._ask(uuid_message(reason_id(goal._key)), ANSWER_LIMIT_S)
         except ServiceError as error:
             return error.error_text if error.error_type == "AbortReason" else ""
         except RequestTimeoutError:
@@ -509,17 +509,17 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         The other goals continue at the server.
         """
         for goal in self._goals.values():
-            if goal.waiting and not goal.done:
-                self.withdraw(goal)
+            if goal._waiting and not goal.done:
+                self._withdraw(goal)
         for withdrawal in list(self._withdrawals):
             withdrawal.end_with_answer()
         for wait in list(self._waits):  # first, since closing the parts changes the graph
-            wait.cancel(f"{self.subject}: destroyed")
+            wait.cancel(f"{self._subject}: destroyed")
         self._futures.close()
         self._close_parts()
         goals, self._goals = self._goals, {}
         for goal in goals.values():
-            goal.end()
+            goal._end()
 
     def _close_parts(self) -> None:
         """Destroy all parts, except those that are still needed to cancel goals."""

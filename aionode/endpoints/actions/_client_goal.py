@@ -78,16 +78,17 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         self.stamp: Any = None
         self.status = GoalStatus.UNKNOWN
         self.accepted = False
-        self.feedback_callback = feedback_callback
-        self.sending: Exchange | None = None
-        self.withdrawn = False
-        self.waiting = 0
+        self._feedback_callback = feedback_callback
+        # The exchange that sends the goal, from when that begins.
+        self._sending: Exchange | None = None
+        self._withdrawn = False  # whether a cancel request is under way
+        self._waiting = 0  # how many tasks wait for the goal
         self._client = client
         self._feedback: MessageQueue[FeedbackT] = MessageQueue(KEPT_FEEDBACK, CallbackStats())
         self._outcome: ActionResult[ResultT] | None = None
         self._lost: GoalLostError | None = None
         self._ended = asyncio.Event()
-        self._heard_out = asyncio.Event()
+        self._feedback_ended = asyncio.Event()
 
     def __repr__(self) -> str:
         return f"<ClientGoalHandle {self._client.action_name} {self.text} {self.status.name}>"
@@ -95,10 +96,10 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
     @property
     def text(self) -> str:
         """The id in 32 hexadecimal digits."""
-        return self.key.hex()
+        return self._key.hex()
 
     @property
-    def key(self) -> bytes:
+    def _key(self) -> bytes:
         """The id in 16 bytes."""
         return bytes(self.goal_id.uuid)
 
@@ -108,7 +109,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         return self._ended.is_set()
 
     @property
-    def is_known_to_have_ended(self) -> bool:
+    def _has_server_ended(self) -> bool:
         """Whether the server has reported the end; a goal that was lost may still go on there."""
         return self._outcome is not None
 
@@ -129,7 +130,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
     ) -> None:
         """Cancel the goal if it has not ended, without waiting for the answer."""
         if not self.done:
-            self._client.withdraw(self)
+            self._client._withdraw(self)
 
     # What a caller awaits
 
@@ -143,10 +144,10 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
             GoalLostError: the server went away.
             CancelledError: the client was destroyed.
         """
-        await self._client.awaiting(self, self._ended.wait())
+        await self._client._awaiting(self, self._ended.wait())
         self._raise_if_lost()
         if self._outcome is None:
-            raise asyncio.CancelledError(f"{self._client.subject}: destroyed")
+            raise asyncio.CancelledError(f"{self._client._subject}: destroyed")
         return self._outcome
 
     def __aiter__(self) -> Self:
@@ -155,7 +156,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         Raises:
             RuntimeError: the goal was sent with a `feedback_callback`, which gets the feedback.
         """
-        if self.feedback_callback is not None:
+        if self._feedback_callback is not None:
             raise RuntimeError(
                 f"{self._client.action_name}: goal {self.text}: its feedback_callback gets the "
                 "feedback; to iterate over it, send the goal without one"
@@ -171,12 +172,12 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
             CancelledError: the client was destroyed.
         """
         while not self._feedback:
-            if self._heard_out.is_set():
+            if self._feedback_ended.is_set():
                 self._raise_if_lost()
                 if self._outcome is None:
-                    raise asyncio.CancelledError(f"{self._client.subject}: destroyed")
+                    raise asyncio.CancelledError(f"{self._client._subject}: destroyed")
                 raise StopAsyncIteration
-            await self._client.awaiting(self, self._feedback.wait())
+            await self._client._awaiting(self, self._feedback.wait())
         return self._feedback.pop()[1]
 
     def _raise_if_lost(self) -> None:
@@ -201,7 +202,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
             ServiceError: the server's cancel_callback failed, or the server went away.
             EntityDestroyedError: the client was destroyed (a RuntimeError).
         """
-        return await self._client.cancel_goal(self)
+        return await self._client._request_cancel(self)
 
     # The names of rclpy
 
@@ -214,7 +215,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         Raises:
             RuntimeError: no event loop is running.
         """
-        return self._client.in_future(self.result())
+        return self._client._in_future(self.result())
 
     def cancel_goal_async(self) -> asyncio.Future[Any]:
         """Ask the server to cancel the goal, and return a future of its answer: see `cancel`.
@@ -222,19 +223,19 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         Raises:
             RuntimeError: no event loop is running.
         """
-        return self._client.in_future(self.cancel())
+        return self._client._in_future(self.cancel())
 
     # Called by the client
 
-    def take(self, feedback: FeedbackT) -> None:
+    def _take(self, feedback: FeedbackT) -> None:
         """Queue `feedback` for the reader."""
         self._feedback.put(feedback)
 
-    def tell(self, status: GoalStatus) -> None:
+    def _update_status(self, status: GoalStatus) -> None:
         """Take a state from the status topic; one that comes late changes nothing."""
         self.status = max(self.status, status)
 
-    def end(
+    def _end(
         self,
         outcome: ActionResult[ResultT] | None = None,
         lost: GoalLostError | None = None,
@@ -247,13 +248,13 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
                 self.status = outcome.status
             self._ended.set()
         if outcome is None:
-            self.end_feedback()
+            self._end_feedback()
 
-    def end_feedback(self) -> None:
+    def _end_feedback(self) -> None:
         """End the iteration once all feedback is read: no more will come."""
-        self._heard_out.set()
+        self._feedback_ended.set()
         self._feedback.wake()
 
-    async def heard_out(self) -> None:
+    async def _wait_for_feedback(self) -> None:
         """Wait until no more feedback will come."""
-        await self._heard_out.wait()
+        await self._feedback_ended.wait()

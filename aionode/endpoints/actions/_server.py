@@ -164,10 +164,10 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         self._time_base = node.context.time_base
         self._callbacks = node._callbacks
         self._logger = node.get_logger()
-        self._timeout_ns = seconds_to_ns(result_timeout, f"{self.subject}: result_timeout")
-        self._concurrent = checked_concurrency(concurrent, self.subject)
+        self._timeout_ns = seconds_to_ns(result_timeout, f"{self._subject}: result_timeout")
+        self._concurrent = checked_concurrency(concurrent, self._subject)
         self._offload = offload
-        self._checked_result = snapshotter(self.action_type.Result)
+        self._checked_result: Callable[[ResultT], ResultT] = snapshotter(self.action_type.Result)
         # By goal id: goals that are active or whose results are kept; cancel requests that came
         # before their goal, with their steady time; and when kept results are dropped.
         self._goals: dict[bytes, ServerGoalHandle[GoalT, ResultT, FeedbackT]] = {}
@@ -260,7 +260,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         self._execute = self._executing(execute_callback)
 
     def _executing(self, callback: Callable[..., Any]) -> CallbackRunner:
-        accepts(callback, 1, subject=self.subject, wanted="(goal_handle)")
+        accepts(callback, 1, subject=self._subject, wanted="(goal_handle)")
         return self._callbacks.make_runner(
             callback, self, self.stats, on_error="log", offload=self._offload
         )
@@ -268,7 +268,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
     def register_goal_callback(self, goal_callback: Callable[[GoalT], Any] | None) -> None:
         """Set the function that decides about new goals; None accepts all."""
         if goal_callback is not None:
-            accepts(goal_callback, 1, subject=self.subject, wanted="(goal)")
+            accepts(goal_callback, 1, subject=self._subject, wanted="(goal)")
         self._goal_callback = goal_callback
 
     def register_handle_accepted_callback(
@@ -279,7 +279,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
     ) -> None:
         """Set the function that gets accepted goals; None executes them at once."""
         if handle_accepted_callback is not None:
-            accepts(handle_accepted_callback, 1, subject=self.subject, wanted="(goal_handle)")
+            accepts(handle_accepted_callback, 1, subject=self._subject, wanted="(goal_handle)")
         self._handle_accepted_callback = handle_accepted_callback
 
     def register_cancel_callback(
@@ -288,7 +288,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
     ) -> None:
         """Set the function that decides about cancel requests; None rejects all."""
         if cancel_callback is not None:
-            accepts(cancel_callback, 1, subject=self.subject, wanted="(goal_handle)")
+            accepts(cancel_callback, 1, subject=self._subject, wanted="(goal_handle)")
         self._cancel_callback = cancel_callback
 
     # New goals
@@ -330,7 +330,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             return True
         answer = await awaited(self._goal_callback(goal))
         if not isinstance(answer, GoalResponse):
-            self.warn(
+            self._warn(
                 f"goal_callback returned {brief(answer)}, no GoalResponse; the goal is rejected"
             )
         return answer is GoalResponse.ACCEPT
@@ -348,7 +348,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             GoalKey(goal_id, stamp_ns(stamp)),
         )
         self._goals[goal_id] = goal
-        self.publish_status()
+        self._publish_status()
         return goal
 
     async def _call_handle_accepted(self, goal: Any) -> None:
@@ -359,12 +359,12 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             else:
                 await awaited(callback(goal))
         except Exception as error:
-            goal.failed(error)  # otherwise its client would wait for ever
+            goal._failed(error)  # otherwise its client would wait for ever
             raise
 
     # Execution
 
-    async def run(self) -> None:
+    async def _run(self) -> None:
         """Pass goals to `handle_accepted_callback` and execute them, until cancelled."""
         self._loop = asyncio.get_running_loop()
         async with asyncio.TaskGroup() as tasks:
@@ -373,7 +373,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             )
             tasks.create_task(consume(self._waiting, self._begin, self._concurrent))
 
-    def enqueue(
+    def _enqueue(
         self,
         goal: ServerGoalHandle[GoalT, ResultT, FeedbackT],
         execute_callback: Callable[..., Any] | None,
@@ -399,34 +399,34 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             return
         self.stats.received += 1
         self.stats.queue_wait.record(perf_ns() - entered_ns)
-        goal.begin()
+        goal._begin()
         try:
             async with asyncio.TaskGroup() as tasks:  # cancelling a goal cancels only its own task
                 tasks.create_task(
-                    self._call_execute(goal, runner), name=f"{self.subject} goal {goal.text}"
+                    self._call_execute(goal, runner), name=f"{self._subject} goal {goal.text}"
                 )
         finally:
             if goal.is_active:  # the node stopped before the callback started
-                goal.stopped()
+                goal._stopped()
 
     async def _call_execute(
         self, goal: ServerGoalHandle[Any, Any, Any], runner: CallbackRunner
     ) -> None:
         if not self._offload:  # a thread cannot be cancelled; it has to check for itself
-            goal.run_in(asyncio.current_task())
+            goal._run_in(asyncio.current_task())
         try:
-            goal.returned(await runner.call(goal))
+            goal._returned(await runner.call(goal))
         except asyncio.CancelledError:
-            goal.stopped()
+            goal._stopped()
             raise
         except Exception as error:  # noqa: BLE001  # logged and counted, and told to the client
             if self.destroyed and isinstance(error, CallbackCancelledError):
-                goal.stopped()  # the node ends: its clock was closed just before this task
+                goal._stopped()  # the node ends: its clock was closed just before this task
                 return
             runner.fail(error)
-            goal.failed(error)
+            goal._failed(error)
 
-    def in_loop(self, action: Callable[..., None], *args: Any) -> None:
+    def _in_loop(self, action: Callable[..., None], *args: Any) -> None:
         """Run `action` in the event loop; from another thread, wait for it. For goal handles.
 
         Raises:
@@ -454,7 +454,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
     async def _on_cancel(self, request: Any) -> Any:
         info = request.goal_info
         asked = GoalKey(info.goal_id.uuid.tobytes(), stamp_ns(info.stamp))
-        code, meant = candidates([goal.key for goal in self._goals.values()], asked)
+        code, meant = candidates([goal._current_key for goal in self._goals.values()], asked)
         response = self.action_type.Impl.CancelGoalService.Response()
         if code is CancelCode.UNKNOWN_GOAL_ID:
             self._note_withdrawn(asked.goal_id)
@@ -466,7 +466,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             if not await self._yields(goal):
                 refused = True
             elif is_cancelable(goal.status):
-                goal.cancel()
+                goal._cancel()
                 response.goals_canceling.append(goal.info)
         if meant and not response.goals_canceling:
             code = CancelCode.REJECTED if refused else CancelCode.GOAL_TERMINATED
@@ -478,7 +478,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             return False
         answer = await awaited(self._cancel_callback(goal))
         if not isinstance(answer, CancelResponse):
-            self.warn(
+            self._warn(
                 f"cancel_callback returned {brief(answer)}, no CancelResponse; "
                 "the request is rejected"
             )
@@ -492,10 +492,10 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         goal = self._goals.get(goal_id)
         if goal is None:
             aborted = self._goals.get(reason_id(goal_id))
-            if aborted is not None and aborted.error_text:
-                raise AbortReason(aborted.error_text)
+            if aborted is not None and aborted._error_text:
+                raise AbortReason(aborted._error_text)
             return response
-        status, result = await goal.outcome()
+        status, result = await goal._outcome()
         await self._send_feedback_first()
         response.status = int(status)
         if result is not None:
@@ -508,19 +508,9 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             async with asyncio.timeout(DRAIN_LIMIT_S):
                 await self._feedback.drain()
 
-    def checked_result(self, result: ResultT) -> ResultT:
-        """Return a read-only copy of `result`. For goal handles.
-
-        Raises:
-            TypeError: it is not of the action's Result type.
-            MessageError: a value does not fit its field.
-        """
-        checked: ResultT = self._checked_result(result)
-        return checked
-
-    def keep(self, goal: ServerGoalHandle[GoalT, ResultT, FeedbackT]) -> None:
+    def _keep(self, goal: ServerGoalHandle[GoalT, ResultT, FeedbackT]) -> None:
         """Keep the result of `goal`, which has ended, for `result_timeout`. For its handle."""
-        goal_id = goal.key.goal_id
+        goal_id = goal._key.goal_id
         if self.destroyed or goal_id not in self._goals:
             return
         if self._timeout_ns == 0:  # after the status, which is sent in the next iteration
@@ -535,13 +525,13 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
 
     # Topics
 
-    def publish_feedback(
+    def _publish_feedback(
         self, goal: ServerGoalHandle[GoalT, ResultT, FeedbackT], feedback: FeedbackT
     ) -> None:
         """Send `feedback` of `goal`. For its handle."""
         if not isinstance(feedback, self.action_type.Feedback):
             raise TypeError(
-                f"{self.subject}: feedback is a {type(feedback).__name__}; a "
+                f"{self._subject}: feedback is a {type(feedback).__name__}; a "
                 f"{type_name(self.action_type.Feedback)} is needed"
             )
         if not self.destroyed:
@@ -549,7 +539,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             with suppress(QueueFullError):  # a reader that is too slow must not stop the goal
                 self._feedback.publish(message)
 
-    def publish_status(self) -> None:
+    def _publish_status(self) -> None:
         """Send the states of all goals soon, once for all changes of one iteration of the loop.
 
         The message lists every goal that is active or kept, so with many goals, sending it for
@@ -574,9 +564,9 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         with suppress(QueueFullError):  # as above
             self._status.publish(message)
 
-    def warn(self, text: str) -> None:
+    def _warn(self, text: str) -> None:
         """Log a mistake of a callback. For goal handles."""
-        self._logger.warning(f"{self.subject}: {text}")
+        self._logger.warning(f"{self._subject}: {text}")
 
     # The end
 
@@ -589,7 +579,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         goals, self._goals = self._goals, {}
         for goal in goals.values():
             if goal.status is GoalStatus.ACCEPTED:  # the others end with their callbacks
-                goal.stopped()
+                goal._stopped()
         self._accepted.discard()
         self._waiting.discard()
 

@@ -59,8 +59,8 @@ class Withdrawal:
         self._timer: asyncio.TimerHandle | None = None
         self._exchanges: list[Exchange] = []
         self._ended = False
-        if goal.sending is not None and not goal.sending.answer.done():
-            goal.sending.answer.add_done_callback(self._decided)
+        if goal._sending is not None and not goal._sending.answer.done():
+            goal._sending.answer.add_done_callback(self._decided)
         self._send()
 
     def _send(self) -> None:
@@ -70,7 +70,7 @@ class Withdrawal:
         if self._client.destroyed:
             self.end()
             return
-        if self._goal.is_known_to_have_ended:
+        if self._goal._has_server_ended:
             response = self._client.srv_type.Response(return_code=CancelCode.GOAL_TERMINATED)
             self._take_response(response)
             return
@@ -79,7 +79,7 @@ class Withdrawal:
         )
         self._attempts += 1
         if self._client.service_is_ready():
-            exchange = self._client.begin(self._request)
+            exchange = self._client._begin(self._request)
             self._exchanges.append(exchange)
             exchange.answer.add_done_callback(partial(self._take, self._is_decided()))
         else:
@@ -108,7 +108,7 @@ class Withdrawal:
 
     def _is_decided(self) -> bool:
         """Return whether the server has accepted or rejected the goal."""
-        return self._goal.sending is None or self._goal.sending.answer.done()
+        return self._goal._sending is None or self._goal._sending.answer.done()
 
     def _decided(self, decision: asyncio.Future[Any]) -> None:
         """Send the request again if the goal has now been accepted; end if it was rejected."""
@@ -148,7 +148,7 @@ class Withdrawal:
             self._timer.cancel()
         for exchange in self._exchanges:
             exchange.cancel()
-        if self._goal.sending is not None:
-            self._goal.sending.cancel()
+        if self._goal._sending is not None:
+            self._goal._sending.cancel()
         self.answer.cancel()
         self._loop.call_soon(self._on_end, self)

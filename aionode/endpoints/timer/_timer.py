@@ -9,7 +9,7 @@ from aionode._concurrency import checkpoint
 from aionode.clock import S_TO_NS, Time
 from aionode.endpoints._core.callback_runner import accepts
 from aionode.endpoints._core.entity import Entity
-from aionode.endpoints._core.inline_runner import InlineCall
+from aionode.endpoints._core.inline_call import InlineCall
 from aionode.endpoints.stats import CallbackStats
 from aionode.endpoints.timer._ticker import Ticker
 from aionode.errors import brief
@@ -134,7 +134,7 @@ class Timer(Entity):
         Raises:
             EntityDestroyedError: The timer or its node was destroyed (a RuntimeError).
         """
-        self.refuse_if_destroyed("reset")
+        self._refuse_if_destroyed("reset timer")
         self._ticker.schedule.reset(self.clock.now_ns())
         self._ticker.wake()
 
@@ -156,7 +156,7 @@ class Timer(Entity):
 
     # Work
 
-    async def run(self) -> None:
+    async def _run(self) -> None:
         """Make the calls, until cancelled."""
         ticker = self._ticker
         schedule = ticker.schedule
@@ -211,7 +211,7 @@ class Timer(Entity):
         self._ticker.close()
 
     def _wants_info_of(self, callback: TimerCallback) -> bool:
-        wants = accepts(callback, 0, 1, subject=self.subject, wanted="() or (info: TimerInfo)")
+        wants = accepts(callback, 0, 1, subject=self._subject, wanted="() or (info: TimerInfo)")
         return wants == 1
 
 
