@@ -1,11 +1,12 @@
-"""What publishers and subscriptions of aionode say to each other so that Zenoh loses nothing.
+"""Acknowledgements between publishers and subscriptions of aionode, so that no message is lost.
 
-The words are those of RTPS. Each is one sample for one process, of which ROS nodes hear nothing::
+The terms are those of RTPS. A submessage is one sample sent to one process; ROS nodes do not
+receive it::
 
     version u8 | kind u8 | zero u16 | writer 16 bytes | reader 16 bytes | first i64 | last i64 |
     rest
 
-Whoever does not know the version or the kind leaves the sample out.
+A receiver ignores samples of an unknown version or kind.
 """
 
 from __future__ import annotations
@@ -20,31 +21,30 @@ __all__ = ["MAX_RANGES", "VERSION", "Kind", "Submessage", "pack", "pack_ranges",
 VERSION: Final = 1
 
 MAX_RANGES: Final = 64
-"""How many ranges of missing messages are named at once."""
+"""Largest number of ranges of missing messages in one ACKNACK."""
 
 HEADER: Final = struct.Struct("<BBH16s16sqq")
 RANGE: Final = struct.Struct("<qq")
 
 
 class Kind(enum.IntEnum):
-    """What a submessage says; `first` and `last` stand for what is noted here."""
+    """The kind of a submessage, which defines the meaning of `first`, `last` and `rest`."""
 
     HEARTBEAT = 1
-    """The writer has sent messages up to `last`; what is before `first` is not for this reader.
+    """The writer has sent messages up to `last`; those before `first` are not for this reader.
 
-    The rest is the writer's participant, to which the reader answers with an ACKNACK.
+    `rest` is the writer's participant, to which the reader replies with an ACKNACK.
     """
     ACKNACK = 2
-    """The reader has taken all messages before `first`. The rest are ranges that it lacks."""
+    """The reader has received all messages before `first`; `rest` has the ranges it is missing."""
     GAP = 3
     """The messages from `first` to `last` will not come."""
     DATA = 4
-    """Message `first` once more, sent at `last` (nanoseconds since 1970); the rest is its payload.
-    """
+    """Message `first` again, sent at `last` (nanoseconds since 1970); `rest` is its payload."""
 
 
 class Submessage(NamedTuple):
-    """One of them as it came."""
+    """A received submessage."""
 
     kind: Kind
     writer: bytes
@@ -54,7 +54,7 @@ class Submessage(NamedTuple):
     rest: bytes
 
     def ranges(self) -> list[tuple[int, int]]:
-        """Return what an ACKNACK lacks, first and last of each range."""
+        """Return the missing ranges of an ACKNACK as pairs of first and last sequence number."""
         size = min(len(self.rest) // RANGE.size, MAX_RANGES) * RANGE.size
         return list(RANGE.iter_unpack(self.rest[:size]))
 
@@ -62,17 +62,17 @@ class Submessage(NamedTuple):
 def pack(
     kind: Kind, writer: bytes, reader: bytes, first: int, last: int, rest: bytes = b""
 ) -> bytes:
-    """Return a submessage."""
+    """Return an encoded submessage."""
     return HEADER.pack(VERSION, kind, 0, writer, reader, first, last) + rest
 
 
 def pack_ranges(ranges: Sequence[tuple[int, int]]) -> bytes:
-    """Return the rest of an ACKNACK."""
+    """Return the `rest` of an ACKNACK."""
     return b"".join(RANGE.pack(first, last) for first, last in ranges[:MAX_RANGES])
 
 
 def unpack(data: bytes) -> Submessage | None:
-    """Return what `data` says, or None if it is in no known form."""
+    """Return the submessage in `data`, or None if its format is unknown."""
     if len(data) < HEADER.size:
         return None
     version, kind, _, writer, reader, first, last = HEADER.unpack_from(data)
