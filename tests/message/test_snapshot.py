@@ -252,7 +252,7 @@ def test_float_arrays_take_ints_and_keep_nan_and_infinity() -> None:
 
 
 def test_an_empty_array_of_any_dtype_fits() -> None:
-    """`np.array([])` is of float64, and nobody means that."""
+    """`np.array([])` is of float64, which is never intended."""
     assert snapshot(Int32MultiArray(data=np.array([]))).data.dtype == np.int32
     assert snapshot(Image(data=np.array([]))).data == b""
 
