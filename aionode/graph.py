@@ -10,7 +10,7 @@ import asyncio
 import enum
 from collections import defaultdict
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeVar
 
 from aionode import names, qos
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from aionode.qos import QoSProfile
 
-__all__ = ["TOPIC_KINDS", "EndpointInfo", "EndpointKind", "Graph", "NodeInfo"]
+__all__ = ["TOPIC_KINDS", "EndpointInfo", "EndpointKind", "Graph", "Mismatch", "NodeInfo"]
 
 K = TypeVar("K")
 
@@ -70,6 +70,20 @@ class NodeInfo:
         return names.fully_qualified_name(self.namespace, self.name)
 
 
+class Mismatch(NamedTuple):
+    """Why two opposite endpoints of one name do not communicate.
+
+    Attributes:
+        aspect: What differs: the name of the type, its definition, or the QoS.
+        reason: Both values, in words.
+        policy: The last incompatible policy, if the QoS differs.
+    """
+
+    aspect: Literal["type", "definition", "qos"]
+    reason: str
+    policy: qos.QoSPolicyKind = qos.QoSPolicyKind.INVALID
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class EndpointInfo:
     """One publisher, subscription, server or client as the graph knows it.
@@ -102,27 +116,38 @@ class EndpointInfo:
     def __hash__(self) -> int:
         return hash(self.gid)
 
-    def mismatch(self, other: EndpointInfo) -> str | None:
-        """Return why this endpoint does not communicate with its opposite `other`; None if it does.
+    def compare(self, other: EndpointInfo) -> Mismatch | None:
+        """Return the first difference to the opposite endpoint `other`; None if there is none.
 
-        Within one context the QoS rules of DDS apply. Between contexts rmw_zenoh delivers
-        whatever the QoS is, so only the types count (`qos_mismatch` is for diagnosis).
+        A difference in QoS matters within one context, and between contexts over DDS; rmw_zenoh
+        delivers between contexts whatever the QoS is.
         """
         if self.type_name != other.type_name:
-            return f"type: {self.type_name} here, {other.type_name} there"
+            return Mismatch("type", f"type: {self.type_name} here, {other.type_name} there")
         if self.type_hash != other.type_hash:
-            return f"definition of {self.type_name}: {self.type_hash} here, {other.type_hash} there"
-        if self.node.participant == other.node.participant:
-            return self.qos_mismatch(other)
-        return None
+            hashes = f"{self.type_hash} here, {other.type_hash} there"
+            return Mismatch("definition", f"definition of {self.type_name}: {hashes}")
+        if self.kind not in TOPIC_KINDS:
+            return None  # services neither offer nor request QoS
+        is_publisher = self.kind is EndpointKind.PUBLISHER
+        publisher, subscription = (self, other) if is_publisher else (other, self)
+        reason = qos.mismatch(publisher.qos, subscription.qos)
+        if reason is None:
+            return None
+        last = qos.incompatibilities(publisher.qos, subscription.qos)[-1]
+        return Mismatch("qos", reason, last.kind)
 
-    def qos_mismatch(self, other: EndpointInfo) -> str | None:
-        """Return why the QoS a publisher offers does not meet a subscription's; None if it does."""
-        if self.kind is EndpointKind.PUBLISHER:
-            return qos.mismatch(self.qos, other.qos)
-        if self.kind is EndpointKind.SUBSCRIPTION:
-            return qos.mismatch(other.qos, self.qos)
-        return None  # services have no offer and request
+    def mismatch(self, other: EndpointInfo) -> str | None:
+        """Return why this endpoint and its opposite `other` do not communicate; None if they do.
+
+        Between contexts only the types count: rmw_zenoh delivers whatever the QoS is.
+        """
+        found = self.compare(other)
+        if found is None or (
+            found.aspect == "qos" and self.node.participant != other.node.participant
+        ):
+            return None
+        return found.reason
 
     def matches(self, other: EndpointInfo) -> bool:
         """Whether this endpoint communicates with its opposite `other`."""

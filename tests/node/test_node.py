@@ -439,3 +439,22 @@ def test_numpy_is_there_before_a_callback_needs_it(module: str, *, loaded: bool)
         f"assert ('numpy' in sys.modules) is {loaded}\n"
     )
     subprocess.run([sys.executable, "-c", program], check=True)  # the text is here
+
+
+def test_a_node_whose_own_constructor_fails_leaves_its_context() -> None:
+    """A supervisor makes the next one: the failed ones must not pile up in the graph."""
+
+    class Robot(Node):
+        def __init__(self, context: Context) -> None:
+            super().__init__("robot", context=context)
+            self.create_publisher(String, "/chatter", 10)
+            raise OSError("no motor")
+
+    context = local_context()
+
+    with pytest.raises(OSError, match="no motor"):
+        Robot(context)
+
+    assert context.graph.nodes() == []
+    assert context.graph.endpoints() == []
+    assert repr(context).endswith("nodes=0>")

@@ -22,7 +22,7 @@ def test_what_was_packed_is_unpacked(
 
 @given(st.binary(max_size=120))
 def test_anything_else_is_none(data: bytes) -> None:
-    """Anybody may put anything on a key."""
+    """Any program may publish anything on a key."""
     said = unpack(data)
     assert said is None or pack(*said)[4:] == data[4:]
 

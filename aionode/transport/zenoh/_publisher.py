@@ -57,15 +57,13 @@ __all__ = ["ZenohWriter"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
-# Sending
-
 
 class ZenohWriter(Declaration, Writer):
-    """A publisher as the subscriptions of others see it.
+    """A publisher for the subscriptions of other contexts.
 
-    A message leaves in one of three ways, each with a queue of its own in Zenoh: from the loop,
-    which never waits; from the thread for large ones; or, for readers that do not acknowledge and
-    must not lose it, from a thread of this publisher that waits for them.
+    A message is sent in one of three ways, each with a priority and so a queue of its own in Zenoh:
+    by the event loop, which never waits; by the thread for large messages; or, for readers that do
+    not acknowledge and must not lose it, by a thread of this publisher that waits for them.
     """
 
     def __init__(self, state: SessionState, endpoint: EndpointInfo, msg_type: type[Any]) -> None:
@@ -74,7 +72,8 @@ class ZenohWriter(Declaration, Writer):
         qos = endpoint.qos
         self._key = data_key(state.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
         self._msg_type = msg_type
-        # Making a codec takes a while: not before it is needed, and not within a callback.
+        # None until it is needed, as it takes a while to make; `_update` does that, so that no
+        # callback has to.
         self._encode: Callable[[Any], bytes] | None = None
         self._publisher: zenoh.Publisher | ext.AdvancedPublisher | None = None
         self._matching: zenoh.MatchingListener[None] | None = None
@@ -88,21 +87,22 @@ class ZenohWriter(Declaration, Writer):
         self._transient = is_transient(qos)
         self._depth = depth_of(qos)
         self._reliable = is_reliable(qos)
-        # What a publisher keeps for late readers before the session is open.
+        # Messages for late readers that were published before the session is open.
         self._early: deque[tuple[bytes, bytes]] = deque(maxlen=self._depth)
         self.active = self._transient
         self.bounded = qos.history is HistoryPolicy.KEEP_ALL and self._reliable
-        # Who keeps messages for late readers leaves it to Zenoh to send them again.
+        # A transient local publisher has none: there Zenoh sends lost messages again.
         self._history: WriterHistory | None = None
         if self._reliable and not self._transient:
             self._history = WriterHistory(
                 self._depth, keep_all=self.bounded, side=self, now_ns=perf_ns
             )
             state.acknowledgements.writers[self.gid] = self
-        # Large messages, and small ones behind them so that the order stays.
+        # Large messages, and small ones after them to keep the order.
         self._large = self._send_queue(state.bulk, keep_all=False)
         self._bulk_only = self._transient and not self.bounded and has_buffers(msg_type)
-        # What waits for readers that do not acknowledge; once begun it stays so, for the order.
+        # Messages for readers that do not acknowledge, once it was needed; from then on it is used
+        # for all messages, to keep the order.
         self._patient: SendQueue | None = None
         self._patient_sender = SendThread("aionode-patient", state.waker)
         self._patient_publisher: zenoh.Publisher | None = None
@@ -110,7 +110,7 @@ class ZenohWriter(Declaration, Writer):
         self._dropped = 0
         self._given_up = state.queue(self.lost)
         self._closed = False
-        self._ends_ns = 0  # when a publisher that lingers gives up
+        self._ends_ns = 0  # when a lingering publisher gives up
         self._moved: tuple[int, ...] = ()
         self._moved_ns = 0
         self._update_route()
@@ -164,13 +164,13 @@ class ZenohWriter(Declaration, Writer):
         self._update()
 
     def undeclare_data(self) -> None:
-        """Withdraw the publisher, as soon as what was published is sent or given up."""
+        """Undeclare the publisher as soon as its messages are acknowledged or given up."""
         self.linger()
         if self not in self.state.lingering or self.state.session is None:
             self.finish()
 
     def linger(self) -> None:
-        """Give what was published some time to arrive."""
+        """Wait a while for acknowledgements before the publisher is undeclared."""
         if self.is_done() or self in self.state.lingering or self._publisher is None:
             return
         now_ns = perf_ns()
@@ -181,7 +181,7 @@ class ZenohWriter(Declaration, Writer):
         self._watch()
 
     def is_done(self) -> bool:
-        """Whether nothing is left to send, or to be acknowledged."""
+        """Return whether all messages were sent and acknowledged."""
         return (
             (self._history is None or self._history.done)
             and not len(self._large)
@@ -189,7 +189,7 @@ class ZenohWriter(Declaration, Writer):
         )
 
     def finish(self) -> None:
-        """Withdraw the publisher, and count what was not sent."""
+        """Undeclare the publisher, and count the messages that were not delivered."""
         self.state.has_lingered(self)
         if self._history is not None and (missing := self._history.give_up()):
             self.lost(missing)
@@ -206,7 +206,7 @@ class ZenohWriter(Declaration, Writer):
             self._forget()
 
     def _withdraw(self) -> None:
-        """Undeclare: Zenoh's objects are used by one at a time, and a thread may be inside."""
+        """Undeclare, in the thread that may be using the publisher: Zenoh locks it meanwhile."""
         publisher, self._publisher = self._publisher, None
         patient, self._patient_publisher = self._patient_publisher, None
         if self._patient is not None:
@@ -226,13 +226,13 @@ class ZenohWriter(Declaration, Writer):
         else:
             withdraw(publisher)
 
-    # Who listens
+    # Readers
 
     def _update_with(self, _: zenoh.MatchingStatus) -> None:
         self._update()
 
     def _update(self) -> None:
-        """Find out whether anybody listens, and who of them acknowledges."""
+        """Update `active` and the history from the matching readers."""
         publisher, history, graph = self._publisher, self._history, self.state.graph
         if self._transient:
             if self._encode is None:
@@ -243,9 +243,9 @@ class ZenohWriter(Declaration, Writer):
         )
         if history is not None and graph is not None and publisher is not None:
             acknowledging, others = self._matched(graph)
-            # The token of a reader can come before Zenoh knows the way there: what is lost until
-            # then is sent again. Somebody without a token may listen too; beside readers that
-            # acknowledge, nothing is known of them.
+            # The token of a reader can arrive before Zenoh has a route to it; what is lost until
+            # then is sent again. A subscriber without a token may match too; beside readers that
+            # acknowledge, nothing is known of it.
             self.active = self.active or bool(acknowledging)
             history.has_other_readers = others or not acknowledging
             self._update_route()
@@ -266,7 +266,7 @@ class ZenohWriter(Declaration, Writer):
         self._progress()
 
     def _matched(self, graph: Graph) -> tuple[dict[bytes, str], bool]:
-        """Return the readers that acknowledge, and whether others must not lose messages."""
+        """Return the acknowledging readers, and whether others must not lose messages."""
         able = self.state.acknowledgements.participants
         acknowledging: dict[bytes, str] = {}
         others = False
@@ -376,7 +376,7 @@ class ZenohWriter(Declaration, Writer):
     def _send_patiently(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
     ) -> None:
-        """Send in the thread; Zenoh gives up after a while, and says so to nobody."""
+        """Send in the thread. Zenoh gives up after a while without an error, so time tells."""
         began_ns = perf_ns()
         try:
             publisher.put(payload, attachment=extra)
@@ -388,7 +388,7 @@ class ZenohWriter(Declaration, Writer):
     def _send(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
     ) -> None:
-        """Send from a thread, where nobody can be told that the session was closed meanwhile."""
+        """Send from a thread. No caller waits, so an error, after the session closed, is logged."""
         session = self.state.session
         try:
             if session is None or self._transient:
@@ -407,7 +407,7 @@ class ZenohWriter(Declaration, Writer):
             logger.debug("%s: not sent: %s", self._key, reason(error))
 
     def has_room(self) -> bool:
-        """Whether one more message can wait to be sent."""
+        """Return whether one more message can wait to be sent."""
         if not self.bounded:
             return True
         return (self._history is None or self._history.has_room()) and (
@@ -415,7 +415,7 @@ class ZenohWriter(Declaration, Writer):
         )
 
     async def drain(self) -> None:
-        """Wait until there is room, and everything was handed to Zenoh."""
+        """Wait until there is room and all messages were handed to Zenoh."""
         while self._history is not None and (self._history.unsent or not self.has_room()):
             waiter = asyncio.get_running_loop().create_future()
             self._drained.append(waiter)
@@ -426,7 +426,7 @@ class ZenohWriter(Declaration, Writer):
         await self._large.drain()
 
     def _progress(self) -> None:
-        """Let those go on who wait for it."""
+        """Wake `drain` if there is room now."""
         history = self._history
         if self._drained and (history is None or not (history.unsent or not history.has_room())):
             self._wake()
@@ -499,7 +499,7 @@ class ZenohWriter(Declaration, Writer):
             self.state.bulk.submit(partial(send, reader.participant, data, BULK_PRIORITY))
 
     def lost(self, count: int) -> None:
-        """Count dropped messages, and say so the first time."""
+        """Count dropped messages; the first are logged."""
         if not self._dropped:
             logger.warning(
                 "%s: %d of the messages published here were dropped before every reader had them: "
@@ -516,15 +516,15 @@ class ZenohWriter(Declaration, Writer):
 
     @property
     def dropped(self) -> int:
-        """How many messages were dropped on their way, as far as that can be known."""
+        """How many messages are known to have been dropped on the way."""
         return self._dropped
 
     def route_of(self, reader: EndpointInfo) -> str | None:
-        """Return ``zenoh`` for the subscriptions of others."""
+        """Return ``zenoh`` for subscriptions of other contexts."""
         return "zenoh" if reader.node.participant != self.state.participant else None
 
     def close(self) -> None:
-        """Withdraw the publisher for good; what was published has some time to arrive."""
+        """Undeclare the publisher for good, after it has lingered."""
         self._closed = True
         super().close()
         self._transient = False
@@ -543,7 +543,7 @@ class ZenohWriter(Declaration, Writer):
 
 
 def withdraw(publisher: zenoh.Publisher | ext.AdvancedPublisher) -> None:
-    """Undeclare a publisher, which an end of its session may have done already."""
+    """Undeclare a publisher, unless its session has been closed already."""
     try:
         publisher.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
     except zenoh.ZError as error:

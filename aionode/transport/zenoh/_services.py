@@ -155,7 +155,7 @@ class ZenohServer(Declaration):
             self.answer(query, sample_info, lambda: query.reply_err(problem), len(problem))
         else:
             if abs(self.state.now_ns() - sample_info.source_ns) < FRESH_NS:
-                self.state.peers.heard(self.participant_of(sample_info.gid))
+                self.state.peer_senders.heard(self.participant_of(sample_info.gid))
             self._serve(
                 ZenohRequest(message, sample_info, query, self), self.state.waker.inline_deadline_ns
             )
@@ -188,7 +188,7 @@ class ZenohServer(Declaration):
         size_bytes: int,
     ) -> None:
         """End `query`, without waiting for a client that hangs."""
-        self.state.peers.send(
+        self.state.peer_senders.send(
             (self.participant_of(sample_info.gid),), size_bytes, lambda: answer(query, reply)
         )
 
@@ -347,7 +347,7 @@ class ZenohCall:
         """Send the request without waiting for a server that hangs; on the loop."""
         self._send_again = partial(self.send, session, payload, extra, timeout_s)
         requester = self._requester
-        requester.state.peers.send(
+        requester.state.peer_senders.send(
             requester.participants(),
             len(payload),
             partial(self._get, session, payload, extra, timeout_s),
@@ -390,7 +390,7 @@ class ZenohCall:
             return
         servers = self._requester.participants()
         if len(servers) == 1:  # else it is not known which of them lives
-            self._requester.state.peers.heard(servers.pop())
+            self._requester.state.peer_senders.heard(servers.pop())
         sample = reply.ok
         if sample is None:
             error = reply.err

@@ -38,18 +38,19 @@ __all__ = ["UNKNOWN_GID", "ZenohReader", "sample_info_of"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 BACKLOG = 10_000
-"""How many small messages wait for the loop at least, before the oldest are dropped."""
+"""At least so many small messages wait for the loop before the oldest are dropped."""
 
 KEEP_ALL_ARRIVING = 100_000
-"""How many messages for a KEEP_ALL subscription wait for the loop, if it hangs."""
+"""How many messages for a KEEP_ALL subscription wait for a loop that is stalled."""
 
 FULL_BYTES = 256 << 20
-"""How much waits for room in a KEEP_ALL subscription of what cannot be held back."""
+"""How much waits for room in a KEEP_ALL subscription from publishers without flow control."""
 
 SPAN = 1_000
-"""How many small messages a KEEP_LAST subscription waits for at least that were lost on the way."""
+"""At least so many small messages a KEEP_LAST subscription holds while earlier ones are missing."""
 
 REMEMBERED_WRITERS = 1_024
+"""How many publishers a subscription remembers the state of."""
 
 GONE_TICKS = 300
 """After so many ticks, 15 s, the messages of a publisher that is not in the graph will not come.
@@ -62,7 +63,7 @@ UNKNOWN_GID = bytes(16)
 
 
 class ZenohReader(Declaration):
-    """A subscription as the publishers of others see it."""
+    """A subscription to the publishers of other contexts."""
 
     def __init__(
         self, state: SessionState, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
@@ -71,7 +72,7 @@ class ZenohReader(Declaration):
         transient = is_transient(endpoint.qos)
         self._second_key = self._buffers and not transient
         backends = CPU_BACKEND if self._second_key else ""
-        # Without a hash it takes every definition of the type, which ROS has no token for.
+        # Without a hash it matches every definition of the type; ROS has no token for that.
         visible = bool(endpoint.type_hash)
         super().__init__(
             state, endpoint_token(state.domain_id, endpoint, backends) if visible else ""
@@ -91,13 +92,14 @@ class ZenohReader(Declaration):
         # A few hundred images waiting for a busy loop would take all memory; what is small may
         # wait for its turn in the subscription's own queue, where it is counted if dropped.
         limit = depth if self._buffers else max(depth, BACKLOG)
-        # Who acknowledges sends no more than a window ahead, and sends again what is dropped here.
+        # A publisher that gets acknowledgements sends at most a window ahead, and sends again what
+        # is dropped here.
         self._queue = state.queue(self._take, KEEP_ALL_ARRIVING if self._keep_all else limit)
         self._span = NEVER if self._keep_all else depth if self._buffers else max(depth, SPAN)
         self._proxies: dict[bytes, WriterProxy] = {}
-        # The last numbers of those who do not acknowledge, or have not begun to.
+        # The last sequence number of each publisher without a proxy.
         self._last: dict[bytes, int] = {}
-        # What a KEEP_ALL subscription has no room for yet.
+        # Messages for which a KEEP_ALL subscription has no room yet.
         self._full: deque[tuple[bytes, SampleInfo, WriterProxy | None]] = deque()
         self._full_bytes = 0
         self._waits_for_room = False
@@ -109,7 +111,7 @@ class ZenohReader(Declaration):
         state.add(self)
 
     def declare_data(self, session: zenoh.Session) -> None:
-        """Declare the subscriber; a transient local one is given the history."""
+        """Declare the subscriber; a transient local one gets the history."""
         put = self._queue.put
         if self._transient:
             reliable = is_reliable(self.endpoint.qos)
@@ -134,7 +136,7 @@ class ZenohReader(Declaration):
             )
 
     def undeclare_data(self) -> None:
-        """Withdraw the subscriber."""
+        """Undeclare the subscriber."""
         subscribers, self._subscribers = self._subscribers, []
         for subscriber in subscribers:
             subscriber.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
@@ -143,7 +145,7 @@ class ZenohReader(Declaration):
         self._proxies.clear()
 
     def close(self) -> None:
-        """Withdraw the subscription for good."""
+        """Undeclare the subscription for good."""
         self.state.acknowledgements.readers.pop(self.gid, None)
         super().close()
 
@@ -185,7 +187,7 @@ class ZenohReader(Declaration):
         return 0, 0, UNKNOWN_GID
 
     def _note_last(self, gid: bytes, sequence: int) -> None:
-        """Note the last message of a publisher that does not acknowledge, or not yet."""
+        """Record the last message of a publisher without a proxy."""
         last = self._last
         if gid not in last and len(last) >= REMEMBERED_WRITERS:
             del last[next(iter(last))]
@@ -200,7 +202,7 @@ class ZenohReader(Declaration):
             self.state.acknowledgements.watch(self)
 
     def accept(self, item: tuple[bytes, SampleInfo], proxy: WriterProxy) -> bool:
-        """Take the next message of a writer; return whether it is used already."""
+        """Take the next message of a writer; return whether it is used, or else waits for room."""
         if self._keep_all:
             return self._accept_or_wait(*item, proxy)
         self._hand_over(*item)
@@ -209,12 +211,12 @@ class ZenohReader(Declaration):
     def _accept_or_wait(
         self, payload: bytes, sample_info: SampleInfo, proxy: WriterProxy | None
     ) -> bool:
-        """Give a message to a KEEP_ALL subscription as soon as it has room."""
+        """Deliver a message to a KEEP_ALL subscription as soon as it has room."""
         if self._has_room():
             self._hand_over(payload, sample_info)
             return True
         if proxy is None and self._full_bytes >= FULL_BYTES:
-            self._refuse()  # who sent it cannot be held back
+            self._refuse()  # its publisher has no flow control
             return True
         self._full.append((payload, sample_info, proxy))
         self._full_bytes += len(payload) + OVERHEAD_BYTES
@@ -336,7 +338,7 @@ class ZenohReader(Declaration):
 
 
 def sample_info_of(extra: zenoh.ZBytes | None) -> SampleInfo | None:
-    """Return what an attachment says, or None when there is none in a known form."""
+    """Return the contents of an attachment; None without one in a known form."""
     if extra is None:
         return None
     fields = unpack_fields(extra.to_bytes())

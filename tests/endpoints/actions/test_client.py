@@ -497,7 +497,7 @@ async def test_several_who_await_a_goal_send_one_request(ends: Ends) -> None:
 
 
 async def test_cancelling_a_shielded_wait_leaves_the_goal_alone(ends: Ends) -> None:
-    """Who only looks on says so."""
+    """For observers of a goal that must not influence it."""
     sent, goal = await begin(ends)
     result = beside(sent.result())
     waiting = beside(asyncio.wait_for(asyncio.shield(result), 10))
@@ -653,12 +653,12 @@ async def test_a_forgotten_goal_is_unknown(ends: Ends) -> None:
 
 
 async def test_a_destroyed_client_cancels_its_waits_and_what_they_wait_for(ends: Ends) -> None:
-    """Nothing of the client is left, and no goal goes on that somebody still awaited."""
+    """Nothing of the client is left, and goals that tasks awaited are cancelled."""
     sent, goal = await begin(ends)
     call = ends.client.call(Fibonacci.Goal())
     waiting = [beside(each) for each in (sent.result(), anext(sent), call)]
     called = await ends.worker.begun.get()
-    other: Client = ends.asking.create_action_client(Fibonacci, "nobody")
+    other: Client = ends.asking.create_action_client(Fibonacci, "unserved")
     waiting.append(beside(other.wait_for_server()))
     await checkpoint()  # lets them begin
     before = len(ends.asking._entities)
@@ -813,7 +813,7 @@ async def test_a_server_that_goes_before_it_was_found_whole_loses_the_goal(ends:
 
 
 async def test_cancelling_a_goal_whose_server_has_gone_is_an_error_at_once(ends: Ends) -> None:
-    """A request to nobody would wait for ever."""
+    """A request without a server would wait for ever."""
     sent, _ = await begin(ends)
     ends.server.destroy()
     await gone(ends)

@@ -136,7 +136,7 @@ GOALS = [
         pytest.param(ALL_GOALS, 200, [ONE, TWO], id="up to a time, which counts itself"),
         pytest.param(ALL_GOALS, 99, [], id="up to a time before all"),
         pytest.param(THREE, 100, [ONE, THREE], id="up to a time, and one"),
-        pytest.param(bytes(15) + b"\x01", 200, [ONE, TWO], id="up to a time, and a stranger"),
+        pytest.param(bytes(15) + b"\x01", 200, [ONE, TWO], id="up to a time, and an unknown goal"),
     ],
 )
 def test_a_request_means_these_goals(goal_id: bytes, stamp_ns: int, meant: list[bytes]) -> None:

@@ -96,7 +96,7 @@ def run(steps: list[tuple[str, int, Any]], *, concurrent: bool | int) -> None:
 def test_no_sequence_of_requests_ends_the_node(
     steps: list[tuple[str, int, Any]], *, concurrent: bool | int
 ) -> None:
-    """Anybody in the network may send them."""
+    """Any process in the network may send them."""
     run(steps, concurrent=concurrent)
 
 

@@ -1,4 +1,4 @@
-"""A goal that nobody awaits any more is cancelled, however its task was cancelled."""
+"""A goal whose awaiting task is cancelled is cancelled itself, however that happens."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ async def by_a_task_group(wait: Wait, ends: Ends) -> None:
 
 
 async def cancelled_twice(wait: Wait, ends: Ends) -> None:
-    """By somebody impatient."""
+    """Twice in a row, as with two Ctrl-C."""
     task = beside(wait(ends.client))
     await ends.worker.has_begun.wait()
     task.cancel()
@@ -176,7 +176,7 @@ CANCELS = [
 async def test_a_goal_ends_however_its_task_is_cancelled(
     ends: Ends, wait: Wait, cancel: Callable[[Wait, Ends], Coroutine[Any, Any, None]]
 ) -> None:
-    """A robot that nobody waits for must not drive on."""
+    """A robot must not drive on when the program that sent it has given up."""
     await cancel(wait, ends)
 
     await expect_canceled(await ends.worker.begun.get())
@@ -215,7 +215,7 @@ async def test_a_browser_that_leaves_a_stream_of_feedback_ends_the_goal(ends: En
 
 
 async def test_a_browser_that_leaves_while_it_reads_ends_a_goal_in_a_block(ends: Ends) -> None:
-    """Then nobody awaits the goal: the stream is closed where it yields.
+    """Then no task awaits the goal: the stream is closed where it yields.
 
     By Python's garbage collector, since Starlette leaves a cancelled stream to that.
     """
@@ -330,8 +330,8 @@ async def test_a_goal_that_another_server_accepts_after_its_cancellation_is_canc
 
 
 async def test_a_goal_without_a_server_leaves_nothing_behind(ends: Ends) -> None:
-    """It was sent to nobody, so there is nothing to cancel."""
-    client: Client = ends.asking.create_action_client(Fibonacci, "nobody")
+    """It was sent to no server, so there is nothing to cancel."""
+    client: Client = ends.asking.create_action_client(Fibonacci, "unserved")
     with anyio.move_on_after(0.01):
         await client.call(Fibonacci.Goal())
 

@@ -53,7 +53,7 @@ def send(node: Node, count: int = 1) -> None:
 async def test_on_error_log_goes_on_and_shows_the_traceback(
     node: Node, capfd: pytest.CaptureFixture[str], kind: str
 ) -> None:
-    """One bad message does not end a node that says so."""
+    """One bad message does not end the node."""
     heard: list[int] = []
 
     def sync(msg: Int32) -> None:
@@ -110,7 +110,7 @@ async def test_an_error_function_may_end_the_node(context: Context) -> None:
 async def test_a_cancelled_wait_inside_a_callback_is_an_error_of_the_callback(
     node: Node,
 ) -> None:
-    """A task that ends by a foreign cancellation would silence its subscription for ever."""
+    """A task ended by the cancellation of another would silence its subscription for ever."""
     heard: list[int] = []
     seen: list[Exception] = []
 
@@ -162,7 +162,7 @@ async def test_a_function_that_returns_a_coroutine_is_awaited(node: Node) -> Non
 
 
 @pytest.mark.parametrize(("concurrent", "at_once"), [(False, 1), (2, 2), (True, 5)])
-async def test_so_many_callbacks_run_at_once(
+async def test_at_most_the_given_number_of_callbacks_runs_at_once(
     node: Node, *, concurrent: bool | int, at_once: int
 ) -> None:
     """The others wait in the queue, bounded and in order."""
@@ -315,7 +315,7 @@ def test_an_empty_distribution_is_zero() -> None:
 async def test_a_full_queue_lets_others_run_in_between(
     node: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A callback that is always ready does not keep the loop for itself."""
+    """A callback that is always ready does not occupy the loop."""
     monkeypatch.setattr(callback_runner, "SLICE_NS", 0)
     order: list[str] = []
     listen(node, lambda msg: order.append("topic"))

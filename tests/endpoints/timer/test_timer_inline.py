@@ -153,7 +153,7 @@ async def test_an_error_ends_the_node_of_the_timer() -> None:
 
 @pytest.mark.parametrize("action", ["cancel", "destroy", "reset", "cancel and fail"])
 async def test_a_sync_callback_may_end_its_own_timer(node: Node, action: str) -> None:
-    """Every one-shot timer does; the alarm that called it must not set what was set already."""
+    """Every one-shot timer does; the alarm must not set a future that is done."""
     problems: list[dict[str, Any]] = []
     asyncio.get_running_loop().set_exception_handler(lambda _, about: problems.append(about))
     calls: list[int] = []
