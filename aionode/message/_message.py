@@ -52,7 +52,7 @@ class MessageMeta(msgspec.StructMeta):
             namespace["__ros_type__"] = checked_type_name(typename)
         own: list[Field] = []
         known: list[Constant] = []
-        for key, annotation in annotations_of(namespace, sys._getframe(1)).items():  # noqa: SLF001 (names of the class statement's scope)
+        for key, annotation in annotations_of(namespace, sys._getframe(1)).items():
             if get_origin(annotation) is ClassVar:
                 if not key.startswith("__"):
                     (inner,) = get_args(annotation)

@@ -242,6 +242,17 @@ class QoSProfile:
     A profile may be changed, and each value is checked when it is set. An entity takes a copy
     when it is made, so later changes do not reach it. Do not change one that is a key of a dict.
 
+    Attributes:
+        history: Whether the newest `depth` messages are kept, or all.
+        depth: How many messages are kept with KEEP_LAST.
+        reliability: Whether lost messages are sent again.
+        durability: Whether late subscriptions get the messages that are kept.
+        lifespan: How long a message is valid.
+        deadline: The longest time between two messages.
+        liveliness: How a publisher shows that it is alive.
+        liveliness_lease_duration: The longest time between two such signs.
+        avoid_ros_namespace_conventions: Whether topic names get no prefix over DDS.
+
     Raises:
         InvalidQoSProfileException: Neither history nor depth is given, KEEP_LAST comes without a
             depth, or a value is out of range.

@@ -350,8 +350,8 @@ async def test_a_request_that_does_not_fit_is_an_error(node: Node, *, served: bo
 @pytest.mark.parametrize(
     ("arguments", "error", "text"),
     [
-        ((String, "add", add), TypeError, "is no service class"),
-        ((AddTwoInts.Request, "add", add), TypeError, "is no service class"),
+        ((String, "add", add), TypeError, "is not a service class"),
+        ((AddTwoInts.Request, "add", add), TypeError, "is not a service class"),
         ((AddTwoInts, "1add", add), InvalidServiceNameException, "must not start with a number"),
         ((AddTwoInts, "add", None), TypeError, "None cannot be called"),
         ((AddTwoInts, "add", lambda: None), CallbackSignatureError, "must take (request, resp"),
@@ -431,7 +431,7 @@ async def test_destroying_a_client_cancels_its_calls(node: Node) -> None:
     client.destroy()
     with pytest.raises(asyncio.CancelledError):
         await call
-    with pytest.raises(RuntimeError, match="client of /add: destroyed"):
+    with pytest.raises(RuntimeError, match="client of /add is destroyed"):
         await client.call(Request())
 
 

@@ -24,8 +24,8 @@ from aionode.context import Context
 from aionode.interfaces.std_msgs.msg import Int32, UInt8MultiArray
 from aionode.node import Node
 from aionode.transport.ipc._connection import Connection
-from aionode.transport.ipc._protocol import Route
 from aionode.transport.ipc._publisher import IpcWriter
+from aionode.transport.ipc._subscription import Route
 from aionode.transport.ipc._transport import IpcTransport
 from tests.processes.ipc_member import STREAMED_BYTES
 from tests.support.peers import isolated_environment, quiet_node
@@ -167,7 +167,7 @@ class Stream:
     async def until_linked(self) -> None:
         """Go on until the arrays come over the link."""
         while not any(
-            remote_publisher.handover.route is Route.IPC
+            remote_publisher.route is Route.IPC
             for reader in self.node.context.transports[1].manager.readers.values()
             for remote_publisher in reader.remote_publishers.values()
         ):

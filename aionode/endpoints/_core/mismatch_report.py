@@ -1,4 +1,4 @@
-"""Saying once, and with the reason, that two endpoints of one name do not talk."""
+"""Warning once, and with the reason, that two endpoints of one name cannot communicate."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ __all__ = ["MismatchReport"]
 
 
 class MismatchReport:
-    """Compares each endpoint that appears with those of this context that it should talk to.
+    """Compares each endpoint that appears with its counterparts in this context.
 
-    A pair of this context is reported when the second of the two appears, so each pair once.
+    A pair within this context is reported when the second of the two appears, so only once.
     """
 
     def __init__(self, graph: Graph, participant: str) -> None:
@@ -27,7 +27,7 @@ class MismatchReport:
         graph.on_endpoint(self.examine)
 
     def examine(self, new: EndpointInfo) -> None:
-        """Report every mismatch that `new` brings."""
+        """Log every mismatch between `new` and the endpoints of its name."""
         for known in self._graph.endpoints(new.kind.opposite, name=new.name):
             own, other = (known, new) if self._is_own(known) else (new, known)
             if not self._is_own(own):
@@ -41,7 +41,7 @@ class MismatchReport:
 
 
 def mismatch_text(own: EndpointInfo, other: EndpointInfo) -> str | None:
-    """Return why `own` and `other` do not talk, and what would help; None if they talk."""
+    """Return why `own` and `other` cannot communicate, and what to change; None if they can."""
     where = f"{'topic' if own.kind in TOPIC_KINDS else 'service'} '{own.name}'"
     peer = f"{other.kind.value} of node {other.node.fully_qualified_name}"
     if own.type_name != other.type_name:

@@ -40,7 +40,7 @@ from aionode.transport.zenoh._session_state import Declaration
 from aionode.wire import _acknack as acknack
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
-from aionode.wire._acknack import Kind
+from aionode.wire._acknack import SubmessageKind
 from aionode.wire._key_expression import data_key
 from aionode.wire._liveliness import endpoint_token
 
@@ -79,6 +79,12 @@ class ZenohWriter(Declaration, Writer):
         self._publisher: zenoh.Publisher | ext.AdvancedPublisher | None = None
         self._matching: zenoh.MatchingListener[None] | None = None
         self._matching_changed = state.queue(self._update_with, limit=1)
+        # Whether a small message may be put at once, see `_update_route`.
+        self._is_direct = True
+        # Whether a message has been put into `_large` since that was last seen empty.
+        self._is_large_used = False
+        # Whether `tick` is being called.
+        self._is_watched = False
         self._transient = is_transient(qos)
         self._depth = depth_of(qos)
         self._reliable = is_reliable(qos)
@@ -107,6 +113,7 @@ class ZenohWriter(Declaration, Writer):
         self._ends_ns = 0  # when a publisher that lingers gives up
         self._moved: tuple[int, ...] = ()
         self._moved_ns = 0
+        self._update_route()
         state.own_gids.add(self.gid)
         state.on_reader.setdefault(endpoint.name, []).append(self._update)
         state.add(self)
@@ -116,7 +123,8 @@ class ZenohWriter(Declaration, Writer):
         return send_thread.send_queue(self._depth, keep_all=keep_all, lost=lost)
 
     def declare_data(self, session: zenoh.Session) -> None:
-        """Declare the publisher, and send what was kept."""
+        """Declare the publisher, and send what was published before."""
+        self._is_watched = False
         reliable = self._reliable
         reliability = zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT
         if self._transient:
@@ -141,7 +149,7 @@ class ZenohWriter(Declaration, Writer):
                 else None,
             )
             while self._early:
-                self._put(*self._early.popleft())
+                self.put(*self._early.popleft())
         else:
             self._publisher = session.declare_publisher(
                 self._key,
@@ -170,7 +178,7 @@ class ZenohWriter(Declaration, Writer):
         self._moved_ns = now_ns
         self._moved = ()
         self.state.lingering[self] = None
-        self.state.acknowledgements.watch(self)
+        self._watch()
 
     def is_done(self) -> bool:
         """Whether nothing is left to send, or to be acknowledged."""
@@ -203,6 +211,7 @@ class ZenohWriter(Declaration, Writer):
         patient, self._patient_publisher = self._patient_publisher, None
         if self._patient is not None:
             self._patient = None
+            self._update_route()
             if patient is not None:
                 self._patient_sender.submit(partial(withdraw, patient))
             elif publisher is not None:  # it is the thread's own
@@ -238,20 +247,21 @@ class ZenohWriter(Declaration, Writer):
             # then is sent again. Somebody without a token may listen too; beside readers that
             # acknowledge, nothing is known of them.
             self.active = self.active or bool(acknowledging)
-            history.others = others or not acknowledging
-            self._note_readers(history, acknowledging)
+            history.has_other_readers = others or not acknowledging
+            self._update_route()
+            self._update_readers(history, acknowledging)
         if self.active and self._encode is None:
             self._encode = cdr.encoder(self._msg_type)
 
-    def _note_readers(self, history: WriterHistory, acknowledging: dict[bytes, str]) -> None:
-        """Let the history know who has come and gone."""
+    def _update_readers(self, history: WriterHistory, acknowledging: dict[bytes, str]) -> None:
+        """Add new and returned readers to the history, and remove those that have vanished."""
         for gid, known in list(history.readers.items()):
-            if gid not in acknowledging and not known.away_ns:
+            if gid not in acknowledging and not known.away_until_ns:
                 history.remove(gid)
         if not self._closed:
             for gid, participant in acknowledging.items():
                 reader = history.readers.get(gid)
-                if reader is None or reader.away_ns:
+                if reader is None or reader.away_until_ns:
                     history.add(gid, participant)
         self._progress()
 
@@ -287,42 +297,62 @@ class ZenohWriter(Declaration, Writer):
             if self._transient:
                 self._early.append((payload, extra))
         elif history is None:
-            self._put(payload, extra)
+            self.put(payload, extra)
         else:
             history.write(sample_info.sequence, payload, extra)
-            if history.entries:
-                self.state.acknowledgements.watch(self)
+            if not self._is_watched and history.entries:
+                self._watch()
+
+    def _watch(self) -> None:
+        self._is_watched = True
+        self.state.acknowledgements.watch(self)
 
     def put(self, payload: bytes, extra: bytes) -> None:
         """Send a message to every reader."""
-        self._put(payload, extra)
-
-    def _put(self, payload: bytes, extra: bytes) -> None:
         publisher = self._publisher
         if publisher is None:
             return
-        history = self._history
-        others = history is None or history.others
+        if len(payload) < BULK_BYTES and self._is_direct and not self._is_large_used:
+            try:
+                publisher.put(payload, attachment=extra)
+            except zenoh.ZError as error:
+                raise TransportError(f"{self._key}: {reason(error)}") from error
+        else:
+            self._put_otherwise(publisher, payload, extra)
+
+    def _put_otherwise(
+        self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
+    ) -> None:
+        """Send a message that is large, or follows a large one, or must not be dropped by Zenoh."""
         size = len(payload)
-        if (
-            self._patient is not None
-            or (others and self.bounded)
-            or (
-                others
-                and self._reliable
-                and not self._transient
-                and size < BULK_BYTES
-                and not self.state.burst.spend(size)
-            )
+        self._is_large_used = bool(len(self._large))
+        may_not_drop = not self._is_direct and self._reliable and not self._bulk_only
+        if self._patient is not None or (
+            may_not_drop
+            and (self.bounded or (size < BULK_BYTES and not self.state.burst.spend(size)))
         ):
             self._put_patiently(publisher, payload, extra)
-        elif size >= BULK_BYTES or self._bulk_only or len(self._large):
+        elif size >= BULK_BYTES or self._bulk_only or self._is_large_used:
+            self._is_large_used = True
             self._large.put(lambda: self._send(publisher, payload, extra))
         else:
             try:
                 publisher.put(payload, attachment=extra)
             except zenoh.ZError as error:
                 raise TransportError(f"{self._key}: {reason(error)}") from error
+
+    def _update_route(self) -> None:
+        """Find out whether small messages may be put at once, and dropped by Zenoh if need be.
+
+        Not if a reader may lose none of them and does not acknowledge: then a thread sends them
+        when they are many, and always for KEEP_ALL.
+        """
+        others = self._history is None or self._history.has_other_readers
+        self._is_direct = (
+            self._patient is None
+            and not self._bulk_only
+            and not (others and self._reliable and (self.bounded or not self._transient))
+        )
 
     def _put_patiently(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
@@ -331,6 +361,7 @@ class ZenohWriter(Declaration, Writer):
         if self._patient is None:
             self.state.send_threads.add(self._patient_sender)
             self._patient = self._send_queue(self._patient_sender, keep_all=self.bounded)
+            self._update_route()
             if not self._transient and self.state.session is not None:
                 self._patient_publisher = self.state.session.declare_publisher(
                     self._key,
@@ -388,7 +419,7 @@ class ZenohWriter(Declaration, Writer):
         while self._history is not None and (self._history.unsent or not self.has_room()):
             waiter = asyncio.get_running_loop().create_future()
             self._drained.append(waiter)
-            self.state.acknowledgements.watch(self)
+            self._watch()
             await waiter
         if self._patient is not None:
             await self._patient.drain()
@@ -406,18 +437,22 @@ class ZenohWriter(Declaration, Writer):
             if not waiter.done():
                 waiter.set_result(None)
 
-    # What readers say, and are told
+    # Submessages
 
-    def answer(self, said: Submessage) -> None:
-        """Take an ACKNACK."""
+    def take_acknack(self, submessage: Submessage) -> None:
+        """Handle an ACKNACK of one of its readers."""
         if self._history is not None:
-            self._history.acknack(said.reader, said.first, said.ranges())
+            self._history.acknack(submessage.reader, submessage.first, submessage.ranges())
             self._progress()
             if self in self.state.lingering and self.is_done():
                 self.finish()
 
     def tick(self) -> bool:
-        """Ask readers, and give up in the end; return whether to come again."""
+        """Send heartbeats, and give up in the end; return whether to call again."""
+        self._is_watched = self._tick()
+        return self._is_watched
+
+    def _tick(self) -> bool:
         history = self._history
         again = history is not None and history.tick()
         self._progress()
@@ -438,28 +473,30 @@ class ZenohWriter(Declaration, Writer):
         return again
 
     def heartbeat(self, reader: ReaderProxy, first: int, last: int) -> None:
-        """Tell a reader how far the messages go."""
-        self._say(Kind.HEARTBEAT, reader, first, last, self.state.participant.encode())
+        """Send a reader a HEARTBEAT."""
+        self._send_submessage(
+            SubmessageKind.HEARTBEAT, reader, first, last, self.state.participant.encode()
+        )
 
     def gap(self, reader: ReaderProxy, first: int, last: int) -> None:
-        """Tell a reader that some will not come."""
-        self._say(Kind.GAP, reader, first, last)
+        """Send a reader a GAP."""
+        self._send_submessage(SubmessageKind.GAP, reader, first, last)
 
     def resend(self, reader: ReaderProxy, entry: Entry) -> None:
         """Send a message again to one reader."""
         fields = attachment.unpack_fields(entry.extra)
         source_ns = 0 if fields is None else fields[1]
-        self._say(Kind.DATA, reader, entry.sequence, source_ns, entry.payload)
+        self._send_submessage(SubmessageKind.DATA, reader, entry.sequence, source_ns, entry.payload)
 
-    def _say(
-        self, kind: Kind, reader: ReaderProxy, first: int, last: int, rest: bytes = b""
+    def _send_submessage(
+        self, kind: SubmessageKind, reader: ReaderProxy, first: int, last: int, rest: bytes = b""
     ) -> None:
         data = acknack.pack(kind, self.gid, reader.gid, first, last, rest)
-        say = self.state.acknowledgements.say
+        send = self.state.acknowledgements.send
         if len(data) < BULK_BYTES:
-            say(reader.participant, data)
-        else:  # each of its fragments may wait
-            self.state.bulk.submit(partial(say, reader.participant, data, BULK_PRIORITY))
+            send(reader.participant, data)
+        else:  # Zenoh sends it in fragments, each of which may wait
+            self.state.bulk.submit(partial(send, reader.participant, data, BULK_PRIORITY))
 
     def lost(self, count: int) -> None:
         """Count dropped messages, and say so the first time."""

@@ -16,7 +16,7 @@ from aionode.graph import EndpointKind
 from aionode.transport.base import Request, Requester, SampleInfo
 from aionode.transport.zenoh._handlers import CALL_PRIORITY, direct, translated
 from aionode.transport.zenoh._session_state import Declaration
-from aionode.transport.zenoh._subscription import NOBODY, sample_info_of
+from aionode.transport.zenoh._subscription import UNKNOWN_GID, sample_info_of
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
 from aionode.wire._key_expression import data_key
@@ -143,7 +143,7 @@ class ZenohServer(Declaration):
         if sample_info is None:
             if query.attachment is not None:
                 self.state.note_malformed(self.key, "an attachment")
-            sample_info = SampleInfo(NOBODY, 0, 0, True)
+            sample_info = SampleInfo(UNKNOWN_GID, 0, 0, True)
         payload = query.payload
         try:
             message = cdr.decode(
@@ -215,7 +215,7 @@ class ZenohRequest(Request):
         self._server = server
         self._id = (sample_info.gid, sample_info.sequence)
         # Who sends no attachment has no number either; then the object itself is unique.
-        if self._id in server.unanswered or sample_info.gid == NOBODY:
+        if self._id in server.unanswered or sample_info.gid == UNKNOWN_GID:
             self._id = (sample_info.gid, id(self))
         server.unanswered[self._id] = self
 
@@ -413,7 +413,7 @@ class ZenohCall:
             return
         self._finish()
         reply_to.reply(
-            response, sample_info_of(sample.attachment) or SampleInfo(NOBODY, 0, 0, True)
+            response, sample_info_of(sample.attachment) or SampleInfo(UNKNOWN_GID, 0, 0, True)
         )
 
     def _try_again(self) -> bool:

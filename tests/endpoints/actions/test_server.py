@@ -93,7 +93,7 @@ async def test_a_goal_callback_may_be_a_coroutine(serve: Serve, client: PlainCli
     """It may have to ask somebody else."""
 
     async def decide(_goal: Fibonacci.Goal) -> GoalResponse:
-        await asyncio.sleep(0)  # noqa: TID251  # any wait
+        await checkpoint()
         return GoalResponse.REJECT
 
     serve(goal_callback=decide)

@@ -12,6 +12,7 @@ import anyio
 import pytest
 from starlette.responses import StreamingResponse
 
+from aionode._concurrency import checkpoint
 from aionode.action import ActionClient, ActionServer, CancelResponse, GoalResponse, GoalStatus
 from aionode.context import Context
 from aionode.errors import ServiceUnavailableError
@@ -71,14 +72,14 @@ def beside(work: Any) -> asyncio.Task[Any]:
 
 
 async def until(condition: Callable[[], Any]) -> None:
-    """Wait until something is so of which nobody tells."""
-    while not condition():  # noqa: ASYNC110  # there is no event to wait for
-        await asyncio.sleep(0.001)  # noqa: TID251  # the same
+    """Wait until `condition()` is true, for states that set no event."""
+    while not condition():  # noqa: ASYNC110  # as said
+        await asyncio.sleep(0.001)  # noqa: TID251  # as said
 
 
 async def expect_canceled(goal: Goal) -> None:
     """Wait for the end of the goal, and see that a request has ended it."""
-    await until(lambda: not goal.is_active)
+    await goal._outcome()
     assert goal.status is GoalStatus.CANCELED
 
 
@@ -129,16 +130,16 @@ async def by_a_task_group(wait: Wait, ends: Ends) -> None:
     """As the frameworks do that are built on anyio, such as those for tools of language models."""
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(wait, ends.client)
-        await until(ends.worker.begun.qsize)
+        await ends.worker.has_begun.wait()
         tasks.cancel_scope.cancel()
 
 
 async def cancelled_twice(wait: Wait, ends: Ends) -> None:
     """By somebody impatient."""
     task = beside(wait(ends.client))
-    await until(ends.worker.begun.qsize)
+    await ends.worker.has_begun.wait()
     task.cancel()
-    await asyncio.sleep(0)  # noqa: TID251  # between the two
+    await checkpoint()  # between the two
     task.cancel()
     await asyncio.wait([task])
 
@@ -153,9 +154,9 @@ async def by_leaving_the_node(wait: Wait, ends: Ends) -> None:
             await wait(client)
 
     task = beside(program())
-    await until(ends.worker.begun.qsize)
+    await ends.worker.has_begun.wait()
     task.cancel()
-    await asyncio.sleep(0)  # noqa: TID251  # between the two
+    await checkpoint()  # between the two
     task.cancel()
     await asyncio.wait([task])
 
@@ -298,7 +299,7 @@ async def test_a_goal_that_is_cancelled_in_the_queue_of_the_server_is_never_exec
     first = beside(ends.client.send_goal(Fibonacci.Goal(order=1)))
     await door.asked.get()
     second = beside(ends.client.send_goal(Fibonacci.Goal(order=2)))
-    await asyncio.sleep(0)  # noqa: TID251  # lets it be sent
+    await checkpoint()  # lets it be sent
     second.cancel()
     await asyncio.wait([second])
     await until(lambda: ends.server._withdrawn)

@@ -43,7 +43,7 @@ def bring(
         inline_deadline_ns = perf_ns() + MINUTE_NS
     for number in numbers:
         sample_info = SampleInfo(bytes(16), number, 0, remote=True)
-        subscription.deliver(Int32(data=number), sample_info, inline_deadline_ns)
+        subscription._reader.deliver(Int32(data=number), sample_info, inline_deadline_ns)
 
 
 class Asked(Request):
@@ -181,7 +181,7 @@ async def test_callbacks_with_a_task_or_a_thread_of_their_own_queue(
     subscription = listen(node, lambda msg: heard.append(msg.data), **options)
     await settle()
     bring(subscription, 1)
-    assert len(subscription._message_queue) == 1
+    assert len(subscription._reader) == 1
     await settle()
     assert heard == [1]
 
@@ -197,7 +197,7 @@ async def test_coroutine_functions_queue(node: Node) -> None:
     subscription = listen(node, Listener())
     await settle()
     bring(subscription, 1)
-    assert len(subscription._message_queue) == 1
+    assert len(subscription._reader) == 1
     await settle()
     assert heard == [1]
 
@@ -361,7 +361,7 @@ async def test_what_a_callback_returns_is_awaited_before_the_next_message(node: 
     subscription = listen(node, lambda msg: work(msg))  # noqa: PLW0108  # not known to be async
     await settle()
     bring(subscription, 1, 2)
-    assert len(subscription._message_queue) == 1
+    assert len(subscription._reader) == 1
     await settle()
     assert heard == ["begin 1", "end 1", "begin 2", "end 2"]
     assert subscription.stats.run_time.count == 2
@@ -509,7 +509,7 @@ async def test_an_idle_service_answers_within_the_event(node: Node) -> None:
     service = node.create_service(AddTwoInts, "sums", add)
     await settle()
     request = Asked()
-    service.serve(request, perf_ns() + MINUTE_NS)
+    service._serve(request, perf_ns() + MINUTE_NS)
     assert request.outcome == [5]
     assert service.stats.received == service.stats.run_time.count == 1
 
@@ -521,7 +521,7 @@ async def test_a_handler_of_the_request_alone_answers_within_the_event(node: Nod
     )
     await settle()
     request = Asked()
-    service.serve(request, perf_ns() + MINUTE_NS)
+    service._serve(request, perf_ns() + MINUTE_NS)
     assert request.outcome == [2]
 
 
@@ -530,8 +530,8 @@ async def test_without_a_time_a_request_waits_for_its_turn(node: Node) -> None:
     service = node.create_service(AddTwoInts, "sums", add)
     await settle()
     requests = [Asked(), Asked()]
-    service.serve(requests[0])
-    service.serve(requests[1], perf_ns() + MINUTE_NS)
+    service._serve(requests[0])
+    service._serve(requests[1], perf_ns() + MINUTE_NS)
     assert [request.outcome for request in requests] == [[], []]
     await settle()
     assert [request.outcome for request in requests] == [[5], [5]]
@@ -542,7 +542,7 @@ async def test_a_failing_handler_tells_the_client_at_once(node: Node) -> None:
     service = node.create_service(AddTwoInts, "sums", fail, on_error="log")
     await settle()
     request = Asked()
-    service.serve(request, perf_ns() + MINUTE_NS)
+    service._serve(request, perf_ns() + MINUTE_NS)
     assert request.outcome == ["ValueError: no sums today"]
     assert service.stats.errors == 1
 
@@ -555,7 +555,7 @@ async def test_a_failing_handler_ends_its_node(context: Context) -> None:
 
     async def transport() -> None:
         await settle()
-        service.serve(request, perf_ns() + MINUTE_NS)
+        service._serve(request, perf_ns() + MINUTE_NS)
 
     async with asyncio.TaskGroup() as tasks:
         tasks.create_task(transport())
@@ -574,7 +574,7 @@ async def test_a_handler_that_is_cancelled_drops_its_request(node: Node) -> None
     service = node.create_service(AddTwoInts, "sums", handler)
     await settle()
     request = Asked()
-    service.serve(request, perf_ns() + MINUTE_NS)
+    service._serve(request, perf_ns() + MINUTE_NS)
     assert request.outcome == ["dropped"]
 
 
@@ -588,7 +588,7 @@ async def test_what_a_handler_returns_is_awaited(node: Node) -> None:
     service = node.create_service(AddTwoInts, "sums", lambda request: work(request))  # noqa: PLW0108  # not known to be async
     await settle()
     request = Asked()
-    service.serve(request, perf_ns() + MINUTE_NS)
+    service._serve(request, perf_ns() + MINUTE_NS)
     assert request.outcome == []
     await settle()
     assert request.outcome == [5]
@@ -600,6 +600,6 @@ async def test_a_request_that_was_given_up_is_not_served(node: Node) -> None:
     await settle()
     request = Asked()
     request.cancelled = True
-    service.serve(request, perf_ns() + MINUTE_NS)
+    service._serve(request, perf_ns() + MINUTE_NS)
     assert request.outcome == ["dropped"]
     assert service.stats.dropped == 1
