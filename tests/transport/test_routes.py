@@ -33,7 +33,7 @@ async def test_a_subscription_of_another_context_is_reached_by_zenoh() -> None:
         await publisher.wait_for_subscribers(2)
         assert publisher.stats.routes == {
             f"/a {readers[0]._reader.endpoint.gid.hex()[:8]}": "local",
-            f"/b {readers[1].endpoint.gid.hex()[:8]}": "zenoh",
+            f"/b {readers[1]._reader.endpoint.gid.hex()[:8]}": "zenoh",
         }
 
 
