@@ -186,7 +186,7 @@ async def test_without_restarts_run_raises_what_the_node_failed_with(
 async def test_a_bad_request_is_no_reason_to_restart(
     supervise: Callable[..., Supervisor[Robot]], node: Node
 ) -> None:
-    """Servers survive it, so that everybody else goes on."""
+    """Servers survive it, so that other clients are not affected."""
     async with supervise() as robot:
         client = node.create_client(AddTwoInts, "/add")
         with pytest.raises(RuntimeError, match="only counts"):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from functools import partial
+from functools import partial, wraps
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 from aionode import names
@@ -42,6 +42,12 @@ class NodeBase:
     `Node` is one class whose methods are spread over a line of base classes, one for each subject:
     `NodeBase`, `NodeGraphQueries`, `NodeParameters`, `NodeEndpoints`, `Node`.
     """
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Have a node whose constructor raises leave its context."""
+        super().__init_subclass__(**options)
+        if "__init__" in vars(cls):
+            cls.__init__ = destroying_on_error(cls.__init__)  # type: ignore[method-assign]
 
     def __init__(
         self,
@@ -236,11 +242,7 @@ class NodeBase:
             ForkedProcessError: the context belongs to the parent process.
         """
         self.context._add_node(self)
-        try:
-            self._registrations = self._register(lambda it: it.create_node(self._info))
-        except BaseException:
-            self.destroy_node()
-            raise
+        self._registrations = self._register(lambda transport: transport.create_node(self._info))
         self.context.graph.add_node(self._info)
 
     def _leave(self) -> None:
@@ -376,5 +378,24 @@ class NodeBase:
     def _refuse_if_destroyed(self, wanted: str) -> None:
         if self.destroyed:
             raise EntityDestroyedError(
-                f"node {self.get_fully_qualified_name()}", f"given a {wanted}"
+                f"node {self.get_fully_qualified_name()}", f"create {wanted}"
             )
+
+
+def destroying_on_error(constructor: Callable[..., None]) -> Callable[..., None]:
+    """Return a constructor that destroys the node if it raises.
+
+    Otherwise a node that the program never got would stay in its context, and the next one that a
+    supervisor makes would join it there.
+    """
+
+    @wraps(constructor)
+    def construct(self: NodeBase, *args: Any, **options: Any) -> None:
+        try:
+            constructor(self, *args, **options)
+        except BaseException:
+            if hasattr(self, "_info"):  # else the name was rejected: there is nothing to destroy
+                self.destroy_node()
+            raise
+
+    return construct

@@ -125,7 +125,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
             CancelledError: the client was destroyed during the call.
         """
         if self.destroyed:
-            self._refuse_if_destroyed("called")
+            self._refuse_if_destroyed("call service")
         if type(request) is not self.srv_type.Request:
             self._check(request)
         began_ns = perf_ns()
@@ -168,7 +168,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
             EntityDestroyedError: the client was destroyed (a RuntimeError).
             RuntimeError: no event loop is running.
         """
-        self._refuse_if_destroyed("called")
+        self._refuse_if_destroyed("call service")
         return self._futures.begin(self.call(request))
 
     def _start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:

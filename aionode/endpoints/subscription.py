@@ -153,7 +153,7 @@ class Subscription(Entity, Generic[ItemT]):
             await checkpoint()
             self._turn_ends_ns = perf_ns() + SLICE_NS
         while not self._reader:
-            self._refuse_if_destroyed("read")
+            self._refuse_if_destroyed("read messages")
             await self._reader.wait()
         entered_ns, item = self._reader.pop()
         self.stats.received += 1

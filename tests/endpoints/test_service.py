@@ -431,7 +431,7 @@ async def test_destroying_a_client_cancels_its_calls(node: Node) -> None:
     client.destroy()
     with pytest.raises(asyncio.CancelledError):
         await call
-    with pytest.raises(RuntimeError, match="client of /add: destroyed"):
+    with pytest.raises(RuntimeError, match="client of /add is destroyed"):
         await client.call(Request())
 
 

@@ -24,13 +24,13 @@ from aionode.context import Context
 from aionode.interfaces.std_msgs.msg import Int32, UInt8MultiArray
 from aionode.node import Node
 from aionode.transport.ipc._connection import Connection
-from aionode.transport.ipc._protocol import Route
 from aionode.transport.ipc._publisher import IpcWriter
+from aionode.transport.ipc._subscription import Route
 from aionode.transport.ipc._transport import IpcTransport
 from tests.processes.ipc_member import STREAMED_BYTES
 from tests.support.peers import isolated_environment, quiet_node
 
-MEMBER = Path(__file__).with_name("link_member.py")
+MEMBER = Path(__file__).with_name("ipc_member.py")
 
 
 @pytest.fixture(autouse=True)
@@ -120,7 +120,7 @@ async def test_a_killed_process_ends_its_link_and_the_next_gets_one() -> None:
                     await asyncio.to_thread(lambda: None)
             while ping.there.get_subscription_count():
                 await ping.node.graph.changed()
-            while ping.back._inbox:
+            while ping.back._message_queue:
                 await ping.back.receive()
 
 
@@ -138,7 +138,7 @@ async def test_a_frozen_process_costs_nothing_but_its_messages() -> None:
             ping.there.publish(Int32(data=-2))
             while (await ping.back.receive()).data != -2:
                 pass
-            while ping.back._inbox:
+            while ping.back._message_queue:
                 await ping.back.receive()
             await ping.go()
 
@@ -167,7 +167,7 @@ class Stream:
     async def until_linked(self) -> None:
         """Go on until the arrays come over the link."""
         while not any(
-            remote_publisher.handover.route is Route.IPC
+            remote_publisher.route is Route.IPC
             for reader in self.node.context.transports[1].manager.readers.values()
             for remote_publisher in reader.remote_publishers.values()
         ):
@@ -219,7 +219,7 @@ async def test_a_sender_that_is_killed_in_mid_frame_ends_its_stream_and_the_next
                 stream.on_writable()
                 while not link.closed:
                     await checkpoint()
-                while stream.subscription._inbox:
+                while stream.subscription._message_queue:
                     await stream.next()
             while stream.subscription.get_publisher_count():
                 await stream.node.graph.changed()

@@ -16,13 +16,13 @@ import pytest
 
 from aionode.context import Context
 from aionode.interfaces.std_msgs.msg import Int32
-from aionode.transport.ipc._protocol import Route
-from tests.support.links import folder, hub_of
+from aionode.transport.ipc._subscription import Route
+from tests.support.links import folder, manager_of
 from tests.support.peers import KEEP_ALL, quiet_node
 
 __all__ = ["folder"]  # a fixture
 
-ENDER = Path(__file__).with_name("link_ender.py")
+ENDER = Path(__file__).with_name("ipc_ender.py")
 
 
 @contextmanager
@@ -44,8 +44,8 @@ def publishing_process(count: int, end: str) -> Iterator[subprocess.Popen[bytes]
 async def until_linked(node: Any, subscription: Any) -> None:
     """Receive until the numbers come over the link."""
     while not any(
-        remote_publisher.handover.route is Route.IPC
-        for reader in hub_of(node).readers.values()
+        remote_publisher.route is Route.IPC
+        for reader in manager_of(node).readers.values()
         for remote_publisher in reader.remote_publishers.values()
     ):
         await subscription.receive()
@@ -98,7 +98,7 @@ async def test_a_frozen_reader_holds_a_process_up_for_a_second_and_is_told_of() 
         subscription = node.create_subscription(Int32, "numbers", None, KEEP_ALL)
         with publishing_process(9000, "leave") as process:
             await until_linked(node, subscription)
-            (link,) = (hub_of(node).linked(p) for p in hub_of(node).links)
+            (link,) = (manager_of(node).linked(p) for p in manager_of(node).links)
             assert link is not None
             asyncio.get_running_loop().remove_reader(link._fd)  # it reads no more
             tell(process)

@@ -24,9 +24,10 @@ from tests.support.peers import quiet_node
 __all__ = [
     "Counting",
     "Two",
+    "calls_of",
     "folder",
-    "hub_of",
     "link_of",
+    "manager_of",
     "transport_of",
     "two_nodes",
     "writer_of",
@@ -57,15 +58,24 @@ def transport_of(node: Node) -> IpcTransport:
     return transport
 
 
-def hub_of(node: Node) -> manager.LinkManager:
+def manager_of(node: Node) -> manager.LinkManager:
     """Return the links of a node's context."""
     return transport_of(node).manager
 
 
+def calls_of(node: Node) -> dict[tuple[bytes, int], Any]:
+    """Return the calls of a node's context that are under way over links, by client and number."""
+    return {
+        (gid, number): call
+        for gid, requester in manager_of(node).requesters.items()
+        for number, call in requester.calls.items()
+    }
+
+
 def link_of(node: Node) -> Connection:
     """Return the only link of a node's context."""
-    (participant,) = hub_of(node).links
-    connection = hub_of(node).linked(participant)
+    (participant,) = manager_of(node).links
+    connection = manager_of(node).linked(participant)
     assert connection is not None
     return connection
 

@@ -14,8 +14,8 @@ from aionode.transport.zenoh._transport import ZenohTransport
 from tests.support.links import (
     Counting,
     folder,
-    hub_of,
     link_of,
+    manager_of,
     transport_of,
     two_nodes,
     writer_of,
@@ -110,7 +110,7 @@ async def test_a_link_that_comes_again_is_announced_again() -> None:
         await numbers.until_linked()
         first = link_of(nodes.a)
         first.close()
-        while first in [hub_of(nodes.a).linked(p) for p in hub_of(nodes.a).links]:
+        while first in [manager_of(nodes.a).linked(p) for p in manager_of(nodes.a).links]:
             await numbers.go()
         await numbers.until_linked()
         for node in nodes:

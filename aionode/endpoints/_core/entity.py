@@ -89,7 +89,7 @@ class Entity:
     def _close(self) -> None:
         """Release what the entity holds; called once, by `destroy`."""
 
-    def _refuse_if_destroyed(self, action: str = "used") -> None:
+    def _refuse_if_destroyed(self, action: str = "") -> None:
         """Raise EntityDestroyedError after `destroy`."""
         if self.destroyed:
             raise EntityDestroyedError(self._subject, action)

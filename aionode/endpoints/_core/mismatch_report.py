@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from aionode.graph import TOPIC_KINDS, EndpointKind
 from aionode.logging import get_logger
 from aionode.names import logger_name
-from aionode.qos import incompatibilities, incompatible_qos_text
+from aionode.qos import incompatible_qos_text
 
 if TYPE_CHECKING:
     from aionode.graph import EndpointInfo, Graph
@@ -44,30 +44,26 @@ def mismatch_text(own: EndpointInfo, other: EndpointInfo) -> str | None:
     """Return why `own` and `other` cannot communicate, and what to change; None if they can."""
     where = f"{'topic' if own.kind in TOPIC_KINDS else 'service'} '{own.name}'"
     peer = f"{other.kind.value} of node {other.node.fully_qualified_name}"
-    if own.type_name != other.type_name:
+    found = own.compare(other)
+    if found is None:
+        return None
+    if found.aspect == "type":
         return (
             f"{where}: the {peer} has type {other.type_name}, this {own.kind.value} "
             f"{own.type_name}. They will not hear each other; use one type, or another name"
         )
-    if own.type_hash != other.type_hash:
+    if found.aspect == "definition":
         return (
             f"{where}: the {peer} has another definition of {other.type_name} "
             f"({other.type_hash}, here {own.type_hash}). They will not hear each other; use the "
             "same version of the interface package on both sides"
         )
-    if own.kind not in TOPIC_KINDS:
-        return None
-    offers, asks = (own, other) if own.kind is EndpointKind.PUBLISHER else (other, own)
-    found = incompatibilities(offers.qos, asks.qos)
-    if not found:
-        return None
-    text = incompatible_qos_text(
-        own.name, found[-1].kind, publisher=other.kind is EndpointKind.PUBLISHER
-    )
-    reasons = "; ".join(incompatibility.reason for incompatibility in found)
     if own.node.participant != other.node.participant:
         return (
-            f"{where}: QoS of the {peer} is incompatible ({reasons}). Messages pass all the same "
-            "over rmw_zenoh, but would not over DDS"
+            f"{where}: QoS of the {peer} is incompatible ({found.reason}). Messages pass all the "
+            "same over rmw_zenoh, but would not over DDS"
         )
-    return f"{text} ({reasons})"
+    text = incompatible_qos_text(
+        own.name, found.policy, publisher=other.kind is EndpointKind.PUBLISHER
+    )
+    return f"{text} ({found.reason})"

@@ -314,7 +314,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
             EntityDestroyedError: the client was destroyed (a RuntimeError).
             RuntimeError: no event loop is running.
         """
-        self._refuse_if_destroyed("given a goal")
+        self._refuse_if_destroyed("send goal")
         return self._futures.begin(self._send(goal, feedback_callback, goal_uuid))
 
     def _in_future(self, work: Coroutine[Any, Any, T]) -> asyncio.Future[T]:
@@ -330,7 +330,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
     async def _send(
         self, goal: GoalT, feedback_callback: Callable[[Any], Any] | None, goal_uuid: Any
     ) -> ClientGoalHandle[ResultT, FeedbackT]:
-        self._refuse_if_destroyed("given a goal")
+        self._refuse_if_destroyed("send goal")
         self._check(goal)
         if feedback_callback is not None:
             accepts(feedback_callback, 1, subject=self._subject, wanted="(feedback_message)")
@@ -407,7 +407,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
 
     async def _request_cancel(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> Any:
         """Ask the server to cancel `goal`. For its handle."""
-        self._refuse_if_destroyed("asked to cancel a goal")
+        self._refuse_if_destroyed("cancel goal")
         if not self._cancel_goal.service_is_ready():  # it was ready, so it has gone
             raise ServiceUnavailableError(self._cancel_goal.srv_name)
         return await self._kept(self._begin_to_cancel(goal).answer)

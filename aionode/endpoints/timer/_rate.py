@@ -53,7 +53,7 @@ class Rate(Entity):
             EntityDestroyedError: The rate or its node was already destroyed (a RuntimeError).
             asyncio.CancelledError: It was destroyed during the wait.
         """
-        self._refuse_if_destroyed("slept on")
+        self._refuse_if_destroyed("sleep")
         if not await self._next_turn():
             raise asyncio.CancelledError(f"{self._subject}: destroyed during sleep()")
 

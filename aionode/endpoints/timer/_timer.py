@@ -134,7 +134,7 @@ class Timer(Entity):
         Raises:
             EntityDestroyedError: The timer or its node was destroyed (a RuntimeError).
         """
-        self._refuse_if_destroyed("reset")
+        self._refuse_if_destroyed("reset timer")
         self._ticker.schedule.reset(self.clock.now_ns())
         self._ticker.wake()
 

@@ -1,7 +1,7 @@
-"""Between processes of one user on one host: a Unix socket read by the event loop itself.
+"""Messages between processes of one user on one host, over a Unix socket in the event loop.
 
-It stands beside Zenoh, which finds the processes and carries everything to everybody else. See
-"Link" in docs/design.md.
+It works beside Zenoh, which discovers the processes and carries messages to all others. See "Link"
+in docs/design.md.
 """
 
 from aionode.transport.ipc._listener import Advertisement, available

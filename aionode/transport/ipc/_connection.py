@@ -1,4 +1,4 @@
-"""One socket between two processes: frames out of it, and frames into it without ever blocking."""
+"""One socket between two processes: reads frames, and writes frames without ever blocking."""
 
 from __future__ import annotations
 
@@ -14,76 +14,108 @@ from aionode._concurrency import SLICE_NS
 from aionode.clock import perf_ns
 from aionode.errors import FrameError
 from aionode.transport.ipc import _protocol as protocol
-from aionode.transport.ipc._protocol import BufferRef, FrameParser, Kind
+from aionode.transport.ipc._protocol import (
+    BufferRef,
+    Forget,
+    FrameParser,
+    Kind,
+    Release,
+    decode_control,
+)
+from aionode.transport.ipc._receivers import ReceiverTable
 from aionode.transport.ipc._shared_memory import SHARED_FROM, BufferMappings
 
 if TYPE_CHECKING:
     import asyncio
-    from collections.abc import Callable
 
-    from aionode.transport.ipc._protocol import Frame
+    from aionode.transport.ipc._protocol import Control, Frame
     from aionode.transport.ipc._shared_memory import BufferPool, SharedBuffer
     from aionode.wire.cdr import Data
 
-__all__ = ["Connection", "WriteWaiter"]
+__all__ = ["Connection", "LinkOwner", "WriteWaiter"]
 
 logger = logging.getLogger("aionode.transport.ipc")
 
 READ_BYTES: Final = 1 << 15
-"""How much is read before the rest of the loop has its turn: some hundred small messages."""
+"""How much is read before the rest of the loop runs: a few hundred small messages."""
 
 READ_MAX: Final = 1 << 20
+"""How much is read at once of a large payload, in bytes."""
+
 LAST_READS: Final = 10_000
-"""More than a socket holds; a peer that writes on and on does not keep the loop here."""
+"""How often a socket is read until its end: more than it holds, so that a peer that keeps writing
+does not block the loop.
+"""
 
 BATCH_BYTES: Final = 1 << 16
+"""A batch of this size is sent without waiting for the loop's next iteration, in bytes."""
 
 LENT_BYTES: Final = 1 << 29
 LENT_PIECES: Final = 256
-"""How much memory one process may have from this one, in bytes and in pieces, of which each takes
-a descriptor or two. A process that is frozen gives none back, and a stopped one has hundreds of
-places waiting in its socket; what is more goes through the stream, which a full socket stops.
+"""How much shared memory one process may hold, in bytes and in buffers, each of which takes one or
+two descriptors. A frozen process releases none, and its socket may hold hundreds of references;
+beyond the limit payloads go through the stream, where a full socket stops them.
 """
 
 URGENT_BYTES: Final = 1 << 28
-"""How much may wait for a process that asks on and on but reads no answer, in bytes."""
+"""How much may wait for a process that sends requests but reads no responses, in bytes."""
 
 MAX_HELD: Final = 1 << 20
-"""A frame that has not come to its end is reported to `on_held` from this size on, in bytes."""
+"""An incomplete frame is reported to `LinkOwner.on_held` from this size on, in bytes."""
+
 DESCRIPTORS: Final = 16
+"""How many descriptors are received at once."""
+
 MAX_DESCRIPTORS: Final = 64
-"""How many may wait for the rest of their frames: each comes with the first byte of its own."""
+"""How many descriptors may wait for their frames: each arrives with the first byte of its own."""
 
 BURST_NS: Final = 20_000
-"""What is sent within this time after the last is collected until the loop's next turn.
+"""Frames within this time after the last one are collected until the loop's next iteration.
 
-A system call costs more than the rest of a small message's way.
+A system call costs more than everything else that is done for a small message.
 """
 
-NOBODY: Final = bytes(protocol.GID_SIZE)
-NO_DESCRIPTOR: Final = "a descriptor could not be taken: too many files are open"
+NO_DESCRIPTOR: Final = "a descriptor could not be received: too many files are open"
 
-# As plain numbers: those of an enumeration take their time.
+# As plain numbers: members of an enumeration are slower.
 MSG_CMSG_CLOEXEC: Final = int(getattr(socket, "MSG_CMSG_CLOEXEC", 0))
 MSG_CTRUNC: Final = int(getattr(socket, "MSG_CTRUNC", 0))
 DATA: Final = int(Kind.DATA)
-RELEASE: Final = int(Kind.RELEASE)
-FORGET: Final = int(Kind.FORGET)
+REQUEST: Final = int(Kind.REQUEST)
+REPLY: Final = int(Kind.REPLY)
 
 
 class WriteWaiter(Protocol):
-    """What waits, elsewhere, for the socket to take more."""
+    """A queue of frames that waits for the socket to become writable."""
 
     @property
     def name(self) -> str:
-        """What it belongs to, for people."""
+        """The topic, for log messages."""
 
     @property
     def waiting(self) -> int:
         """How many messages wait."""
 
     def on_writable(self) -> None:
-        """Write until `Connection.write` refuses; then come again with `when_writable`."""
+        """Write until `Connection.write` refuses, and then call `when_writable` again."""
+
+
+class LinkOwner(Protocol):
+    """Handles what happens on a connection."""
+
+    def on_call(
+        self, connection: Connection, frame: Frame, payload: Data, inline_deadline_ns: int
+    ) -> None:
+        """Take a REQUEST or REPLY; callbacks may run within this call until the deadline."""
+
+    def on_control(self, connection: Connection, control: Control) -> None:
+        """Take a control frame."""
+
+    def on_held(self, connection: Connection) -> None:
+        """Handle that the connection holds much of an incomplete frame."""
+
+    def on_closed(self, connection: Connection) -> None:
+        """Handle that the socket was closed from either end; called once."""
 
 
 class Connection:
@@ -91,16 +123,14 @@ class Connection:
 
     Args:
         loop: The running loop.
-        sock: Connected and not blocking; closed with this.
-        pool: Where memory that was sent comes from.
-        handle: Called with each frame, its payload, and until when callbacks may run at once.
-        on_closed: Called once when the socket is closed from either end.
-        on_held: Called when much of a frame is here that has not come to its end.
+        sock: A connected, non-blocking socket; it is closed with the connection.
+        pool: The buffers of this context.
+        owner: Is told what happens.
 
     Attributes:
-        participant: Who is at the other end; empty before it has said so.
-        pool: Where memory that was sent comes from.
-        handlers: Called in place of `handle` with the messages of a publisher, by its gid.
+        participant: The context at the other end; empty before its `Hello`.
+        pool: The buffers of this context.
+        receivers: The subscriptions here that hear publishers of the other process.
     """
 
     def __init__(
@@ -108,59 +138,62 @@ class Connection:
         loop: asyncio.AbstractEventLoop,
         sock: socket.socket,
         pool: BufferPool,
-        handle: Callable[[Connection, Frame, Data, int], None],
-        on_closed: Callable[[Connection], None],
-        on_held: Callable[[Connection], None] = lambda _: None,
+        owner: LinkOwner,
     ) -> None:
         self.participant = ""
-        self.handlers: dict[bytes, Callable[[Data, Frame, int], None]] = {}
+        self.pool = pool
+        self.receivers = ReceiverTable()
         self._loop = loop
         self._sock: socket.socket | None = sock
         self._fd = sock.fileno()
-        self.pool = pool
-        self._handle = handle
-        self._on_closed = on_closed
-        self._on_held = on_held
+        self._owner = owner
         self._parser = FrameParser()
-        self._max_held = protocol.HEADER_SIZE - 1  # a greeting is a header
+        self._max_held = protocol.HEADER_SIZE - 1  # a Hello is a header without payload
+        # Descriptors that were received before the rest of their frames.
         self._descriptors: deque[int] = deque()
         self._ancillary = socket.CMSG_SPACE(DESCRIPTORS * array.array("i").itemsize)
-        # Frames of a burst, which go out together.
+        # Frames of a burst, which are sent together in the loop's next iteration.
         self._batch: list[bytes] = []
         self._batched = 0
         self._flush_planned = False
         self._sent_ns = 0
-        # The socket took no more: what is left of the last frames, and what has to wait.
+        # Whether the socket takes nothing now, and whether sending has failed for good.
         self._full = False
         self._failed = False
+        # What is left of a frame or batch of which the socket took only a part.
         self._rest = memoryview(b"")
+        # Frames that are never dropped and go before the queues once the socket is writable.
         self._urgent: deque[tuple[bytes, SharedBuffer | None]] = deque()
         self._urgent_bytes = 0
+        # Queues that wait for the socket, in turn; emptied whenever it is writable.
         self._queues: dict[WriteWaiter, None] = {}
-        # Memory: the numbers that the other process knows, what it has now, and what came from it.
+        # Numbers of the buffers whose descriptor the other process has, until they are closed.
         self._known: set[int] = set()
+        # Buffers that the other process reads now, until it releases them.
         self._lent: dict[int, SharedBuffer] = {}
         self._lent_bytes = 0
+        # Buffers of the other process that are mapped here.
         self._mappings = BufferMappings()
+        # What `progress` has returned and is not done yet.
         self._waiters: list[asyncio.Future[None]] = []
         pool.listeners.add(self._on_buffer_closed)
         loop.add_reader(self._fd, self._on_readable)
 
     def __repr__(self) -> str:
         state = "closed" if self.closed else "full" if self._full else "open"
-        return f"<Connection {self.participant or 'nobody'} {state}>"
+        return f"<Connection {self.participant or 'unknown'} {state}>"
 
     @property
     def closed(self) -> bool:
-        """Whether nothing can be sent any more."""
+        """Whether the socket is closed."""
         return self._sock is None
 
-    # Out
+    # Sending
 
     def write(self, data: bytes, buffer: SharedBuffer | None = None) -> bool:
-        """Take a frame; False if the socket is full or closed, and then it was not taken.
+        """Take a frame; False if the socket is full or closed, and the frame was not taken.
 
-        The frame's memory is released when the other process has done so.
+        The frame's buffer is released when the other process has released it.
         """
         sock = self._sock
         if self._full or sock is None:
@@ -176,7 +209,7 @@ class Connection:
                 self._flush_planned = True
                 self._loop.call_soon(self._planned_flush)
             return True
-        try:  # `_send` written out: a call less for each message
+        try:  # `_send` inlined: one call less for each message
             sent = sock.send(data)
         except (BlockingIOError, InterruptedError):
             sent = 0
@@ -190,30 +223,28 @@ class Connection:
         return True
 
     def when_writable(self, queue: WriteWaiter) -> None:
-        """Let `queue` go on once `write` does not refuse any more."""
+        """Call `queue.on_writable` when the socket takes more."""
         self._queues[queue] = None
 
-    def send(
-        self, kind: Kind, sequence: int, gid: bytes, payload: bytes = b"", source_ns: int = 0
-    ) -> None:
-        """Send a frame that is never dropped; nothing happens when closed.
+    def send(self, control: Control) -> None:
+        """Send a control frame, which is never dropped; does nothing when closed.
 
         It overtakes the queues that wait for the socket, but no other frame sent by this.
         """
-        self._send_now_or_later(protocol.pack(kind, sequence, source_ns, gid, payload), None)
+        self._send_now_or_later(control.pack(), None)
 
     def send_data(
         self, kind: int, sequence: int, source_ns: int, gid: bytes, payload: bytes
     ) -> None:
-        """Do `send` with a payload that may be large: then it goes in memory."""
+        """Send a frame that is never dropped; a large payload goes through shared memory."""
         buffer = self.pool.filled(payload) if len(payload) >= SHARED_FROM else None
         if buffer is None:
             data = protocol.pack(kind, sequence, source_ns, gid, payload)
             if self._urgent or not self.write(data):
                 self._send_now_or_later(data, None)
         else:
-            place = BufferRef(buffer.number, len(payload)).pack()
-            data = protocol.pack(kind, sequence, source_ns, gid, place, in_shm=True)
+            reference = BufferRef(buffer.number, len(payload)).pack()
+            data = protocol.pack(kind, sequence, source_ns, gid, reference, in_shm=True)
             self._send_now_or_later(data, buffer)
 
     def _send_now_or_later(self, data: bytes, buffer: SharedBuffer | None) -> None:
@@ -223,7 +254,7 @@ class Connection:
             self._urgent.append((data, buffer))
             self._urgent_bytes += len(data)
             if self._urgent_bytes > URGENT_BYTES and not self._failed:
-                self._send_failed(TimeoutError("it reads none of its answers"))
+                self._send_failed(TimeoutError("it does not read the responses to its requests"))
         elif buffer is not None:
             self.pool.release(buffer)
 
@@ -260,11 +291,11 @@ class Connection:
     def _send_failed(self, error: OSError) -> None:
         """Send no more, read what the other process has left in the socket, and then close it.
 
-        It has gone, perhaps right after its last messages: nobody but this socket has them. Not
-        read here, because this may be called while a frame is being handled.
+        It has ended, perhaps right after its last messages, which only this socket has. They are
+        not read here, because this may be called while a frame is being handled.
         """
         if not self._failed:
-            self._failed = self._full = True  # what is to be sent waits, until it is known unsent
+            self._failed = self._full = True  # keep what is to be sent, for retransmission
             self._batch.clear()
             self._loop.call_soon(self._read_out_and_close, error)
 
@@ -278,11 +309,11 @@ class Connection:
             self._loop.add_writer(self._fd, self._on_writable)
 
     def _write_with(self, sock: socket.socket, data: bytes, buffer: SharedBuffer) -> bool:
-        much = self._lent_bytes >= LENT_BYTES or len(self._lent) >= LENT_PIECES
-        if much and buffer.size <= protocol.MAX_INLINE:
+        limit_reached = self._lent_bytes >= LENT_BYTES or len(self._lent) >= LENT_PIECES
+        if limit_reached and buffer.size <= protocol.MAX_INLINE:
             if not self.write(whole(data, buffer)):
                 return False
-            self.pool.release(buffer)  # the other process knows nothing of it
+            self.pool.release(buffer)  # the other process does not read it
             return True
         if buffer.number in self._known:
             if not self.write(data):
@@ -311,16 +342,17 @@ class Connection:
     def _on_buffer_closed(self, number: int) -> None:
         if number in self._known:
             self._known.discard(number)
-            self.send(Kind.FORGET, number, NOBODY)
+            self.send(Forget(number))
 
     def _on_writable(self) -> None:
-        """Send what has waited: the rest of a frame, what is urgent, then the queues in turn."""
+        """Send the rest of a frame, then urgent frames, then what waits in queues, in turn."""
         if self._failed:
             return
         rest, self._rest = self._rest, memoryview(b"")
         if self._sock is not None and rest:
             self._send(self._sock, rest)
             if self._rest or self._failed:
+                self.wake()  # a large frame takes many rounds, and each of them is progress
                 return
         self._full = False
         self._loop.remove_writer(self._fd)
@@ -334,16 +366,16 @@ class Connection:
 
     @property
     def idle(self) -> bool:
-        """Whether everything was handed to the system."""
+        """Whether everything was handed to the operating system."""
         return not (self._batch or self._full)
 
     @property
     def queues(self) -> list[WriteWaiter]:
-        """Those that wait for the socket to take more."""
+        """The queues that wait for the socket to take more."""
         return list(self._queues)
 
     def progress(self) -> asyncio.Future[None]:
-        """Return what is done when the socket took something, credit comes, or it closes."""
+        """Return a future that is done when the socket took data, credit came, or it was closed."""
         waiter: asyncio.Future[None] = self._loop.create_future()
         if self._sock is None:
             waiter.set_result(None)
@@ -352,26 +384,26 @@ class Connection:
         return waiter
 
     def wake(self) -> None:
-        """End each `progress`."""
+        """Complete every future of `progress`."""
         if self._waiters:
             waiters, self._waiters = self._waiters, []
             for waiter in waiters:
                 if not waiter.done():
                     waiter.set_result(None)
 
-    # In
+    # Receiving
 
     def read_until_eof(self) -> None:
-        """Read all that is there, and then its end: something else has told of it already.
+        """Read everything up to the end of a socket that is known to have been closed.
 
-        uvloop may not: of a socket whose other end was closed with data unread, it tells once.
+        uvloop may not report it: it does so once only if the other end left data unread.
         """
         for _ in range(LAST_READS):
             if not self._on_readable():
                 return
 
     def _on_readable(self) -> bool:
-        """Read once; return whether there was something, so that there may be more."""
+        """Read once; return whether there was anything, so that there may be more."""
         sock = self._sock
         if sock is None:
             return False
@@ -397,35 +429,43 @@ class Connection:
         except FrameError as error:
             self.close(error if not flags & MSG_CTRUNC else FrameError(NO_DESCRIPTOR))
         else:
-            if flags & MSG_CTRUNC:  # what came before the frame that lacks it was whole
+            if flags & MSG_CTRUNC:  # the frames before the one that lacks its descriptor are whole
                 self.close(FrameError(NO_DESCRIPTOR))
             elif self._parser.held > self._max_held:
-                self._on_held(self)
+                self._owner.on_held(self)
         return True
 
     def _take_frames(self, frames: list[Frame]) -> None:
         inline_deadline_ns = perf_ns() + SLICE_NS
-        handlers = self.handlers
-        for one in frames:
-            payload: Data = self._map(one) if one.in_shm else one.payload
-            if one.kind == DATA:
-                take = handlers.get(one.gid)
-                if take is not None:  # else it was closed meanwhile
-                    take(payload, one, inline_deadline_ns)
-            elif one.kind == RELEASE:
-                self._on_release(one.sequence)
-            elif one.kind == FORGET:
-                self._mappings.forget(one.sequence)
+        handlers = self.receivers.handlers
+        for frame in frames:
+            kind = frame.kind
+            if kind == DATA:
+                payload: Data = self._map(frame) if frame.in_shm else frame.payload
+                take = handlers.get(frame.gid)
+                if take is not None:  # else the subscription was just destroyed
+                    take(payload, frame, inline_deadline_ns)
+            elif kind in (REPLY, REQUEST):
+                payload = self._map(frame) if frame.in_shm else frame.payload
+                self._owner.on_call(self, frame, payload, inline_deadline_ns)
             else:
-                self._handle(self, one, payload, inline_deadline_ns)
+                self._take_control(decode_control(frame))
+
+    def _take_control(self, control: Control) -> None:
+        if isinstance(control, Release):
+            self._on_release(control.buffer)
+        elif isinstance(control, Forget):
+            self._mappings.forget(control.buffer)
+        else:
+            self._owner.on_control(self, control)
 
     @property
     def held(self) -> int:
-        """How much is here of a frame that has not come to its end, in bytes."""
+        """How much of an incomplete frame is held, in bytes."""
         return self._parser.held
 
-    def know(self, participant: str) -> None:
-        """Note who is at the other end, which may send more than a greeting from now on."""
+    def accept_hello(self, participant: str) -> None:
+        """Take any frame from now on: the other end is the context `participant`."""
         self.participant = participant
         self._max_held = MAX_HELD
 
@@ -436,21 +476,21 @@ class Connection:
                 found.frombytes(data[: len(data) - len(data) % found.itemsize])
                 self._descriptors.extend(found)
         if len(self._descriptors) > MAX_DESCRIPTORS:
-            raise FrameError(f"{len(self._descriptors)} descriptors without a frame")
+            raise FrameError(f"{len(self._descriptors)} descriptors without their frames")
 
-    def _map(self, one: Frame) -> memoryview:
-        number, size = BufferRef.unpack(one.payload)
+    def _map(self, frame: Frame) -> memoryview:
+        number, size = BufferRef.unpack(frame.payload)
         fd = None
-        if one.has_fd:
+        if frame.has_fd:
             if not self._descriptors:
-                raise FrameError("a place in memory without its descriptor")
+                raise FrameError(f"expected the descriptor of buffer {number}, got none")
             fd = self._descriptors.popleft()
-        return self._mappings.view(number, size, fd, lambda: self._give_back(number))
+        return self._mappings.view(number, size, fd, lambda: self._release_soon(number))
 
-    def _give_back(self, number: int) -> None:
-        """Note, on any thread and perhaps within any other call, that nobody looks at a memory."""
-        with suppress(RuntimeError):  # the loop is closed, and the socket as well
-            self._loop.call_soon_threadsafe(self.send, Kind.RELEASE, number, NOBODY)
+    def _release_soon(self, number: int) -> None:
+        """Release a buffer of the other process; called on any thread, within any other call."""
+        with suppress(RuntimeError):  # the loop is closed, and so is the socket
+            self._loop.call_soon_threadsafe(self.send, Release(number))
 
     def _on_release(self, number: int) -> None:
         buffer = self._lent.pop(number, None)
@@ -458,16 +498,16 @@ class Connection:
             self._lent_bytes -= buffer.size
             self.pool.release(buffer)
 
-    # The end
+    # Closing
 
     def abandon(self) -> None:
-        """Close this process's descriptor of the socket, which another process goes on with."""
+        """Close this process's descriptor of the socket, which another process goes on using."""
         sock, self._sock = self._sock, None
         if sock is not None:
             sock.close()
 
     def close(self, reason: Exception | None = None) -> None:
-        """Close the socket, whatever waits; twice is the same as once."""
+        """Close the socket, whatever waits; closing twice has no further effect."""
         sock, self._sock = self._sock, None
         if sock is None:
             return
@@ -491,18 +531,18 @@ class Connection:
                 self.pool.release(buffer)
         self._urgent.clear()
         for buffer in self._lent.values():
-            buffer.retired = True  # the other process may look at it as long as it likes
+            buffer.retired = True  # the other process may go on reading it
             self.pool.release(buffer)
         self._lent.clear()
         self._lent_bytes = self._urgent_bytes = 0
         self.pool.listeners.discard(self._on_buffer_closed)
         self._mappings.close()
         self.wake()
-        self._on_closed(self)
+        self._owner.on_closed(self)
 
 
 def whole(data: bytes, buffer: SharedBuffer) -> bytes:
-    """Return a frame that has its payload in itself instead of elsewhere."""
-    (one,) = FrameParser().feed(data)
-    payload = buffer.read(BufferRef.unpack(one.payload).size)
-    return protocol.pack(one.kind, one.sequence, one.source_ns, one.gid, payload)
+    """Return a frame with its payload in the stream instead of in shared memory."""
+    (frame,) = FrameParser().feed(data)
+    payload = buffer.read(BufferRef.unpack(frame.payload).size)
+    return protocol.pack(frame.kind, frame.sequence, frame.source_ns, frame.gid, payload)

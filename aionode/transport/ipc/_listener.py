@@ -1,4 +1,4 @@
-"""Where processes of one user on one host meet: sockets in a folder that only the user enters."""
+"""The listening socket of a context, in a folder that only its user can enter."""
 
 from __future__ import annotations
 
@@ -25,8 +25,15 @@ __all__ = ["Advertisement", "Listener", "available", "host_id", "is_own_user", "
 
 BACKLOG: Final = 64
 CREDENTIALS: Final = struct.Struct("3i")
+
+MAX_PATH_BYTES: Final = 107
+"""How long the path of a Unix socket may be on Linux, without the zero byte at its end."""
+
+NAME_BYTES: Final = len("/" + 32 * "f" + ".sock")
+"""How long the name of a socket can be: that of a context's id, which has up to 32 digits."""
+
 NEW_S: Final = 10
-"""After this time, in seconds, a socket that is still being made has lost its process."""
+"""After this time, in seconds, a socket that still has its temporary name belongs to no process."""
 
 BOOT_ID: Final = Path("/proc/sys/kernel/random/boot_id")
 
@@ -42,12 +49,19 @@ def available() -> bool:
 
 
 def host_id() -> str:
-    """Return what tells this host from others, until it starts anew."""
+    """Return an id of this host that lasts until it is rebooted."""
     return xxhash.xxh3_64_hexdigest(BOOT_ID.read_bytes())
 
 
 class Advertisement(NamedTuple):
-    """What a context announces so that others can link to it."""
+    """What a context announces so that others can link to it.
+
+    Attributes:
+        participant: Id of the context.
+        version: Of the protocol.
+        host: Id of the host.
+        uid: The user.
+    """
 
     participant: str
     version: int
@@ -56,22 +70,22 @@ class Advertisement(NamedTuple):
 
     @classmethod
     def own(cls, participant: str) -> Advertisement:
-        """Return the beacon of a context in this process."""
+        """Return the advertisement of a context in this process."""
         return cls(participant, VERSION, host_id(), os.getuid())
 
     def text(self) -> str:
-        """Return it as the end of a key: chunks without wildcards."""
+        """Return it as the last chunks of a key, without wildcards."""
         return f"{self.participant}/link/{self.version}/{self.host}/{self.uid}"
 
     @classmethod
     def parse(cls, text: str) -> Advertisement | None:
-        """Return what `text` made, or None for anything else."""
+        """Return the advertisement that `text` wrote, or None for anything else."""
         chunks = text.split("/")
         if len(chunks) != 5 or chunks[1] != "link":
             return None
         participant, _, version, host, uid = chunks
         numbers = all(n.isascii() and n.isdigit() and len(n) <= 10 for n in (version, uid))
-        # It becomes part of a path.
+        # It becomes part of a path, so nothing else may get through.
         hexadecimal = set(participant) <= set("0123456789abcdef") and 0 < len(participant) <= 32
         return cls(participant, int(version), host, int(uid)) if numbers and hexadecimal else None
 
@@ -81,16 +95,24 @@ class Advertisement(NamedTuple):
 
 
 def socket_folder(environ: Mapping[str, str]) -> Path:
-    """Return the folder of this user's sockets, made if need be.
+    """Return the folder of this user's sockets, which is created if it does not exist.
 
     Raises:
-        TransportError: it cannot be made, or others can enter it.
+        TransportError: it cannot be created, its path is too long for a socket, or other users can
+            enter it.
     """
     runtime = environ.get("XDG_RUNTIME_DIR")
     if runtime:
         folder = Path(runtime) / "aionode"
     else:
         folder = Path(tempfile.gettempdir()) / f"aionode-{os.getuid()}"
+    size = len(os.fsencode(folder)) + NAME_BYTES
+    if size > MAX_PATH_BYTES:  # of some contexts the path would fit, as their ids are shorter
+        raise TransportError(
+            f"link: {folder} is too long for the path of a Unix socket: {size} bytes with the "
+            f"name of the socket, and at most {MAX_PATH_BYTES} are possible; set XDG_RUNTIME_DIR "
+            "to a shorter path"
+        )
     try:
         with suppress(FileExistsError):
             folder.mkdir(mode=0o700)
@@ -103,7 +125,7 @@ def socket_folder(environ: Mapping[str, str]) -> Path:
         or stat.S_IMODE(found.st_mode) & 0o077
     ):
         raise TransportError(
-            f"link: {folder} is not a folder of this user's alone; remove it, or set "
+            f"link: {folder} is not a folder that only this user can enter; remove it, or set "
             "XDG_RUNTIME_DIR to a folder that is"
         )
     return folder
@@ -117,14 +139,14 @@ def is_own_user(sock: socket.socket) -> bool:
 
 
 class Listener:
-    """The socket of one context, where others find it by its id.
+    """The listening socket of one context, which others find by the context's id.
 
     Args:
         folder: As `socket_folder` returns it.
         participant: Id of the context.
 
     Raises:
-        TransportError: the socket cannot be made.
+        TransportError: the socket cannot be created.
     """
 
     def __init__(self, folder: Path, participant: str) -> None:
@@ -136,7 +158,7 @@ class Listener:
         try:
             self.sock.bind(os.fspath(temporary))
             self.sock.listen(BACKLOG)
-            # Under its name only when it listens, or another process would take it for dead.
+            # It gets its name only when it listens, or another process would remove it as dead.
             temporary.rename(self._path)
         except OSError as error:
             self.sock.close()
@@ -145,7 +167,7 @@ class Listener:
             raise TransportError(f"link: no socket in {folder}: {error}") from error
 
     def accept(self) -> socket.socket | None:
-        """Return the connection of another process of this user, if one waits.
+        """Return the connection of another process of this user, if one is waiting.
 
         Raises:
             OSError: no descriptor is left.
@@ -158,7 +180,7 @@ class Listener:
         return checked(sock)
 
     def dial(self, participant: str) -> socket.socket | None:
-        """Return a connection to another context; None if there is none, or it is a stranger's."""
+        """Return a connection to another context; None if it is not there, or of another user."""
         sock = new_socket()
         try:
             sock.connect(os.fspath(self._folder / f"{participant}.sock"))
@@ -168,7 +190,7 @@ class Listener:
         return checked(sock)
 
     def close(self) -> None:
-        """Listen no longer."""
+        """Stop listening."""
         self.sock.close()
         with suppress(OSError):
             self._path.unlink()
@@ -176,8 +198,8 @@ class Listener:
     def _remove_dead(self) -> None:
         """Remove the sockets of processes that were killed."""
         for path in self._folder.glob("*.new"):
-            with suppress(OSError):  # somebody else was faster
-                # A socket has this name until it listens, which takes no time at all.
+            with suppress(OSError):  # another process was faster
+                # A socket has this name only for the moment until it listens.
                 age_ns = MachineTime().system_ns() - path.lstat().st_mtime_ns
                 if age_ns > NEW_S * S_TO_NS:
                     path.unlink()
@@ -189,13 +211,13 @@ class Listener:
                 with suppress(OSError):
                     path.unlink()
             except OSError:
-                pass  # somebody is there, but busy
+                pass  # its process is alive, but busy
             finally:
                 probe.close()
 
 
 def new_socket() -> socket.socket:
-    """Return a Unix socket that does not block.
+    """Return a non-blocking Unix socket.
 
     Raises:
         TransportError: no descriptor is left.
@@ -209,7 +231,7 @@ def new_socket() -> socket.socket:
 
 
 def checked(sock: socket.socket) -> socket.socket | None:
-    """Return `sock`, or close it if a stranger is at the other end."""
+    """Return `sock`, or close it and return None if another user is at the other end."""
     if is_own_user(sock):
         return sock
     sock.close()

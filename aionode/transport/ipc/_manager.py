@@ -1,19 +1,36 @@
-"""The links of one context: who is near, who is linked, and what becomes of each frame."""
+"""The links of one context: which contexts to link to, and what to do with each control frame."""
 
 from __future__ import annotations
 
 import asyncio
 import logging
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Final
 
 from aionode.clock import MachineTime
 from aionode.errors import FrameError, TransportError
 from aionode.graph import EndpointKind
-from aionode.transport.ipc import _protocol as protocol
 from aionode.transport.ipc._connection import Connection
-from aionode.transport.ipc._protocol import GID_SIZE, VERSION, Frame, FrameParser, Kind, can_link
-from aionode.transport.ipc._service import REPLY, REQUEST, server_of
+from aionode.transport.ipc._protocol import (
+    VERSION,
+    Cancel,
+    Close,
+    Credit,
+    End,
+    Fail,
+    Gone,
+    Hello,
+    Kind,
+    Open,
+    Opened,
+    RetransmitDone,
+    Switched,
+    can_link,
+    unpack_batch,
+)
+from aionode.transport.ipc._publisher import IpcWriter
+from aionode.transport.ipc._service import REPLY, IpcRequester, IpcServer, server_of
 from aionode.transport.ipc._shared_memory import BufferPool
+from aionode.transport.ipc._subscription import IpcReader
 
 if TYPE_CHECKING:
     import socket
@@ -21,123 +38,100 @@ if TYPE_CHECKING:
 
     from aionode.graph import EndpointInfo, Graph
     from aionode.transport.ipc._listener import Advertisement, Listener
-    from aionode.transport.ipc._publisher import IpcWriter
+    from aionode.transport.ipc._protocol import Control, Frame
+    from aionode.transport.ipc._registry import PeerDirectory
     from aionode.transport.ipc._send_queue import IpcSendQueue
-    from aionode.transport.ipc._service import IpcCall, IpcServer
-    from aionode.transport.ipc._subscription import IpcReader, RemotePublisher
     from aionode.wire.cdr import Data
 
-__all__ = ["LinkManager", "PeerDirectory"]
+__all__ = ["LinkManager"]
 
 logger = logging.getLogger("aionode.transport.ipc")
 
 AGAIN_S: Final = 1.0
-"""How long after a link has ended, or no descriptor was left, it is tried again.
+"""How long after a link has ended, or could not be opened, another attempt is made.
 
-Twice as long after each try that has failed, up to `LAST_AGAIN_S`.
+Twice as long after each attempt that failed, up to `LAST_AGAIN_S`.
 """
 
 LAST_AGAIN_S: Final = 30.0
 
 HELLO_S: Final = 5.0
-"""How long the other end of a socket may take to say who it is."""
+"""How long the other end of a socket may take to send its `Hello`."""
 
 MAX_OPENING: Final = 64
-"""How many may be silent at once; with one more the oldest is refused."""
+"""How many sockets may be without a `Hello` at once; with one more the oldest is closed."""
 
 MAX_HELD: Final = 1 << 27
-"""How much of frames that have not come to their end is held for all links together, in bytes."""
+"""How much of incomplete frames is held for all links together, in bytes."""
 
 MAX_ENDING: Final = 1_000
-"""How many publishers that have gone are remembered until their readers have confirmed."""
+"""How many destroyed publishers are remembered until their subscriptions have confirmed."""
 
 STALLED_S: Final = 1.0
-"""How long, at the end, a process may take nothing of what waits for it."""
-
-SUBSCRIBER_CONTROL: Final = frozenset(map(int, (Kind.OPEN, Kind.SWITCHED, Kind.CLOSE, Kind.CREDIT)))
+"""How long, when a context closes, a process may read nothing of what waits for it."""
 
 RETRANSMIT_BYTES: Final = 1 << 20
-"""How much is posted at once, or one frame more."""
-
-
-class PeerDirectory(Protocol):
-    """What the other transport knows of who is there, apart from the graph.
-
-    Attributes:
-        advertisement: What it announces of this context; None for nothing.
-        on_advertisement: Called with what another context announces, and whether it is there.
-        has_unannounced_peers: Whether somebody may listen whose subscriptions nobody announces.
-        on_unannounced_peers: Called when that has changed.
-        on_retransmit: Called with what another context has posted to this one.
-    """
-
-    advertisement: str | None
-    on_advertisement: Callable[[str, bool], None]
-    has_unannounced_peers: bool
-    on_unannounced_peers: Callable[[bool], None]
-    on_retransmit: Callable[[bytes], None]
-
-    def retransmit(self, participant: str, data: bytes) -> None:
-        """Send bytes to one other context, in order."""
-
-    def announce_link(self, participant: str, on: bool) -> None:
-        """Tell whoever asks that there is a link to another context, or no longer."""
+"""A batch of retransmitted messages has this size, or one frame more."""
 
 
 class LinkManager:
-    """The links of one context.
+    """The links of one context: the `LinkRegistry` of its endpoints, and the owner of connections.
 
     Of two contexts the one with the smaller id dials, as soon as they have matching endpoints;
-    both see the same graph, so that both know.
+    both see the same graph, so both know which.
 
     Args:
         participant: Id of the context.
         domain_id: The ROS domain.
-        peer_directory: Who else is there.
+        peer_directory: What is known about other contexts.
 
     Attributes:
-        gid: The id of the context as bytes.
-        pool: Memory for large payloads.
-        writers: Publishers that may use links, by gid.
-        readers: Subscriptions, by gid.
-        servers: Servers, by gid.
-        calls: Requests under way over links, by the client's gid and number.
-        now_ns: The system time, in nanoseconds since 1970.
+        pool: Shared memory for large payloads.
+        now_ns: Returns the system time, in nanoseconds since 1970.
+        writers: The publishers that may use links, by gid.
+        readers: The subscriptions, by gid.
+        servers: The servers, by gid.
+        requesters: The clients, by gid.
     """
 
     def __init__(self, participant: str, domain_id: int, peer_directory: PeerDirectory) -> None:
         self.participant = participant
         self.pool = BufferPool()
+        self.now_ns = MachineTime().system_ns
+        # Endpoints: added when they are created, removed when they are closed.
         self.writers: dict[bytes, IpcWriter] = {}
         self.readers: dict[bytes, IpcReader] = {}
         self.servers: dict[bytes, IpcServer] = {}
-        self.calls: dict[tuple[bytes, int], IpcCall] = {}
-        self.now_ns = MachineTime().system_ns
+        self.requesters: dict[bytes, IpcRequester] = {}
         self._peer_directory = peer_directory
-        self.gid = int(participant, 16).to_bytes(GID_SIZE, "big")
-        self._hello = protocol.pack(Kind.HELLO, VERSION, domain_id, self.gid)
+        self._hello = Hello(participant, VERSION, domain_id)
         self._domain_id = domain_id
         self._graph: Graph | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
         self._listener: Listener | None = None
+        # Contexts that can be linked: from their advertisement until it is withdrawn.
         self._near: set[str] = set()
+        # By context: added when its Hello has arrived, removed when the connection is closed.
         self._links: dict[str, Connection] = {}
-        self._remote_publishers: dict[tuple[Connection, bytes], list[RemotePublisher]] = {}
-        # Those that have not said who they are, the oldest first, and whom they should be.
+        # Connections whose Hello has not arrived, the oldest first, and the context that was
+        # dialled; None for those that were accepted.
         self._opening: dict[Connection, str | None] = {}
-        # Whom not to dial now, and how often that has failed.
+        # Contexts not to dial now: from each attempt, and each end of a link, until a Hello
+        # arrives, a delay is over, or the advertisement is withdrawn.
         self._backoff: set[str] = set()
+        # How many attempts in a row have failed, by context; until a Hello arrives.
         self._failures: dict[str, int] = {}
-        # What publishers that have gone left to be sent or confirmed.
+        # By connection and publisher: what a destroyed publisher left to be sent or confirmed,
+        # until everything is confirmed or the connection is closed.
         self._ending: dict[tuple[Connection, bytes], IpcSendQueue] = {}
-        self._timers: set[asyncio.TimerHandle] = set()
+        self._timers: set[asyncio.TimerHandle] = set()  # of `later`, until they have run
         self._link_changes = 0
-        self._junk = 0  # what came by post and is not understood
+        self._malformed = 0  # retransmitted batches that could not be read
 
-    # The whole
+    # Lifetime
 
     def open(self, graph: Graph, listener: Listener | None) -> None:
-        """Begin to accept links, and to dial; without a place to meet there are none."""
+        """Start to accept links and to dial; without a listener there are no links."""
         self.pool = BufferPool()
         self._graph = graph
         self._loop = asyncio.get_running_loop()
@@ -156,8 +150,8 @@ class LinkManager:
         for timer in self._timers:
             timer.cancel()
         self._timers.clear()
-        for route in self._ending.values():  # given up, as `flush` has said
-            route.drop()
+        for send_queue in self._ending.values():  # `flush` has warned of what is lost
+            send_queue.drop()
         self._ending.clear()
         for connection in [*self._links.values(), *self._opening]:
             connection.close()
@@ -168,10 +162,10 @@ class LinkManager:
         self._graph = None
 
     def abandon(self) -> None:
-        """Let go of the sockets, in a forked child.
+        """Close the descriptors of all sockets, in a forked child.
 
-        The parent's links would not end with the parent while the child has them. Nothing is said
-        on them, and the name of the parent's socket stays.
+        The parent's links would not end with the parent while the child has them. Nothing is sent,
+        and the parent's socket keeps its name.
         """
         if self._listener is not None:
             self._listener.sock.close()
@@ -179,23 +173,42 @@ class LinkManager:
             connection.abandon()
 
     async def flush(self) -> None:
-        """Wait until what was written was handed to the system.
+        """Wait until what was written was handed to the operating system.
 
-        A process that takes nothing for `STALLED_S` is given up, and a warning says what was.
+        A process that reads nothing for `STALLED_S` is given up, and a warning says what was lost.
         """
-        async with asyncio.TaskGroup() as tasks:  # so that the frozen do not add up
+        async with asyncio.TaskGroup() as tasks:  # so that several frozen processes cost one delay
             for connection in list(self._links.values()):
                 tasks.create_task(flush(connection))
 
-    def keep(self, gid: bytes, route: IpcSendQueue) -> None:
-        """Remember what a publisher that has gone left to be sent, or to be confirmed."""
-        if not route.settled:
-            self._ending[route.connection, gid] = route
-        while len(self._ending) > MAX_ENDING:
-            self._ending.pop(next(iter(self._ending))).drop()
+    # The registry: what endpoints need
+
+    @property
+    def changes(self) -> int:
+        """Incremented whenever endpoints or links change."""
+        return self._link_changes + (0 if self._graph is None else self._graph.changes)
+
+    @property
+    def has_unannounced_peers(self) -> bool:
+        """Whether there may be subscriptions that nothing announces."""
+        return self._peer_directory.has_unannounced_peers
+
+    def linked(self, participant: str) -> Connection | None:
+        """Return the link to a context, if there is one."""
+        return self._links.get(participant)
+
+    def remote(self, kind: EndpointKind, name: str) -> list[EndpointInfo]:
+        """Return the endpoints of other contexts that have this name."""
+        if self._graph is None:
+            return []
+        return [
+            endpoint
+            for endpoint in self._graph.endpoints(kind, name=name)
+            if endpoint.node.participant != self.participant
+        ]
 
     def later(self, delay_s: float, call: Callable[[], None]) -> None:
-        """Call `call` in a while, unless closed before."""
+        """Call `call` after a delay, unless the links are closed before."""
         if self._loop is None or self._listener is None:
             return
 
@@ -206,50 +219,52 @@ class LinkManager:
         timer = self._loop.call_later(delay_s, run)
         self._timers.add(timer)
 
-    # Who is there
+    def keep(self, gid: bytes, send_queue: IpcSendQueue) -> None:
+        """Keep what a destroyed publisher left to be sent or confirmed."""
+        if not send_queue.settled:
+            self._ending[send_queue.connection, gid] = send_queue
+        while len(self._ending) > MAX_ENDING:
+            self._ending.pop(next(iter(self._ending))).drop()
+
+    def add(self, endpoint: IpcWriter | IpcReader | IpcServer | IpcRequester) -> None:
+        """Let an endpoint of this context use links."""
+        if isinstance(endpoint, IpcWriter):
+            self.writers[endpoint.endpoint.gid] = endpoint
+        elif isinstance(endpoint, IpcReader):
+            self.readers[endpoint.gid] = endpoint
+        elif isinstance(endpoint, IpcServer):
+            self.servers[endpoint.endpoint.gid] = endpoint
+        else:
+            self.requesters[endpoint.endpoint.gid] = endpoint
+
+    def remove(self, gid: bytes) -> None:
+        """Forget an endpoint of this context, which was closed."""
+        self.writers.pop(gid, None)
+        self.readers.pop(gid, None)
+        self.servers.pop(gid, None)
+        self.requesters.pop(gid, None)
+
+    # Which contexts there are
 
     @property
     def links(self) -> list[str]:
         """The contexts that are linked now."""
         return list(self._links)
 
-    @property
-    def has_unannounced_peers(self) -> bool:
-        """Whether somebody may listen whose subscriptions nobody announces."""
-        return self._peer_directory.has_unannounced_peers
-
-    @property
-    def changes(self) -> int:
-        """Is another number when endpoints or links have come or gone meanwhile."""
-        return self._link_changes + (0 if self._graph is None else self._graph.changes)
-
-    def linked(self, participant: str) -> Connection | None:
-        """Return the link to a context, if there is one."""
-        return self._links.get(participant)
-
-    def remote(self, kind: EndpointKind, name: str) -> list[EndpointInfo]:
-        """Return the endpoints of other contexts under a name."""
-        if self._graph is None:
-            return []
-        return [
-            endpoint
-            for endpoint in self._graph.endpoints(kind, name=name)
-            if endpoint.node.participant != self.participant
-        ]
-
     def on_advertisement(self, advertisement: Advertisement, present: bool) -> None:
-        """Note that a context that can be linked has come or gone."""
+        """Take the advertisement of a context that can be linked, or its withdrawal."""
+        participant = advertisement.participant
         if not present:
-            self._near.discard(advertisement.participant)
-            self._backoff.discard(advertisement.participant)
-            self._failures.pop(advertisement.participant, None)
-            self._read_until_eof(advertisement.participant)
+            self._near.discard(participant)
+            self._backoff.discard(participant)
+            self._failures.pop(participant, None)
+            self._read_until_eof(participant)
             return
-        self._near.add(advertisement.participant)
-        self._consider(advertisement.participant)
+        self._near.add(participant)
+        self._consider(participant)
 
     def _read_until_eof(self, participant: str) -> None:
-        """See the end of a link of which something else has told."""
+        """Read a link to its end, of which something else has told."""
         connection = self._links.get(participant)
         if connection is not None:
             connection.read_until_eof()
@@ -259,7 +274,7 @@ class LinkManager:
             writer.update()
 
     def on_endpoint(self, endpoint: EndpointInfo) -> None:
-        """Note a new endpoint, of this context or another."""
+        """Take a new endpoint, of this context or another."""
         if self._graph is None:
             return
         participant = endpoint.node.participant
@@ -275,24 +290,26 @@ class LinkManager:
             self._consider(one.node.participant, one)
 
     def _consider(self, participant: str, endpoint: EndpointInfo | None = None) -> None:
-        """Dial a context that has something for us, or meet what is new there."""
+        """Use the link to a context for what is new there, or dial it if it has a match."""
         if participant not in self._near:
             return
         connection = self._links.get(participant)
         if connection is not None:
-            self._meet(connection, endpoint)
+            self._open_publishers(connection, endpoint)
         elif (
             self.participant < participant
             and participant not in self._backoff
+            # Its advertisement may come and go while it is dialled, which ends the backoff.
+            and participant not in self._opening.values()
             and self._has_matches(participant, endpoint)
         ):
             self._dial(participant)
 
     def _has_matches(self, participant: str, endpoint: EndpointInfo | None) -> bool:
-        """Whether a context, or what is new there, has something for us."""
+        """Whether a context, or its new endpoint, matches an endpoint of this context."""
         if self._graph is None:
             return False
-        # Of each new one only itself is looked at: all of them each time is a square.
+        # Of each new endpoint only itself is looked at: all of them each time would be quadratic.
         for theirs in self._graph.endpoints() if endpoint is None else (endpoint,):
             if theirs.node.participant != participant:
                 continue
@@ -304,22 +321,21 @@ class LinkManager:
                     return True
         return False
 
-    def _meet(self, connection: Connection, endpoint: EndpointInfo | None = None) -> None:
+    def _open_publishers(
+        self, connection: Connection, endpoint: EndpointInfo | None = None
+    ) -> None:
         """Ask for what the publishers at the other end have for our subscriptions."""
-        readers = [
-            reader
-            for reader in self.readers.values()
-            if endpoint is None or reader.endpoint.name == endpoint.name
-        ]
-        for reader in readers:
+        for reader in list(self.readers.values()):
+            if endpoint is not None and reader.endpoint.name != endpoint.name:
+                continue
             for publisher in self.remote(EndpointKind.PUBLISHER, reader.endpoint.name):
                 if publisher.node.participant == connection.participant:
-                    reader.meet(publisher, connection)
+                    reader.open(publisher, connection)
 
-    # Links come and go
+    # Opening links
 
     def _dial(self, participant: str) -> None:
-        self._backoff.add(participant)  # until it answers, or it is time to try again
+        self._backoff.add(participant)
         try:
             sock = None if self._listener is None else self._listener.dial(participant)
         except TransportError as error:
@@ -331,7 +347,7 @@ class LinkManager:
             self._begin(sock, participant)
 
     def _try_later(self, participant: str) -> None:
-        """Dial again in a while, which grows: the other may be busy, or restarting."""
+        """Dial again after a delay, which grows: the other may be busy, or restarting."""
         self._backoff.add(participant)
         failures = self._failures.get(participant, 0)
         self._failures[participant] = failures + 1
@@ -340,12 +356,16 @@ class LinkManager:
             lambda: self._try_again(participant),
         )
 
+    def _try_again(self, participant: str) -> None:
+        self._backoff.discard(participant)
+        self._consider(participant)
+
     def _accept(self) -> None:
         if self._listener is None or self._loop is None:
             return
         try:
             sock = self._listener.accept()
-        except OSError as error:  # the listener stays readable, so look away for a while
+        except OSError as error:  # the listener stays readable, so do not watch it for a while
             logger.warning("a link cannot be accepted: %s", error)
             self._loop.remove_reader(self._listener.sock.fileno())
             self.later(AGAIN_S, self._accept_again)
@@ -359,37 +379,29 @@ class LinkManager:
 
     def _begin(self, sock: socket.socket, participant: str | None = None) -> None:
         assert self._loop is not None  # noqa: S101  # set before anything is dialled or accepted
-        connection = Connection(
-            self._loop, sock, self.pool, self._on_frame, self._on_closed, self._on_held
-        )
+        connection = Connection(self._loop, sock, self.pool, self)
         self._opening[connection] = participant
         while len(self._opening) > MAX_OPENING:
             next(iter(self._opening)).close()
-        self.later(HELLO_S, lambda: self._refuse_if_silent(connection))
-        connection.write(self._hello)
+        self.later(HELLO_S, lambda: self._close_if_silent(connection))
+        connection.send(self._hello)
 
-    def _refuse_if_silent(self, connection: Connection) -> None:
+    def _close_if_silent(self, connection: Connection) -> None:
         if connection in self._opening:
             connection.close()
 
-    def _on_held(self, connection: Connection) -> None:
-        """Hold no more than so much: end the link that has most."""
-        if not connection.participant:
-            connection.close(FrameError("something else in place of the greeting"))
-        connections = [*self._links.values(), *self._opening]
-        if sum(connection.held for connection in connections) > MAX_HELD:
-            largest = max(connections, key=lambda connection: connection.held)
-            largest.close(FrameError(f"more than {MAX_HELD} bytes in frames without an end"))
-
-    def _on_hello(self, connection: Connection, one: Frame) -> None:
-        if one.kind != Kind.HELLO:
-            raise FrameError("something else before the greeting")
-        participant = participant_of(one)
-        if one.sequence != VERSION or one.source_ns != self._domain_id:
-            raise FrameError(f"a greeting of version {one.sequence}, domain {one.source_ns}")
+    def _on_hello(self, connection: Connection, hello: Hello) -> None:
+        participant = hello.participant
+        if hello.version != VERSION or hello.domain_id != self._domain_id:
+            raise FrameError(
+                f"expected HELLO of version {VERSION}, domain {self._domain_id}; got version "
+                f"{hello.version}, domain {hello.domain_id}"
+            )
+        # It dials again only after it has closed its first socket, whose end may still be unread.
+        self._read_until_eof(participant)
         if participant in self._links or participant == self.participant:
             raise FrameError(f"a second link to {participant}")
-        connection.know(participant)
+        connection.accept_hello(participant)
         self._opening.pop(connection, None)
         self._backoff.discard(participant)
         self._failures.pop(participant, None)
@@ -398,9 +410,21 @@ class LinkManager:
         logger.debug("linked to %s", participant)
         self._near.add(participant)
         self._peer_directory.announce_link(participant, True)
-        self._meet(connection)
+        self._open_publishers(connection)
 
-    def _on_closed(self, connection: Connection) -> None:
+    # The owner of connections
+
+    def on_held(self, connection: Connection) -> None:
+        """Bound how much is held of incomplete frames: end the link that holds most."""
+        if not connection.participant:
+            connection.close(FrameError("expected HELLO, got a longer frame"))
+        connections = [*self._links.values(), *self._opening]
+        if sum(connection.held for connection in connections) > MAX_HELD:
+            largest = max(connections, key=lambda connection: connection.held)
+            largest.close(FrameError(f"more than {MAX_HELD} bytes of incomplete frames"))
+
+    def on_closed(self, connection: Connection) -> None:
+        """Let its endpoints go on over Zenoh, and dial again after a delay."""
         dialled = self._opening.pop(connection, None)
         if dialled is not None:
             self._try_later(dialled)
@@ -410,161 +434,145 @@ class LinkManager:
         del self._links[participant]
         self._link_changes += 1
         self._peer_directory.announce_link(participant, False)
-        for key in [key for key in self._remote_publishers if key[0] is connection]:
-            for remote_publisher in self._remote_publishers.pop(key):
-                remote_publisher.broken()
+        for receiver in connection.receivers.clear():
+            receiver.broken()
         self._retransmit_unacked(connection)
         for server in self.servers.values():
             server.broken(connection)
-        for call in list(self.calls.values()):
-            if connection in call.routes:
-                call.ended(connection)
+        for requester in list(self.requesters.values()):
+            for call in list(requester.calls.values()):
+                if connection in call.routes:
+                    call.ended(connection)
         self._backoff.add(participant)
         self.later(AGAIN_S, lambda: self._try_again(participant))
 
+    def on_call(
+        self, connection: Connection, frame: Frame, payload: Data, inline_deadline_ns: int
+    ) -> None:
+        """Pass a request to its server, or a response to its call."""
+        if not connection.participant:
+            raise FrameError(f"expected HELLO, got kind {frame.kind}")
+        if frame.kind == REPLY:
+            requester = self.requesters.get(frame.gid)
+            call = None if requester is None else requester.calls.get(frame.sequence)
+            if call is not None:  # else it was just cancelled
+                call.replied(frame, payload)
+            return
+        gid, request = server_of(payload)
+        server = self.servers.get(gid)
+        if server is None:
+            connection.send(End(frame.gid, frame.sequence))
+        else:
+            server.take(connection, frame, request, inline_deadline_ns)
+
+    def on_control(self, connection: Connection, control: Control) -> None:
+        """Do what a control frame says."""
+        if not connection.participant:
+            if not isinstance(control, Hello):
+                raise FrameError(f"expected HELLO, got {type(control).__name__.upper()}")
+            self._on_hello(connection, control)
+        elif isinstance(control, Credit):
+            self._on_credit(connection, control)
+        elif isinstance(control, Open | Switched | Close):
+            self._on_subscription(connection, control)
+        elif isinstance(control, Opened | Gone):
+            self._on_publisher(connection, control)
+        elif isinstance(control, Cancel):
+            for server in self.servers.values():
+                server.cancel(control.client, control.sequence)
+        elif isinstance(control, Fail | End):
+            self._on_no_reply(connection, control)
+        else:
+            raise FrameError(f"unexpected {type(control).__name__.upper()} on a link")
+
+    def _on_publisher(self, connection: Connection, control: Opened | Gone) -> None:
+        for receiver in connection.receivers.of(control.publisher):
+            if isinstance(control, Gone):
+                receiver.gone()
+                connection.receivers.remove(control.publisher, receiver)
+            elif receiver.gid == control.subscription:
+                receiver.opened(control.sequence)
+
+    def _on_credit(self, connection: Connection, credit: Credit) -> None:
+        writer = self.writers.get(credit.publisher)
+        if writer is not None:
+            writer.credit(connection, credit)
+            return
+        ending = self._ending.get((connection, credit.publisher))
+        if ending is not None:
+            ending.credit(credit)
+            if ending.settled:
+                del self._ending[connection, credit.publisher]
+
+    def _on_subscription(self, connection: Connection, control: Open | Switched | Close) -> None:
+        writer = self.writers.get(control.publisher)
+        if writer is None:  # it was just destroyed, and Gone is on its way
+            return
+        if isinstance(control, Open):
+            writer.open(connection, control)
+        elif isinstance(control, Switched):
+            writer.switched(connection, control.subscription)
+        else:
+            writer.leave(connection, control.subscription)
+
+    def _on_no_reply(self, connection: Connection, control: Fail | End) -> None:
+        requester = self.requesters.get(control.client)
+        call = None if requester is None else requester.calls.get(control.sequence)
+        if call is None:  # it was just cancelled
+            return
+        if isinstance(control, Fail):
+            call.failed(control.error_type, control.error_text)
+        else:
+            call.ended(connection)
+
+    # Retransmission
+
     def _retransmit_unacked(self, connection: Connection) -> None:
-        """Send what may not have arrived to the process that it was for, and to nobody else."""
+        """Send what is not confirmed to the process that it is for, and to no other."""
         unacked = [
             data for writer in list(self.writers.values()) for data in writer.broken(connection)
         ]
         for key in [key for key in self._ending if key[0] is connection]:
             unacked += self._ending.pop(key).unacked()
-        unacked.append(protocol.pack(Kind.RETRANSMIT_DONE, 0, 0, self.gid))
-        batch = [self._hello]
+        unacked.append(RetransmitDone().pack())
+        hello = self._hello.pack()
+        batch = [hello]
         size = 0
         for data in unacked:
             batch.append(data)
             size += len(data)
             if size >= RETRANSMIT_BYTES or data is unacked[-1]:
                 self._peer_directory.retransmit(connection.participant, b"".join(batch))
-                batch = [self._hello]
+                batch = [hello]
                 size = 0
 
     def _on_retransmit(self, data: bytes) -> None:
-        """Take what another context could not say over its link."""
+        """Take what another context could not deliver over its link."""
         try:
-            frames = FrameParser().feed(data)
+            sender, frames = unpack_batch(data)
         except FrameError as error:
-            self._junk += 1
-            if self._junk == 1:
+            self._malformed += 1
+            if self._malformed == 1:
                 logger.warning(
-                    "something came by post that is not understood: %s; it was left out, and more "
-                    "of it is only counted",
+                    "a batch of retransmitted messages was ignored: %s; further ones are counted "
+                    "without a warning",
                     error,
                 )
             return
-        sender = participant_of(frames[0]) if frames else ""
         self._read_until_eof(sender)
-        for one in frames[1:]:
+        for frame in frames:
             for reader in list(self.readers.values()):
                 for remote_publisher in list(reader.remote_publishers.values()):
                     if remote_publisher.participant != sender:
                         continue
-                    if one.kind == Kind.RETRANSMIT_DONE:
+                    if frame.kind == Kind.RETRANSMIT_DONE:
                         remote_publisher.retransmit_done()
-                    elif one.kind == Kind.DATA and remote_publisher.publisher == one.gid:
-                        remote_publisher.from_retransmit(one.payload, one)
-
-    def _try_again(self, participant: str) -> None:
-        self._backoff.discard(participant)
-        self._consider(participant)
-
-    def listen(self, remote_publisher: RemotePublisher, connection: Connection) -> None:
-        """Deliver what comes from the inlet's publisher to it."""
-        remote_publishers = self._remote_publishers.setdefault(
-            (connection, remote_publisher.publisher), []
-        )
-        remote_publishers.append(remote_publisher)
-        connection.handlers[remote_publisher.publisher] = handler_for(remote_publishers)
-
-    def forget(self, remote_publisher: RemotePublisher) -> None:
-        """Deliver to `remote_publisher` no longer."""
-        connection = remote_publisher.connection
-        if connection is None:
-            return
-        remote_publishers = self._remote_publishers.get(
-            (connection, remote_publisher.publisher), []
-        )
-        if remote_publisher in remote_publishers:
-            remote_publishers.remove(remote_publisher)
-        if remote_publishers:
-            connection.handlers[remote_publisher.publisher] = handler_for(remote_publishers)
-        else:
-            self._remote_publishers.pop((connection, remote_publisher.publisher), None)
-            connection.handlers.pop(remote_publisher.publisher, None)
-
-    # Frames
-
-    def _on_frame(
-        self, connection: Connection, one: Frame, payload: Data, inline_deadline_ns: int
-    ) -> None:
-        kind = one.kind
-        if not connection.participant:
-            self._on_hello(connection, one)
-        elif kind == REPLY:
-            call = self.calls.get((one.gid, one.sequence))
-            if call is not None:  # else it was cancelled meanwhile
-                call.replied(one, payload)
-        elif kind == REQUEST:
-            gid, request = server_of(payload)
-            asked = self.servers.get(gid)
-            if asked is None:
-                connection.send(Kind.END, one.sequence, one.gid)
-            else:
-                asked.take(connection, one, request, inline_deadline_ns)
-        elif kind in SUBSCRIBER_CONTROL:
-            self._on_subscriber_control(connection, one)
-        elif kind in (Kind.OPENED, Kind.GONE):
-            self._on_publisher(connection, one)
-        else:
-            self._on_call_end(connection, one, payload)
-
-    def _on_subscriber_control(self, connection: Connection, one: Frame) -> None:
-        writer = self.writers.get(one.gid)
-        if writer is None:  # it has gone, and GONE is on its way
-            ending = self._ending.get((connection, one.gid))
-            if ending is not None and one.kind == Kind.CREDIT:
-                ending.credit(one.payload, one.sequence, one.source_ns)
-                if ending.settled:
-                    del self._ending[connection, one.gid]
-            return
-        if one.kind == Kind.OPEN:
-            writer.open(connection, one.payload, one.sequence, confirms=bool(one.source_ns))
-        elif one.kind == Kind.SWITCHED:
-            writer.switched(connection, one.payload)
-        elif one.kind == Kind.CREDIT:
-            writer.credit(connection, one.payload, one.sequence, one.source_ns)
-        else:
-            writer.leave(connection, one.payload)
-
-    def _on_publisher(self, connection: Connection, one: Frame) -> None:
-        remote_publishers = self._remote_publishers.get((connection, one.gid), [])
-        for remote_publisher in list(remote_publishers):
-            if one.kind == Kind.GONE:
-                remote_publisher.gone()
-                self.forget(remote_publisher)
-                remote_publisher.reader.remote_publishers.pop(one.gid, None)
-            elif remote_publisher.gid == one.payload:
-                remote_publisher.opened(one.sequence)
-
-    def _on_call_end(self, connection: Connection, one: Frame, payload: Data) -> None:
-        if one.kind == Kind.CANCEL:
-            for server in self.servers.values():
-                server.cancel(one.gid, one.sequence)
-            return
-        if one.kind not in (Kind.FAIL, Kind.END):
-            raise FrameError(f"a frame of kind {one.kind} at this place")
-        call = self.calls.get((one.gid, one.sequence))
-        if call is None:  # it was cancelled meanwhile
-            return
-        if one.kind == Kind.FAIL:
-            call.failed(payload)
-        else:
-            call.ended(connection)
+                    elif frame.kind == Kind.DATA and remote_publisher.publisher == frame.gid:
+                        remote_publisher.from_retransmit(frame.payload, frame)
 
 
 async def flush(connection: Connection) -> None:
-    """Wait until everything was handed to the system, or the other end takes nothing any more."""
+    """Wait until everything was handed to the operating system, or nothing is read for a while."""
     try:
         while not (connection.idle or connection.closed):
             async with asyncio.timeout(STALLED_S):
@@ -580,20 +588,3 @@ async def flush(connection: Connection) -> None:
                     connection.participant,
                     STALLED_S,
                 )
-
-
-def participant_of(one: Frame) -> str:
-    """Return who says a greeting."""
-    return f"{int.from_bytes(one.gid, 'big'):x}"
-
-
-def handler_for(remote_publishers: list[RemotePublisher]) -> Callable[[Data, Frame, int], None]:
-    """Return what gives a publisher's messages to its subscriptions here; mostly there is one."""
-    if len(remote_publishers) == 1:
-        return remote_publishers[0].from_link
-
-    def take(payload: Data, one: Frame, inline_deadline_ns: int) -> None:
-        for remote_publisher in tuple(remote_publishers):
-            remote_publisher.from_link(payload, one, inline_deadline_ns)
-
-    return take

@@ -1,51 +1,31 @@
-"""The ipc protocol without a socket: frames on a byte stream, and the hand-over between routes.
-
-What two processes say to each other over a link: frames on a stream of bytes.
+"""The ipc protocol without a socket: frames on a byte stream.
 
 Each frame is a header of 40 bytes, little endian, and a payload::
 
     size u32 | kind u8 | flags u8 | mark u16 | sequence i64 | source_ns i64 | gid 16 bytes | payload
 
-The stream stays in step only while every frame is understood, so that anything unknown ends it with
-a `FrameError`; there is no way to find the next frame. A large payload is in memory that both sides
-know: then a flag is set, and what follows the header is a `BufferRef`. A second flag says that the
-descriptor of that memory comes beside the frame.
+A receiver stays in step only while it understands every frame, so anything unknown raises
+`FrameError` and ends the link; there is no way to find the start of the next frame. A large payload
+is in shared memory: a flag is set, and a `BufferRef` follows the header instead. A second flag says
+that the file descriptor of that memory is sent along with the frame.
 
-From one way to another in the middle of a stream, without losing, doubling or swapping messages.
-
-A reader hears a publisher of another process over Zenoh first. When the two processes are linked:
-
-1. The reader asks for the publisher (`OPEN`).
-2. The publisher answers with the number of its last message (`OPENED`), and from the next one on
-   writes to both ways.
-3. The reader goes on with what comes over Zenoh, and holds what comes over the link, until Zenoh
-   has brought that number or a later one: nothing older is under way then. If Zenoh stays silent,
-   it has lost the message, or the two were not matched when it was sent: waiting ends as well.
-4. The reader takes the link and says so (`SWITCHED`), and the publisher stops writing to Zenoh if
-   nobody else listens there. A copy that Zenoh brings ahead of the link is held until then.
-
-When the link ends, the publisher goes on over Zenoh, and sends what the reader has not confirmed
-to the reader's process alone (its post), where nobody else can hear it twice; then it says that
-this was all (`RETRANSMIT_DONE`). Meanwhile the reader mends the stream: it takes the next number
-whatever brings it, also a new link, and holds what is further ahead.
+DATA, REQUEST and REPLY carry a payload of a user and stay a `Frame`. Every other kind is a control
+frame: a class of its own, whose `pack` writes it and which `decode_control` reads.
 """
 
 from __future__ import annotations
 
 import enum
 import struct
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, Final, NamedTuple, Self
 
 import msgspec
 
 from aionode.errors import FrameError
-from aionode.graph import EndpointInfo
 from aionode.qos import DurabilityPolicy
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from aionode.transport.base import SampleInfo
+    from aionode.graph import EndpointInfo
 
 __all__ = [
     "GID_SIZE",
@@ -53,23 +33,39 @@ __all__ = [
     "MAX_INLINE",
     "VERSION",
     "BufferRef",
+    "Cancel",
+    "Close",
+    "Control",
+    "Credit",
+    "End",
+    "Fail",
+    "Forget",
     "Frame",
     "FrameParser",
-    "Handover",
+    "Gone",
+    "Hello",
     "Kind",
-    "Route",
+    "Open",
+    "Opened",
+    "Release",
+    "RetransmitDone",
+    "Switched",
     "can_link",
+    "decode_control",
     "has_fd",
     "pack",
+    "unpack_batch",
 ]
 
 VERSION: Final = 1
-"""Of this format; links open between equal versions only."""
+"""Version of this format; only equal versions can be linked."""
 
 GID_SIZE: Final = 16
 
+NO_GID: Final = bytes(GID_SIZE)
+
 MAX_INLINE: Final = 1 << 26
-"""How large a payload in the stream may be, in bytes; a larger size is a sign of garbage."""
+"""The largest payload in the stream, in bytes; a larger size means that the stream is corrupt."""
 
 HEADER: Final = struct.Struct("<IBBHqq16s")
 
@@ -89,65 +85,62 @@ BUFFER_REF: Final = struct.Struct("<QQ")
 
 
 class Kind(enum.IntEnum):
-    """What a frame says. `gid` and `sequence` stand for what is noted here."""
+    """What a frame says. Control frames are documented at the class that is named here."""
 
     HELLO = 1
-    """Who I am: gid is the participant, sequence the `VERSION`, source_ns the domain."""
+    """`Hello`."""
     OPEN = 2
-    """I want what publisher gid publishes: the payload is the reader, sequence its window.
-
-    source_ns is 1 if it confirms what it has, 0 if it may lose messages.
-    """
+    """`Open`."""
     OPENED = 3
-    """It comes from here on, after number sequence; the payload is the reader's gid."""
+    """`Opened`."""
     SWITCHED = 4
-    """This reader (the payload) needs publisher gid's messages from nowhere else now."""
+    """`Switched`."""
     CLOSE = 5
-    """This reader (the payload) needs nothing of publisher gid any more."""
+    """`Close`."""
     GONE = 6
-    """Publisher gid sends nothing any more."""
+    """`Gone`."""
     CREDIT = 7
-    """This reader (the payload) has used sequence more messages, the last with number source_ns."""
+    """`Credit`."""
     DATA = 8
-    """Message number sequence of publisher gid."""
+    """Message number `sequence` of publisher `gid`."""
     REQUEST = 9
-    """Request number sequence of client gid; the payload begins with the server's gid."""
+    """Request number `sequence` of client `gid`; the payload begins with the server's gid."""
     REPLY = 10
-    """The response to it; the payload begins with the server's gid."""
+    """The response to request `sequence` of client `gid`."""
     FAIL = 11
-    """A server's error in place of a response."""
+    """`Fail`."""
     END = 12
-    """The server will not answer."""
+    """`End`."""
     CANCEL = 13
-    """The client has given the request up."""
+    """`Cancel`."""
     RELEASE = 14
-    """The memory number sequence is not in use any more."""
+    """`Release`."""
     FORGET = 15
-    """The memory number sequence will not be used any more."""
+    """`Forget`."""
     RETRANSMIT_DONE = 16
-    """All that a broken link left unsaid has been said."""
+    """`RetransmitDone`."""
 
 
 LAST_KIND: Final = max(Kind).value
 
 
 class Frame(msgspec.Struct, frozen=True, gc=False):
-    """One frame as it came.
+    """One frame as it was received.
 
     Attributes:
-        kind: What it says; one of `Kind`.
-        sequence: A number, from -2**63 to 2**63 - 1.
-        source_ns: When a message was sent, or another number.
-        gid: 16 bytes that name an endpoint.
-        payload: What follows.
-        in_shm: Whether that is the `BufferRef` of the payload proper.
-        has_fd: Whether the descriptor of that memory comes with it.
+        kind: One of `Kind`.
+        sequence: The number of a message or request, from -2**63 to 2**63 - 1.
+        source_ns: When it was sent, in nanoseconds since 1970 by the sender's clock.
+        gid: 16 bytes that identify the publisher or client.
+        payload: The bytes after the header.
+        in_shm: Whether `payload` is the `BufferRef` of the real payload.
+        has_fd: Whether the file descriptor of that memory is sent along.
     """
 
     kind: int
     sequence: int = 0
     source_ns: int = 0
-    gid: bytes = bytes(GID_SIZE)
+    gid: bytes = NO_GID
     payload: bytes = b""
     in_shm: bool = False
     has_fd: bool = False
@@ -157,23 +150,25 @@ class BufferRef(NamedTuple):
     """Where a large payload is."""
 
     number: int
-    """Of the memory; whoever sent it wants it back with `Kind.RELEASE`."""
+    """Identifies the shared buffer; the sender gets it back with `Release`."""
     size: int
-    """Of the payload, in bytes, from the beginning of the memory."""
+    """Size of the payload in bytes; it starts at the beginning of the buffer."""
 
     def pack(self) -> bytes:
-        """Return it as bytes."""
+        """Return it as the payload of a frame."""
         return BUFFER_REF.pack(self.number, self.size)
 
     @classmethod
     def unpack(cls, data: bytes) -> BufferRef:
-        """Return what `pack` made `data` of.
+        """Return the reference that `pack` wrote.
 
         Raises:
-            FrameError: it is none.
+            FrameError: `data` has the wrong size.
         """
         if len(data) != BUFFER_REF.size:
-            raise FrameError(f"a place of {len(data)} bytes; {BUFFER_REF.size} fit")
+            raise FrameError(
+                f"expected a buffer reference of {BUFFER_REF.size} bytes, got {len(data)} bytes"
+            )
         return cls._make(BUFFER_REF.unpack(data))
 
 
@@ -186,33 +181,34 @@ def pack(
     *,
     in_shm: bool = False,
 ) -> bytes:
-    """Return a frame.
+    """Return a frame as bytes.
 
     Raises:
-        FrameError: the payload is too large.
+        FrameError: the payload is larger than `MAX_INLINE`.
     """
     size = len(payload)
     if size > MAX_INLINE:
-        raise FrameError(f"a payload of {size} bytes in the stream; at most {MAX_INLINE} fit")
+        raise FrameError(f"a payload of {size} bytes is too large for the stream ({MAX_INLINE})")
     return HEADER.pack(size, kind, in_shm, MARK, sequence, source_ns, gid) + payload
 
 
 def has_fd(data: bytes) -> bytes:
-    """Return a frame whose payload is elsewhere as one that comes with the descriptor."""
+    """Return a packed frame, whose payload is in shared memory, with the flag for a descriptor."""
     return data[:FLAGS_AT] + bytes([HAS_FD]) + data[FLAGS_AT + 1 :]
 
 
 class FrameParser:
-    """Takes the stream apart, in whatever pieces it comes.
+    """Splits the stream into frames, whatever the size of the pieces that arrive.
 
     Attributes:
-        missing: How many bytes the frame that has begun needs at least; 1 or more.
-        held: How many bytes are here of a frame that has begun and not come to its end.
+        missing: How many more bytes the current frame needs at least; 1 or more.
+        held: How many bytes of an incomplete frame are held.
     """
 
     __slots__ = ("_pieces", "held", "missing")
 
     def __init__(self) -> None:
+        # Pieces of the current frame; emptied when the frame is complete.
         self._pieces: list[bytes] = []
         self.missing = HEADER_SIZE
         self.held = 0
@@ -221,14 +217,14 @@ class FrameParser:
         """Return the frames that `data` completes.
 
         Raises:
-            FrameError: this is no stream of frames; the parser is of no more use.
+            FrameError: the stream is corrupt; the parser must not be used again.
         """
         if self._pieces:
             self._pieces.append(data)
             if len(data) < self.missing:
                 self.missing -= len(data)
                 self.held += len(data)
-                return []  # pieces of a large payload are joined once, at its end
+                return []  # join the pieces of a large payload only once, when it is complete
             data = b"".join(self._pieces)
             self._pieces.clear()
         frames: list[Frame] = []
@@ -238,9 +234,13 @@ class FrameParser:
         while end - offset >= HEADER_SIZE:
             size, kind, flags, mark, sequence, source_ns, gid = HEADER.unpack_from(data, offset)
             if mark != MARK or not 0 < kind <= LAST_KIND or flags not in FLAGS:
-                raise FrameError(f"something that is no frame (kind {kind}, mark {mark:#06x})")
+                raise FrameError(
+                    f"expected a frame, got kind {kind}, flags {flags}, mark {mark:#06x}"
+                )
             if size > MAX_INLINE:
-                raise FrameError(f"a payload of {size} bytes in the stream; {MAX_INLINE} fit")
+                raise FrameError(
+                    f"a payload of {size} bytes is too large for the stream ({MAX_INLINE})"
+                )
             begin = offset + HEADER_SIZE
             if end - begin < size:
                 need = HEADER_SIZE + size
@@ -259,174 +259,305 @@ class FrameParser:
         return frames
 
 
-MAX_HELD: Final = 2_000
-"""How many messages are held at most; with one more the reader waits for Zenoh no longer.
-
-More than the window of a KEEP_ALL reader, which therefore always waits.
-"""
-
-MAX_MENDING: Final = 50_000
-"""How many are held at most while what a broken link left unsaid is awaited."""
+# Control frames
 
 
-class Route(enum.Enum):
-    """Where a reader takes a publisher's messages from."""
+class Control(msgspec.Struct, frozen=True, gc=False):
+    """A control frame: what the two ends of a link tell each other beside the payloads."""
 
-    ZENOH = "zenoh"
-    BOTH = "both"
-    """From Zenoh still; what the link brings is held."""
-    IPC = "link"
-    """From the link; what Zenoh brings ahead of it is held."""
-    RECOVERING = "mending"
-    """The next number from anywhere; what is further ahead is held."""
+    def pack(self) -> bytes:
+        """Return the frame as bytes."""
+        raise NotImplementedError
+
+    @classmethod
+    def from_frame(cls, frame: Frame) -> Self:
+        """Return what `pack` wrote.
+
+        Raises:
+            FrameError: the payload does not fit this kind.
+        """
+        raise NotImplementedError
 
 
-class Handover:
-    """One reader and one publisher.
+class Hello(Control, frozen=True, gc=False):
+    """The first frame in each direction: who is at this end."""
 
-    Args:
-        deliver: Takes the messages, each once and in order, with the time until when a callback
-            may run at once.
+    participant: str
+    """Id of the context: hexadecimal, without leading zeros."""
+    version: int
+    domain_id: int
 
-    Attributes:
-        route: Where they come from now.
-        last: The number of the last one that was delivered.
-        steady: Whether all that comes over the link from now on can be delivered if it is newer
-            than `last`, which is then to be set: what `from_link` does, without the call.
+    def pack(self) -> bytes:
+        """Return the frame as bytes."""
+        gid = int(self.participant, 16).to_bytes(GID_SIZE, "big")
+        return pack(Kind.HELLO, self.version, self.domain_id, gid)
+
+    @classmethod
+    def from_frame(cls, frame: Frame) -> Self:
+        """Return what `pack` wrote."""
+        participant = f"{int.from_bytes(frame.gid, 'big'):x}"
+        return cls(participant, frame.sequence, frame.source_ns)
+
+
+class OfSubscription(Control, frozen=True, gc=False):
+    """A control frame that names a publisher and one subscription of the other process."""
+
+    publisher: bytes
+    subscription: bytes
+
+
+class Open(OfSubscription, frozen=True, gc=False):
+    """A subscription asks for the messages of a publisher."""
+
+    window: int
+    """How many messages the publisher may send before it gets credit; 0 for any number."""
+    confirms: bool
+    """Whether the subscription confirms what it has received; else it may lose messages."""
+
+    def pack(self) -> bytes:
+        """Return the frame as bytes."""
+        return pack(Kind.OPEN, self.window, self.confirms, self.publisher, self.subscription)
+
+    @classmethod
+    def from_frame(cls, frame: Frame) -> Self:
+        """Return what `pack` wrote."""
+        return cls(frame.gid, subscription_in(frame), frame.sequence, bool(frame.source_ns))
+
+
+class Opened(OfSubscription, frozen=True, gc=False):
+    """The publisher sends over the link whatever follows message number `sequence`."""
+
+    sequence: int
+
+    def pack(self) -> bytes:
+        """Return the frame as bytes."""
+        return pack(Kind.OPENED, self.sequence, 0, self.publisher, self.subscription)
+
+    @classmethod
+    def from_frame(cls, frame: Frame) -> Self:
+        """Return what `pack` wrote."""
+        return cls(frame.gid, subscription_in(frame), frame.sequence)
+
+
+class Switched(OfSubscription, frozen=True, gc=False):
+    """The subscription takes the publisher's messages from the link only."""
+
+    def pack(self) -> bytes:
+        """Return the frame as bytes."""
+        return pack(Kind.SWITCHED, 0, 0, self.publisher, self.subscription)
+
+    @classmethod
+    def from_frame(cls, frame: Frame) -> Self:
+        """Return what `pack` wrote."""
+        return cls(frame.gid, subscription_in(frame))
+
+
+class Close(OfSubscription, frozen=True, gc=False):
+    """The subscription needs nothing from the publisher any more."""
+
+    def pack(self) -> bytes:
+        """Return the frame as bytes."""
+        return pack(Kind.CLOSE, 0, 0, self.publisher, self.subscription)
+
+    @classmethod
+    def from_frame(cls, frame: Frame) -> Self:
+        """Return what `pack` wrote."""
+        return cls(frame.gid, subscription_in(frame))
+
+
+class Credit(OfSubscription, frozen=True, gc=False):
+    """The subscription has used `used` more messages, and has everything up to `confirmed`."""
+
+    used: int
+    confirmed: int
+
+    def pack(self) -> bytes:
+        """Return the frame as bytes."""
+        return pack(Kind.CREDIT, self.used, self.confirmed, self.publisher, self.subscription)
+
+    @classmethod
+    def from_frame(cls, frame: Frame) -> Self:
+        """Return what `pack` wrote."""
+        return cls(frame.gid, subscription_in(frame), frame.sequence, frame.source_ns)
+
+
+class Gone(Control, frozen=True, gc=False):
+    """The publisher was destroyed; this is its last frame."""
+
+    publisher: bytes
+
+    def pack(self) -> bytes:
+        """Return the frame as bytes."""
+        return pack(Kind.GONE, 0, 0, self.publisher)
+
+    @classmethod
+    def from_frame(cls, frame: Frame) -> Self:
+        """Return what `pack` wrote."""
+        return cls(frame.gid)
+
+
+class OfRequest(Control, frozen=True, gc=False):
+    """A control frame about request number `sequence` of a client."""
+
+    client: bytes
+    sequence: int
+
+
+class Fail(OfRequest, frozen=True, gc=False):
+    """A server's error in place of a response."""
+
+    error_type: str
+    error_text: str
+    DECODER: ClassVar = msgspec.json.Decoder(tuple[str, str])
+
+    def pack(self) -> bytes:
+        """Return the frame as bytes."""
+        payload = msgspec.json.encode((self.error_type, self.error_text))
+        return pack(Kind.FAIL, self.sequence, 0, self.client, payload)
+
+    @classmethod
+    def from_frame(cls, frame: Frame) -> Self:
+        """Return what `pack` wrote.
+
+        Raises:
+            FrameError: the payload is not a pair of texts.
+        """
+        try:
+            error_type, error_text = cls.DECODER.decode(frame.payload)
+        except msgspec.MsgspecError as error:
+            raise FrameError(f"a FAIL frame that cannot be read: {error}") from error
+        return cls(frame.gid, frame.sequence, error_type, error_text)
+
+
+class End(OfRequest, frozen=True, gc=False):
+    """The server will not answer the request."""
+
+    def pack(self) -> bytes:
+        """Return the frame as bytes."""
+        return pack(Kind.END, self.sequence, 0, self.client)
+
+    @classmethod
+    def from_frame(cls, frame: Frame) -> Self:
+        """Return what `pack` wrote."""
+        return cls(frame.gid, frame.sequence)
+
+
+class Cancel(OfRequest, frozen=True, gc=False):
+    """The client has cancelled the request."""
+
+    def pack(self) -> bytes:
+        """Return the frame as bytes."""
+        return pack(Kind.CANCEL, self.sequence, 0, self.client)
+
+    @classmethod
+    def from_frame(cls, frame: Frame) -> Self:
+        """Return what `pack` wrote."""
+        return cls(frame.gid, frame.sequence)
+
+
+class Release(Control, frozen=True, gc=False):
+    """The receiver no longer uses this shared buffer; the sender may fill it again."""
+
+    buffer: int
+
+    def pack(self) -> bytes:
+        """Return the frame as bytes."""
+        return pack(Kind.RELEASE, self.buffer, 0, NO_GID)
+
+    @classmethod
+    def from_frame(cls, frame: Frame) -> Self:
+        """Return what `pack` wrote."""
+        return cls(frame.sequence)
+
+
+class Forget(Control, frozen=True, gc=False):
+    """The sender has closed this shared buffer; the receiver may unmap it."""
+
+    buffer: int
+
+    def pack(self) -> bytes:
+        """Return the frame as bytes."""
+        return pack(Kind.FORGET, self.buffer, 0, NO_GID)
+
+    @classmethod
+    def from_frame(cls, frame: Frame) -> Self:
+        """Return what `pack` wrote."""
+        return cls(frame.sequence)
+
+
+class RetransmitDone(Control, frozen=True, gc=False):
+    """Everything that a broken link left unacknowledged has been sent again."""
+
+    def pack(self) -> bytes:
+        """Return the frame as bytes."""
+        return pack(Kind.RETRANSMIT_DONE, 0, 0, NO_GID)
+
+    @classmethod
+    def from_frame(cls, frame: Frame) -> Self:  # noqa: ARG003  # it says nothing else
+        """Return what `pack` wrote."""
+        return cls()
+
+
+CONTROLS: Final[dict[int, type[Control]]] = {
+    Kind.HELLO: Hello,
+    Kind.OPEN: Open,
+    Kind.OPENED: Opened,
+    Kind.SWITCHED: Switched,
+    Kind.CLOSE: Close,
+    Kind.GONE: Gone,
+    Kind.CREDIT: Credit,
+    Kind.FAIL: Fail,
+    Kind.END: End,
+    Kind.CANCEL: Cancel,
+    Kind.RELEASE: Release,
+    Kind.FORGET: Forget,
+    Kind.RETRANSMIT_DONE: RetransmitDone,
+}
+
+
+def decode_control(frame: Frame) -> Control:
+    """Return the control frame that `frame` is.
+
+    Raises:
+        FrameError: it carries a payload of a user, or its own payload does not fit its kind.
     """
+    control = CONTROLS.get(frame.kind)
+    if control is None or frame.in_shm:
+        raise FrameError(f"expected a control frame, got kind {frame.kind}")
+    return control.from_frame(frame)
 
-    __slots__ = ("_base", "_deliver", "_held", "_linked", "_owed", "last", "route", "steady")
 
-    def __init__(self, deliver: Callable[[Any, SampleInfo, int], None]) -> None:
-        self.route = Route.ZENOH
-        self.last = 0
-        self.steady = False
-        self._deliver = deliver
-        self._base = 0
-        self._linked = False
-        self._owed = 0  # links that have ended, and whose publisher has not caught up
-        self._held: dict[int, tuple[Any, SampleInfo]] = {}
+def unpack_batch(data: bytes) -> tuple[str, list[Frame]]:
+    """Return the context that has retransmitted `data`, and the frames after its Hello.
 
-    @property
-    def waits(self) -> bool:
-        """Whether messages are held until others have come."""
-        return bool(self._held) and self.route in (Route.BOTH, Route.RECOVERING)
+    Raises:
+        FrameError: it cannot be read.
+    """
+    frames = FrameParser().feed(data)
+    hello = decode_control(frames[0]) if frames else None
+    if not isinstance(hello, Hello):
+        raise FrameError("expected HELLO as the first frame")
+    return hello.participant, frames[1:]
 
-    def opened(self, sequence: int) -> None:
-        """Note that what follows number `sequence` comes over the link."""
-        self._base = sequence
-        self._linked = True
-        if self.route is Route.RECOVERING:
-            self._recover()
-            return
-        self.route = Route.BOTH
-        if self.last >= sequence:
-            self.switch()
 
-    def from_zenoh(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
-        """Take a message that came over Zenoh."""
-        number = sample_info.sequence
-        if number <= self.last:
-            return
-        if self.route is Route.IPC or self.route is Route.RECOVERING:
-            self._hold(msg, sample_info)
-            self._recover()
-            return
-        self._next(msg, sample_info, inline_deadline_ns)
-        if self.route is Route.BOTH and number >= self._base:
-            self.switch()
+def subscription_in(frame: Frame) -> bytes:
+    """Return the gid of the subscription that a control frame names.
 
-    def from_link(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
-        """Take a message that came over the link; before `opened` it is for another reader."""
-        if self.route is Route.BOTH:
-            self._hold(msg, sample_info)
-            if len(self._held) >= MAX_HELD:
-                self.switch()
-        elif self.route is Route.IPC and sample_info.sequence > self.last:
-            self._next(msg, sample_info, inline_deadline_ns)
-            held = self._held
-            while held and (oldest := next(iter(held))) <= self.last:
-                del held[oldest]
-            self.steady = not held
-        elif self.route is Route.RECOVERING and self._linked and sample_info.sequence > self.last:
-            self._hold(msg, sample_info)
-            self._recover()
-
-    def from_retransmit(self, msg: Any, sample_info: SampleInfo) -> None:
-        """Take a message that a broken link has left unsaid."""
-        if sample_info.sequence <= self.last:
-            return
-        if self.route is Route.ZENOH:  # it was never opened here: what is older was sent over Zenoh
-            self.route = Route.RECOVERING
-            self._base = sample_info.sequence - 1
-            self._owed = max(self._owed, 1)
-        self._hold(msg, sample_info)
-        self._recover()
-
-    def switch(self) -> None:
-        """Take the link from now on, and what it brought so far first."""
-        if self.route is Route.BOTH:
-            self._release()
-            self.route = Route.IPC
-            self.steady = True
-
-    def broken(self) -> None:
-        """Take Zenoh again, as soon as nothing is missing: the link has ended."""
-        self._owed += 1
-        self._linked = False
-        self.steady = False
-        if self.route is not Route.ZENOH:
-            self.route = Route.RECOVERING
-            self._recover()
-
-    def retransmit_done(self) -> None:
-        """Note that all that a broken link left unsaid has been said."""
-        self._owed = max(self._owed - 1, 0)
-        self._recover()
-
-    def finish(self) -> None:
-        """Mend no longer: what has not come by now was lost."""
-        if self.route is Route.RECOVERING:
-            self._owed = 0
-            self._release()
-            self.route = Route.IPC if self._linked else Route.ZENOH
-            self.steady = self._linked
-
-    def _next(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
-        self.last = sample_info.sequence
-        self._deliver(msg, sample_info, inline_deadline_ns)
-
-    def _hold(self, msg: Any, sample_info: SampleInfo) -> None:
-        self._held[sample_info.sequence] = (msg, sample_info)
-        self.steady = False
-        if self.route is Route.IPC and len(self._held) > MAX_HELD:
-            del self._held[next(iter(self._held))]  # a copy: it comes over the link, or by post
-        elif len(self._held) > MAX_MENDING:
-            self.finish()
-
-    def _recover(self) -> None:
-        if self.route is not Route.RECOVERING:
-            return
-        while self.last + 1 in self._held:
-            self._next(*self._held.pop(self.last + 1))
-        if not self._owed and self.last >= self._base:
-            if self._linked:  # what is held came over Zenoh, ahead of the link
-                self.route = Route.IPC
-                self.steady = not self._held
-            else:
-                self.finish()
-
-    def _release(self) -> None:
-        """Deliver all that is held."""
-        held, self._held = self._held, {}
-        for number in sorted(held):
-            if number > self.last:
-                self._next(*held[number])
+    Raises:
+        FrameError: there is none.
+    """
+    if len(frame.payload) != GID_SIZE:
+        raise FrameError(
+            f"expected the gid of a subscription, got {len(frame.payload)} bytes "
+            f"in a frame of kind {frame.kind}"
+        )
+    return frame.payload
 
 
 def can_link(publisher: EndpointInfo) -> bool:
     """Whether a publisher's messages may go over a link.
 
-    Those that are kept for late readers are kept by Zenoh, which has to know them all.
+    Not those of a transient-local publisher: Zenoh keeps them for late subscriptions, and therefore
+    has to carry them all.
     """
     return publisher.qos.resolved().durability is not DurabilityPolicy.TRANSIENT_LOCAL

@@ -1,4 +1,4 @@
-"""Publishers with two ways to each subscription: here it is decided which one a message takes."""
+"""Publishers, which send each message over links, over Zenoh, or both."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from aionode.graph import EndpointKind
 from aionode.qos import ReliabilityPolicy, depth_of, keeps_all
 from aionode.transport.base import Writer
 from aionode.transport.ipc import _protocol as protocol
-from aionode.transport.ipc._protocol import BufferRef, Kind
+from aionode.transport.ipc._protocol import BufferRef, Gone, Opened
 from aionode.transport.ipc._send_queue import DATA, IpcSendQueue, RemoteSubscription
 from aionode.transport.ipc._shared_memory import SHARED_FROM
 from aionode.wire import cdr
@@ -20,42 +20,47 @@ if TYPE_CHECKING:
     from aionode.graph import EndpointInfo
     from aionode.transport.base import SampleInfo
     from aionode.transport.ipc._connection import Connection
-    from aionode.transport.ipc._manager import LinkManager
+    from aionode.transport.ipc._protocol import Credit, Open
+    from aionode.transport.ipc._registry import LinkRegistry
     from aionode.wire.cdr import Data
 
 __all__ = ["IpcWriter"]
 
 
 class IpcWriter(Writer):
-    """A publisher. Here it is decided which way each message takes.
+    """A publisher, which decides the route of each message.
 
     Args:
-        manager: The links of this context.
+        registry: The links of this context.
         endpoint: The publisher.
-        msg_type: Its messages.
-        zenoh: Its other way.
+        msg_type: The type of its messages.
+        zenoh: Its registration with Zenoh.
     """
 
     def __init__(
-        self, manager: LinkManager, endpoint: EndpointInfo, msg_type: type[Any], zenoh: Writer
+        self, registry: LinkRegistry, endpoint: EndpointInfo, msg_type: type[Any], zenoh: Writer
     ) -> None:
         self.endpoint = endpoint
         self.bounded = keeps_all(endpoint.qos)
-        self._manager = manager
+        self._registry = registry
         self._gid = endpoint.gid
         self._zenoh = zenoh
         self._msg_type = msg_type
         self._reliable = endpoint.qos.resolved().reliability is ReliabilityPolicy.RELIABLE
+        # One for each process that has asked for the messages; removed when its last subscription
+        # leaves, when the link ends, or when the publisher is destroyed.
         self._send_queues: dict[Connection, IpcSendQueue] = {}
+        # The number of the last message, as far as it was encoded for anything.
         self._sequence = 0
-        # Made when it is needed: most publishers of a node are never heard.
+        # Made when it is needed: most publishers of a node are never heard over a link.
         self._encode: Callable[[Any], bytes] | None = None
         self._shares = False
-        # Whether Zenoh has to carry messages too: somebody is matched who has not switched.
+        # Whether Zenoh has to carry messages too: a matched subscription has not switched.
         self._needs_zenoh = True
+        # The registry's `changes` when that was computed; -1 to compute it again.
         self._asked_at = -1
+        # How many messages were dropped in send queues that were removed.
         self._dropped = 0
-        manager.writers[endpoint.gid] = self
 
     @property
     def active(self) -> bool:  # type: ignore[override]  # asked for each message, and so computed
@@ -69,14 +74,14 @@ class IpcWriter(Writer):
         return self._dropped + linked + self._zenoh.dropped
 
     def route_of(self, reader: EndpointInfo) -> str | None:
-        """Return ``link``, ``zenoh``, or both while somebody else still needs Zenoh."""
+        """Return ``link``, ``zenoh``, or both while another subscription still needs Zenoh."""
         if not any(reader.gid in send_queue.readers for send_queue in self._send_queues.values()):
             return self._zenoh.route_of(reader)
         return "link and zenoh" if self.update() else "link"
 
     @property
     def linked(self) -> int:
-        """How many subscriptions get their messages over a link only."""
+        """How many subscriptions receive over a link only."""
         return sum(
             reader.switched
             for send_queue in self._send_queues.values()
@@ -84,7 +89,7 @@ class IpcWriter(Writer):
         )
 
     def write(self, msg: Any, sample_info: SampleInfo) -> None:
-        """Send `msg` each way that somebody needs."""
+        """Send `msg` over each route that a subscription needs."""
         send_queues = self._send_queues
         if send_queues:
             encode = self._encode
@@ -97,12 +102,14 @@ class IpcWriter(Writer):
             elif len(payload := encode(msg)) >= SHARED_FROM:
                 self._write_parts([payload], sample_info)
             else:
-                # `protocol.pack` written out: a call less for each message.
+                # `protocol.pack` inlined: one call less for each message.
                 head = protocol.HEADER.pack(
                     len(payload), DATA, 0, protocol.MARK, sequence, sample_info.source_ns, self._gid
                 )
                 data = head + payload
-                for send_queue in tuple(send_queues.values()):  # one may turn out to be broken
+                for send_queue in tuple(
+                    send_queues.values()
+                ):  # one may prove to be broken, and is removed
                     send_queue.send(sequence, data)
             self._sequence = sequence
         if self._needs_zenoh and self.update():
@@ -111,8 +118,8 @@ class IpcWriter(Writer):
             self._sequence = sample_info.sequence
 
     def _write_parts(self, parts: Sequence[Data], sample_info: SampleInfo) -> None:
-        """Send what may be large: in memory, once for all routes, if it is and there is some."""
-        pool = self._manager.pool
+        """Send what may be large: if it is, in one shared buffer for all links."""
+        pool = self._registry.pool
         size = sum(map(len, parts))
         buffer = pool.filled(parts, size) if size >= SHARED_FROM else None
         payload = b"".join(parts) if buffer is None else BufferRef(buffer.number, size).pack()
@@ -126,13 +133,13 @@ class IpcWriter(Writer):
             pool.release(buffer)
 
     def has_room(self) -> bool:
-        """Whether nobody would lose one more message."""
+        """Whether one more message could be sent without dropping any."""
         return all(send_queue.has_room() for send_queue in self._send_queues.values()) and (
             not self._needs_zenoh or self._zenoh.has_room()
         )
 
     async def drain(self) -> None:
-        """Wait until `has_room`, and what was written has been handed on."""
+        """Wait until everything was handed to the operating system, or to Zenoh."""
         while slow := [
             send_queue for send_queue in self._send_queues.values() if not send_queue.is_done()
         ]:
@@ -141,18 +148,18 @@ class IpcWriter(Writer):
 
     def close(self) -> None:
         """Withdraw the publisher."""
-        self._manager.writers.pop(self._gid, None)
+        self._registry.remove(self._gid)
         self._zenoh.close()
-        gone = protocol.pack(Kind.GONE, 0, 0, self._gid)
+        gone = Gone(self._gid).pack()
         for send_queue in self._send_queues.values():
             send_queue.end(gone)
-            self._manager.keep(self._gid, send_queue)
+            self._registry.keep(self._gid, send_queue)
         self._send_queues.clear()
 
-    # What readers at the other end of a link want
+    # Control frames of subscriptions at the other end of a link
 
-    def open(self, connection: Connection, reader: bytes, window: int, *, confirms: bool) -> None:
-        """Send to `reader` from the next message on."""
+    def open(self, connection: Connection, asked: Open) -> None:
+        """Send to a subscription from the next message on."""
         send_queue = self._send_queues.get(connection)
         if send_queue is None:
             send_queue = IpcSendQueue(
@@ -163,33 +170,35 @@ class IpcWriter(Writer):
             )
             self._send_queues[connection] = send_queue
         send_queue.add(
-            reader,
+            asked.subscription,
             RemoteSubscription(
-                window if self.bounded else 0,  # who drops its oldest waits for nobody
+                asked.window
+                if self.bounded
+                else 0,  # KEEP_LAST drops its oldest instead of waiting
                 0,
                 self._sequence,
-                confirms=confirms and self._reliable,
+                confirms=asked.confirms and self._reliable,
             ),
         )
-        connection.send(Kind.OPENED, self._sequence, self._gid, reader)
+        connection.send(Opened(self._gid, asked.subscription, self._sequence))
         self.update()
 
     def switched(self, connection: Connection, reader: bytes) -> None:
-        """Note that `reader` needs Zenoh no longer."""
+        """Stop sending to `reader` over Zenoh."""
         send_queue = self._send_queues.get(connection)
         if send_queue is not None and reader in send_queue.readers:
             send_queue.readers[reader].switched = True
             self._asked_at = -1
             self.update()
 
-    def credit(self, connection: Connection, reader: bytes, used: int, confirmed: int) -> None:
-        """Note that `reader` has used `used` more messages, and has those up to a number."""
+    def credit(self, connection: Connection, credit: Credit) -> None:
+        """Take the credit of a subscription."""
         send_queue = self._send_queues.get(connection)
         if send_queue is not None:
-            send_queue.credit(reader, used, confirmed)
+            send_queue.credit(credit)
 
     def leave(self, connection: Connection, reader: bytes) -> None:
-        """Send to `reader` no longer."""
+        """Stop sending to `reader`."""
         send_queue = self._send_queues.get(connection)
         if send_queue is None:
             return
@@ -199,7 +208,7 @@ class IpcWriter(Writer):
         self.update()
 
     def broken(self, connection: Connection) -> Iterator[bytes]:
-        """Use `connection` no longer: it is closed; yield the frames that may not have arrived."""
+        """Stop using `connection`, which is closed; yield the frames that may not have arrived."""
         send_queue = self._forget(connection)
         self.update()
         return iter(()) if send_queue is None else send_queue.unacked()
@@ -212,12 +221,12 @@ class IpcWriter(Writer):
         return send_queue
 
     def update(self) -> bool:
-        """Find out whether somebody needs Zenoh: with a token, or a stranger without."""
-        manager = self._manager
-        if not self._send_queues or manager.has_unannounced_peers:
+        """Return whether a subscription needs Zenoh: it has not switched, or is not announced."""
+        registry = self._registry
+        if not self._send_queues or registry.has_unannounced_peers:
             self._needs_zenoh = True
-        elif self._asked_at != manager.changes:
-            self._asked_at = manager.changes
+        elif self._asked_at != registry.changes:
+            self._asked_at = registry.changes
             switched = {
                 gid
                 for send_queue in self._send_queues.values()
@@ -226,7 +235,7 @@ class IpcWriter(Writer):
             }
             self._needs_zenoh = any(
                 other.gid not in switched
-                for other in manager.remote(EndpointKind.SUBSCRIPTION, self.endpoint.name)
+                for other in registry.remote(EndpointKind.SUBSCRIPTION, self.endpoint.name)
                 if self.endpoint.matches(other)
             )
         return self._needs_zenoh

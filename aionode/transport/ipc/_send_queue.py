@@ -1,4 +1,4 @@
-"""Messages from one publisher to one other process: waiting, sent, unacknowledged."""
+"""Messages of one publisher for one other process: waiting, or sent and not confirmed."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from aionode.transport.ipc._connection import Connection
+    from aionode.transport.ipc._protocol import Credit
     from aionode.transport.ipc._shared_memory import SharedBuffer
 
 __all__ = ["DATA", "IpcSendQueue", "RemoteSubscription"]
@@ -21,13 +22,23 @@ MAX_READERS: Final = 1_000
 """How many subscriptions to one topic a process may have."""
 
 MAX_UNCONFIRMED: Final = 20_000
-"""How many messages are kept until they are confirmed; more than any reader has that confirms."""
+"""How many messages are kept until they are confirmed: more than a subscription leaves unconfirmed
+whose process works.
+"""
 
 DATA: Final = int(Kind.DATA)
 
 
 class RemoteSubscription:
-    """A subscription at the other end of a link, as its publisher sees it."""
+    """A subscription at the other end of a link, as its publisher sees it.
+
+    Attributes:
+        window: How many messages may be sent beyond what it has used; 0 for any number.
+        used: How many messages it has used, counted like those that were sent.
+        confirmed: The number of the last message that it has confirmed.
+        confirms: Whether it confirms messages at all.
+        switched: Whether it takes messages from the link only.
+    """
 
     __slots__ = ("confirmed", "confirms", "switched", "used", "window")
 
@@ -40,16 +51,18 @@ class RemoteSubscription:
 
 
 class IpcSendQueue:
-    """The way from one publisher to the subscriptions of one other process.
+    """Sends the messages of one publisher to the subscriptions of one other process.
 
-    A message waits here while the socket is full, or a KEEP_ALL subscription has no window for it;
-    the oldest is dropped if that may be. What was sent is kept until it is confirmed.
+    A message waits here while the socket is full, or while the window of a KEEP_ALL subscription is
+    used up; a KEEP_LAST publisher drops the oldest beyond its depth. What was sent is kept until it
+    is confirmed.
 
     Attributes:
         name: The topic.
         connection: The link.
-        readers: The subscriptions, by gid.
-        dropped: How many messages were dropped because others waited.
+        readers: The subscriptions, by gid; changes with their `Open` and `Close`.
+        confirmed: Whether any of them confirms messages.
+        dropped: How many messages were dropped because the queue was full.
     """
 
     __slots__ = (
@@ -74,64 +87,65 @@ class IpcSendQueue:
         self.confirmed = False
         self._depth = depth
         self._keep_all = keep_all
-        self._limited = False
-        self._sent = 0
-        # By number: the frame, and the memory that holds its payload.
+        self._limited = False  # whether a subscription has a window
+        self._sent = 0  # how many frames the connection has taken
+        # Number, frame, and the buffer that holds its payload. What waits for the socket or for a
+        # window, and what was sent and is not confirmed by every subscription that confirms.
         self._waiting: deque[tuple[int, bytes, SharedBuffer | None]] = deque()
         self._unconfirmed: deque[tuple[int, bytes, SharedBuffer | None]] = deque()
 
-    # Who listens
+    # Subscriptions
 
     def add(self, gid: bytes, reader: RemoteSubscription) -> None:
-        """Send to a reader from now on.
+        """Send to a subscription from now on.
 
         Raises:
-            FrameError: there are more of them than can be.
+            FrameError: the process has more than `MAX_READERS` of them.
         """
         if len(self.readers) >= MAX_READERS:
             raise FrameError(f"more than {MAX_READERS} subscriptions of one process to {self.name}")
         reader.used = self._sent
         self.readers[gid] = reader
-        self._note_readers()
+        self._readers_changed()
 
     def remove(self, gid: bytes) -> None:
-        """Send to a reader no longer."""
+        """Stop sending to a subscription."""
         self.readers.pop(gid, None)
-        self._note_readers()
+        self._readers_changed()
         self._confirm()
         self.on_writable()
 
-    def _note_readers(self) -> None:
+    def _readers_changed(self) -> None:
         self.confirmed = any(reader.confirms for reader in self.readers.values())
         self._limited = any(reader.window for reader in self.readers.values())
 
-    def credit(self, gid: bytes, used: int, confirmed: int) -> None:
-        """Note that a reader has used so many more messages, and has those up to a number."""
-        reader = self.readers.get(gid)
+    def credit(self, credit: Credit) -> None:
+        """Extend the window of a subscription, and forget what it has confirmed."""
+        reader = self.readers.get(credit.subscription)
         if reader is None:
             return
-        reader.used += used
-        reader.confirmed = confirmed
+        reader.used += credit.used
+        reader.confirmed = credit.confirmed
         self._confirm()
         if self._waiting:
             self.on_writable()
         self.connection.wake()
 
     def _confirm(self) -> None:
-        """Forget what everybody has."""
-        everybody = min(
+        """Forget what every subscription has confirmed."""
+        confirmed = min(
             (reader.confirmed for reader in self.readers.values() if reader.confirms),
             default=1 << 63,
         )
         unconfirmed = self._unconfirmed
-        while unconfirmed and unconfirmed[0][0] <= everybody:
+        while unconfirmed and unconfirmed[0][0] <= confirmed:
             self._let_go(unconfirmed.popleft()[2])
 
-    # What is sent
+    # Sending
 
     def send(self, sequence: int, data: bytes, buffer: SharedBuffer | None = None) -> None:
-        """Send a frame in its turn; without waiting where that is possible."""
-        if not (self._limited or self._waiting or buffer):  # `_pass` in fewer calls
+        """Send a frame after those that wait; at once if none does."""
+        if not (self._limited or self._waiting or buffer):  # `_pass` inlined: fewer calls
             if self.confirmed:
                 self._unconfirmed.append((sequence, data, None))
             if self.connection.write(data):
@@ -152,19 +166,19 @@ class IpcSendQueue:
             self.connection.when_writable(self)
 
     def _pass(self, sequence: int, data: bytes, buffer: SharedBuffer | None) -> bool:
-        """Give a frame to the connection, if that and all readers can take it."""
+        """Give a frame to the connection if that, and the window of each subscription, allow it."""
         if self._limited and not self._has_window():
             return False
         if buffer is not None:
-            buffer.users += 1  # of the receiver
+            buffer.users += 1  # the receiver
         if self.confirmed:
             if buffer is not None:
                 buffer.users += 1
-            # First, as the link may turn out to be broken.
+            # Before writing, which may find that the link is broken.
             self._unconfirmed.append((sequence, data, buffer))
         if not self.connection.write(data, buffer):
             self._let_go(buffer)
-            if self.connection.closed:  # it has taken what is unconfirmed along
+            if self.connection.closed:  # `unacked` has taken what is unconfirmed
                 return True
             if self.confirmed:
                 self._unconfirmed.pop()
@@ -180,7 +194,7 @@ class IpcSendQueue:
             self.connection.pool.release(buffer)
 
     def on_writable(self) -> None:
-        """Send what waits, as far as the socket and the readers take it."""
+        """Send what waits, as far as the socket and the windows allow."""
         waiting = self._waiting
         while waiting and self._pass(*waiting[0]):
             self._let_go(waiting.popleft()[2])
@@ -194,7 +208,7 @@ class IpcSendQueue:
         )
 
     def has_room(self) -> bool:
-        """Whether one more can wait."""
+        """Whether one more message can wait."""
         return len(self._waiting) < self._depth
 
     def is_done(self) -> bool:
@@ -202,11 +216,11 @@ class IpcSendQueue:
         return not self._waiting and self.connection.idle
 
     def end(self, last: bytes) -> None:
-        """Send what waits, whoever has a window for it, and then one last frame."""
+        """Send what waits without regard to windows, and then one last frame."""
         self._limited = False
         self._keep_all = True
         self.send(0, last)
-        self.on_writable()  # a window may have been waited for, and no credit comes
+        self.on_writable()  # the queue may have waited for a window
 
     @property
     def waiting(self) -> int:
@@ -215,18 +229,18 @@ class IpcSendQueue:
 
     @property
     def settled(self) -> bool:
-        """Whether nothing waits, and nothing has to be sent again if the link breaks."""
+        """Whether nothing waits, and nothing has to be retransmitted if the link breaks."""
         return not (self._waiting or self._unconfirmed)
 
     def drop(self) -> None:
-        """Give up what is not known to have arrived."""
+        """Forget what is not confirmed."""
         for entries in (self._unconfirmed, self._waiting):
             for _, _, buffer in entries:
                 self._let_go(buffer)
             entries.clear()
 
     def unacked(self) -> Iterator[bytes]:
-        """Yield, as frames with everything in them, what is not known to have arrived."""
+        """Yield what is not confirmed, as frames with their payload in them, and forget it."""
         for entries in (self._unconfirmed, self._waiting):
             for _, data, buffer in entries:
                 yield data if buffer is None else whole(data, buffer)

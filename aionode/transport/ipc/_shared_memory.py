@@ -1,10 +1,10 @@
-"""Large payloads: in memory that two processes share, and say the place of.
+"""Shared memory for large payloads.
 
-The sender copies a payload, once, into memory that it keeps and uses again, because fresh pages
-cost far more than the copy. Sealed, the memory can neither shrink nor be written to by whoever
-receives it. The first frame to a process brings the descriptor; the receiver maps the memory
-read-only, decodes in place, and keeps the mapping, so that later frames bring a number only. When
-the last array that looks at a payload is gone, the receiver gives the memory back.
+The sender copies a payload, once, into a buffer that it keeps and uses again, because fresh pages
+cost far more than the copy. The buffer is sealed: it cannot shrink, and its receivers cannot write
+to it. The first frame to a process comes with the buffer's descriptor; the receiver maps the buffer
+read-only, decodes in place, and keeps the mapping, so that later frames contain only the buffer's
+number. When the last array that refers to a payload is gone, the receiver releases the buffer.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import FrameError
 
-with suppress(ImportError):  # of Windows, where nobody links, but this is imported all the same
+with suppress(ImportError):  # on Windows, which has no links, but imports this all the same
     import fcntl
 
 if TYPE_CHECKING:
@@ -30,32 +30,32 @@ if TYPE_CHECKING:
 __all__ = ["SHARED_FROM", "BufferMappings", "BufferPool", "SharedBuffer"]
 
 SHARED_FROM: Final = 1 << 17
-"""From this size on, in bytes, a payload is shared: below it costs less to send it.
+"""From this size on, in bytes, a payload is shared; a smaller one is cheaper to send.
 
-As `benchmarks/ipc_shared_memory.py` measures it: 210 µs against 210 at this size, 320 against 1030
-at twice that, which is more than the buffer of a socket takes at once, and 157 against 148 at half.
+Shared against sent, by `benchmarks/ipc_shared_memory.py`: 210 µs against 210 at this size, 320
+against 1030 at twice the size, which a socket does not take at once, and 157 against 148 at half.
 """
 
 MAX_IDLE: Final = 1 << 26
-"""How much memory is kept for later, in bytes."""
+"""How much memory is kept in idle buffers, in bytes."""
 
 MOST_IDLE: Final = 8
-"""How many pieces of memory are kept for later; each takes two descriptors, and one at the peer."""
+"""How many idle buffers are kept; each takes two descriptors, and one in the other process."""
 
 STEPS: Final = 8
-"""How many sizes of memory there are between a power of two and the next.
+"""How many sizes of buffers there are between two powers of two.
 
-Payloads whose size varies a little, as of compressed images, then fit where another one was.
+Payloads whose size varies a little, like compressed images, then fit into the same buffer.
 """
 
 MAX_MAPPINGS: Final = 400
-"""How many pieces of memory one sender may give; it lends fewer, and keeps a few."""
+"""How many buffers of one sender are mapped at most; it lends fewer, and keeps a few idle."""
 
 F_SEAL_FUTURE_WRITE: Final = 0x0010
-"""Linux 5.1: nobody can make another writable mapping. Python does not name it."""
+"""Linux 5.1: no further writable mapping can be created. Python has no name for it."""
 
 SEALS: Final = 0x0002 | 0x0004
-"""F_SEAL_SHRINK and F_SEAL_GROW of Linux, which other systems do not name."""
+"""F_SEAL_SHRINK and F_SEAL_GROW of Linux; Python on other systems has no names for them."""
 
 PAGE: Final = mmap.PAGESIZE
 
@@ -64,14 +64,14 @@ PAGE: Final = mmap.PAGESIZE
 
 
 class SharedBuffer:
-    """A piece of memory and its descriptor.
+    """A piece of shared memory and its descriptor.
 
     Attributes:
-        number: Its name in `BufferRef` and `RELEASE`; no other memory of the pool ever has it.
-        size: How many bytes it has room for.
+        number: Identifies it in `BufferRef`, `Release` and `Forget`; unique in the pool, for ever.
+        size: Its size in bytes.
         fd: Its descriptor.
         users: How many queues and receivers hold it.
-        retired: Whether a receiver may look at it for ever: it is not used again.
+        retired: Whether it must not be used again: a receiver may never release it.
     """
 
     __slots__ = ("_map", "fd", "number", "retired", "size", "users")
@@ -91,7 +91,7 @@ class SharedBuffer:
             raise
 
     def fill(self, parts: Sequence[Data]) -> None:
-        """Copy `parts` to the beginning, one after the other; they fit."""
+        """Copy `parts`, which must fit, one after the other to the beginning."""
         place = 0
         for part in parts:
             end = place + len(part)
@@ -99,11 +99,11 @@ class SharedBuffer:
             place = end
 
     def read(self, size: int) -> bytes:
-        """Return a copy of the first `size` bytes, for where the memory itself cannot go."""
+        """Return a copy of the first `size` bytes, to send them without the buffer."""
         return self._map[:size]
 
     def close(self) -> None:
-        """Give it back to the system; who has mapped it keeps it."""
+        """Close it; processes that have mapped it can still read it."""
         self._map.close()
         os.close(self.fd)
 
@@ -112,25 +112,27 @@ SIZE_OF: Final = attrgetter("size")
 
 
 class BufferPool:
-    """The memory of one sender.
+    """The buffers of one sender.
 
     Attributes:
-        listeners: Called with the number of each memory that is closed, so that who was given it
-            can be told to forget its mapping.
+        listeners: Called with the number of each buffer that is closed, so that receivers can be
+            told to forget it. Each open connection has one.
     """
 
     def __init__(self) -> None:
         self.listeners: set[Callable[[int], object]] = set()
         self._numbers = count(1)
-        self._idle: list[SharedBuffer] = []  # the last used last
+        # Buffers that nothing uses, the last used at the end: from their release until they are
+        # filled again or closed.
+        self._idle: list[SharedBuffer] = []
         self._closed = False
 
     def filled(self, parts: Data | Sequence[Data], size: int | None = None) -> SharedBuffer | None:
-        """Return memory that holds a payload for its first user; None if the system has none.
+        """Return a buffer with a payload, held by one user; None if the system has no memory.
 
         Args:
-            parts: The payload, or what it consists of, each of single bytes.
-            size: Of all parts together, in bytes.
+            parts: The payload, or its parts, which must be buffers of single bytes.
+            size: The size of all parts together, in bytes.
         """
         if isinstance(parts, bytes | bytearray | memoryview):
             parts = (parts,)
@@ -140,14 +142,14 @@ class BufferPool:
         if buffer is None:
             try:
                 buffer = SharedBuffer(next(self._numbers), rounded(size))
-            except OSError:  # no descriptors or no memory left: it is sent without
+            except OSError:  # no descriptors or no memory left: the payload goes through the stream
                 return None
         buffer.fill(parts)
         buffer.users = 1
         return buffer
 
     def _taken(self, size: int) -> SharedBuffer | None:
-        """Return the idle memory that fits best; the last used of those, as caches know it."""
+        """Return the idle buffer that fits best; of several the last used: caches have it."""
         fitting = [one for one in reversed(self._idle) if size <= one.size <= 4 * size + PAGE]
         if not fitting:
             return None
@@ -156,7 +158,7 @@ class BufferPool:
         return buffer
 
     def release(self, buffer: SharedBuffer) -> None:
-        """Note that one user is done with `buffer`."""
+        """Count one user of `buffer` less; without users it becomes idle or is closed."""
         buffer.users -= 1
         if buffer.users:
             return
@@ -173,14 +175,14 @@ class BufferPool:
             listener(buffer.number)
 
     def close(self) -> None:
-        """Give back what is idle now, and the rest when it is released."""
+        """Close the idle buffers now, and the others when they are released."""
         self._closed = True
         while self._idle:
             self._close(self._idle.pop())
 
 
 def rounded(size: int) -> int:
-    """Return how large memory for `size` bytes is made; pages that are not used cost nothing."""
+    """Return the size of a buffer for `size` bytes; pages that are not used cost nothing."""
     step = max(PAGE, (1 << size.bit_length()) // (2 * STEPS))
     return -(-size // step) * step
 
@@ -189,16 +191,18 @@ def rounded(size: int) -> int:
 
 
 class BufferMappings:
-    """The memory of one sender, as its receiver has mapped it.
+    """The buffers of one sender that its receiver has mapped.
 
-    A mapping is kept until the sender forgets its memory or the link ends: its pages are looked up
-    once, not for each payload. How many there are is up to the sender, which keeps few
-    (`BufferPool`) beside those that somebody here still looks at.
+    A mapping is kept until the sender closes its buffer or the link ends, so that its pages are
+    mapped once, not for each payload. The sender decides how many there are: it keeps few idle ones
+    (`BufferPool`) beside those that are still read here.
     """
 
     def __init__(self) -> None:
+        # By the number of the buffer: from its first frame until `forget` or `close`.
         self._maps: dict[int, mmap.mmap] = {}
-        # By the identity of the reference, which this keeps alive.
+        # By the id of a weak reference to a payload, which this keeps alive: the reference, and
+        # what to call when the payload is gone. One is added for each payload.
         self._watched: dict[int, tuple[weakref.ref[Any], Callable[[], object]]] = {}
 
     def __len__(self) -> int:
@@ -207,33 +211,33 @@ class BufferMappings:
     def view(
         self, number: int, size: int, fd: int | None, done: Callable[[], object]
     ) -> memoryview:
-        """Return the first `size` bytes of a memory, read-only.
+        """Return the first `size` bytes of a buffer, read-only.
 
         Args:
-            number: The memory's, from its sender.
-            size: Of the payload.
-            fd: The memory's descriptor, if it came with the frame; it is closed.
-            done: Called once, on any thread, when nothing looks at this payload any more: no view,
+            number: The buffer's number.
+            size: The size of the payload in bytes.
+            fd: The buffer's descriptor, if it came with the frame; it is closed.
+            done: Called once, on any thread, when nothing refers to this payload any more: no view,
                 no slice of one, and no array made of one. Not called if this raises, nor after
                 `close`.
 
         Raises:
-            FrameError: the memory is not known, not sealed, or smaller than `size`.
+            FrameError: the buffer is not known, not sealed, or smaller than `size`.
         """
         if fd is not None:
             if len(self._maps) >= MAX_MAPPINGS:
                 os.close(fd)
-                raise FrameError(f"more than {MAX_MAPPINGS} pieces of memory")
+                raise FrameError(f"more than {MAX_MAPPINGS} shared buffers")
             self._maps[number] = sealed_map(fd, size)
         found = self._maps.get(number)
         if found is None:
-            raise FrameError(f"memory {number}, whose descriptor never came")
+            raise FrameError(f"shared buffer {number}, whose descriptor never came")
         if not 0 < size <= len(found):
-            raise FrameError(f"{size} bytes in a memory of {len(found)}")
+            raise FrameError(f"a payload of {size} bytes in a shared buffer of {len(found)}")
         import numpy as np
 
-        # Slices of a view keep alive only what it is a view of. Each payload has one of its own,
-        # which also can say when it goes; neither holds for the mapping.
+        # A slice of a view keeps only the object behind the view alive. So each payload gets an
+        # object of its own, which can also be weakly referenced; a mapping is shared by payloads.
         payload: Any = np.frombuffer(found, np.uint8, size)
         watch = weakref.ref(payload, self._on_gone)  # weakref.finalize costs three times as much
         self._watched[id(watch)] = watch, done
@@ -245,22 +249,23 @@ class BufferMappings:
             watched[1]()
 
     def forget(self, number: int) -> None:
-        """Drop the mapping of a memory that its sender has closed; views of it stay valid."""
+        """Drop the mapping of a buffer that its sender has closed; views of it stay valid."""
         self._maps.pop(number, None)
 
     def close(self) -> None:
-        """Drop all; views stay valid."""
+        """Drop all mappings; views stay valid."""
         self._maps.clear()
         self._watched.clear()
 
 
 def sealed_map(fd: int, size: int) -> mmap.mmap:
-    """Return all that is behind `fd`, at least `size` bytes, read-only; `fd` is closed.
+    """Map the whole buffer behind `fd` read-only, and close `fd`.
 
-    Pages are left to be found when they are read: `MAP_POPULATE` takes as long as that does.
+    Pages are mapped when they are read: `MAP_POPULATE` takes as long as that does.
 
     Raises:
-        FrameError: it is no sealed memory of this size. Reading one that shrinks ends the process.
+        FrameError: it is not a sealed buffer of at least `size` bytes. Reading one that shrinks
+            would end the process.
     """
     try:
         seals = fcntl.fcntl(fd, fcntl.F_GET_SEALS)
@@ -268,9 +273,9 @@ def sealed_map(fd: int, size: int) -> mmap.mmap:
         fits = seals & SEALS == SEALS and 0 < size <= whole
         found = mmap.mmap(fd, whole, mmap.MAP_SHARED, mmap.PROT_READ) if fits else None
     except OSError as error:
-        raise FrameError(f"memory that cannot be mapped: {error}") from error
+        raise FrameError(f"a shared buffer cannot be mapped: {error}") from error
     finally:
         os.close(fd)
     if found is None:
-        raise FrameError(f"memory that is not sealed, or smaller than {size} bytes")
+        raise FrameError(f"a shared buffer is not sealed, or smaller than {size} bytes")
     return found

@@ -1,15 +1,35 @@
-"""Subscriptions, each with two ways from every publisher."""
+"""Subscriptions that hear each remote publisher over Zenoh, a link, or both during a hand-over.
+
+The hand-over moves a stream from one route to the other without losing, duplicating or reordering
+messages. A subscription hears a publisher of another process over Zenoh first. When the two
+processes are linked:
+
+1. The subscription asks for the publisher (`Open`).
+2. The publisher answers with the number of its last message (`Opened`), and writes to both routes
+   from the next one on.
+3. The subscription goes on with what arrives over Zenoh and holds what arrives over the link, until
+   Zenoh has delivered that number or a later one: then nothing older is on its way. If Zenoh stays
+   silent, it has lost the message, or was not matched when it was sent: the wait ends as well.
+4. The subscription takes the link and says so (`Switched`), and the publisher stops writing to
+   Zenoh if no other subscription needs it. Copies that Zenoh delivers ahead of the link are held.
+
+When the link ends, the publisher goes on over Zenoh and retransmits what the subscription has not
+confirmed, to the subscription's process alone, so that no other subscription gets it twice; then it
+says that this was all (`RetransmitDone`). Meanwhile the subscription recovers: it takes the next
+number from any route, also from a new link, and holds what is further ahead.
+"""
 
 from __future__ import annotations
 
+import enum
 from collections import deque
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import DecodeError, FrameError
 from aionode.message import fields
-from aionode.qos import ReliabilityPolicy, keeps_all
+from aionode.qos import ReliabilityPolicy, depth_of, keeps_all
 from aionode.transport.base import Registration, SampleInfo
-from aionode.transport.ipc._protocol import Handover, Kind, Route, can_link
+from aionode.transport.ipc._protocol import Close, Credit, Open, Switched, can_link
 from aionode.wire import cdr
 
 if TYPE_CHECKING:
@@ -18,210 +38,385 @@ if TYPE_CHECKING:
     from aionode.graph import EndpointInfo
     from aionode.transport.base import Reader
     from aionode.transport.ipc._connection import Connection
-    from aionode.transport.ipc._manager import LinkManager
     from aionode.transport.ipc._protocol import Frame
+    from aionode.transport.ipc._registry import LinkRegistry
     from aionode.wire.cdr import Data
 
-__all__ = ["IpcReader", "RemotePublisher", "ZenohFilter", "may_be_large"]
+__all__ = ["IpcReader", "RemotePublisher", "Route", "may_be_large"]
 
 WINDOW: Final = 1_000
-"""How many messages a KEEP_ALL reader lets a publisher send ahead of what it has used."""
+"""How many messages a KEEP_ALL subscription lets a publisher send ahead of what it has used."""
 
 MAX_FULL: Final = 50_000
-"""How many messages wait here for room: those ahead, and what a publisher sends when it ends."""
+"""How many messages may wait for room in a KEEP_ALL subscription: its window, and what a publisher
+sends when it is destroyed.
+"""
+
+MAX_HELD: Final = 2_000
+"""How many messages are held at most until Zenoh has caught up; with more the link is taken.
+
+A reliable subscription holds as many as its depth, if that is more; a KEEP_ALL one always waits.
+"""
+
+MAX_RECOVERING: Final = 50_000
+"""How many messages are held at most while retransmitted ones are awaited."""
 
 CONFIRM_MESSAGES: Final = 64
 CONFIRM_BYTES: Final = 1 << 16
-"""After so many messages, or bytes, a reader says what it has."""
+"""After so many messages, or bytes, a subscription confirms what it has received."""
 
 ZENOH_LATE_S: Final = 0.1
-"""How long a reader that holds messages waits for the other way to say anything more."""
+"""How long a subscription that holds messages waits for the other route to deliver anything."""
 
 RECOVERY_S: Final = 0.5
-"""The same where something is sent again: to a KEEP_ALL reader, or after a link has ended, when the
-other process has to notice.
+"""The same where messages are sent again: to a KEEP_ALL subscription, or after a link has ended,
+which the other process has to notice first.
 """
 
 
-class ZenohFilter:
-    """What Zenoh delivers to in place of the subscription: it leaves out what the link brings."""
+class Route(enum.Enum):
+    """Where a subscription takes a publisher's messages from."""
 
-    def __init__(self, reader: Reader) -> None:
-        self.endpoint = reader.endpoint
-        self.raw = reader.raw
-        self.reject = reader.reject
-        self.wait_for_room = reader.wait_for_room
-        self.when_room = reader.when_room
-        self.remote_publishers: dict[bytes, RemotePublisher] = {}
-        self._deliver = reader.deliver
-        self._has_room = reader.has_room
+    ZENOH = "zenoh"
+    BOTH = "both"
+    """From Zenoh; what arrives over the link is held."""
+    IPC = "link"
+    """From the link; what Zenoh delivers ahead of it is held."""
+    RECOVERING = "recovering"
+    """The next number from any route; what is further ahead is held."""
 
-    def deliver(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
-        """Take a message that came over Zenoh."""
-        remote_publisher = self.remote_publishers.get(sample_info.gid)
-        if remote_publisher is None:
-            self._deliver(msg, sample_info, inline_deadline_ns)
-        else:
-            remote_publisher.from_zenoh(msg, sample_info, inline_deadline_ns)
 
-    def has_room(self) -> bool:
-        """Whether a message can be taken without losing one that should be kept."""
-        return self._has_room() and not any(
-            remote_publisher.full for remote_publisher in self.remote_publishers.values()
-        )
+ZENOH: Final = Route.ZENOH
+IPC: Final = Route.IPC
 
 
 class RemotePublisher:
-    """One subscription and one publisher of another process."""
+    """One publisher of another process, as one subscription hears it: the hand-over's state.
 
-    def __init__(self, manager: LinkManager, reader: IpcReader, publisher: EndpointInfo) -> None:
+    Args:
+        registry: The links of this context.
+        reader: The subscription.
+        publisher: The publisher.
+
+    Attributes:
+        gid: The gid of the subscription.
+        publisher: The gid of the publisher.
+        participant: The context of the publisher.
+        connection: The link that it was asked for over; None while there is none.
+        route: Where its messages come from now.
+        last: The number of the last message that was delivered.
+        full: Messages that a KEEP_ALL subscription has no room for yet.
+    """
+
+    __slots__ = (
+        "_base",
+        "_confirms",
+        "_decode",
+        "_deliver",
+        "_gone",
+        "_held",
+        "_keep_all",
+        "_linked",
+        "_max_held",
+        "_owed",
+        "_progressed",
+        "_registry",
+        "_timer_runs",
+        "_used",
+        "_used_bytes",
+        "_waiting_for_room",
+        "connection",
+        "full",
+        "gid",
+        "last",
+        "participant",
+        "publisher",
+        "reader",
+        "route",
+    )
+
+    def __init__(self, registry: LinkRegistry, reader: IpcReader, publisher: EndpointInfo) -> None:
+        self.gid = reader.gid
         self.reader = reader
         self.publisher = publisher.gid
         self.participant = publisher.node.participant
         self.connection: Connection | None = None
-        # What a KEEP_ALL reader has no room for yet.
+        self.route = ZENOH
+        self.last = 0
         self.full: deque[tuple[Any, SampleInfo]] = deque()
-        patient = keeps_all(reader.endpoint.qos)
-        self.handover = Handover(self._deliver_patiently if patient else reader.deliver)
-        self._deliver = reader.deliver
-        self._patient = patient
-        self._manager = manager
+        self._registry = registry
         self._decode = reader.decoder()
-        self._window = WINDOW if patient else 0
+        self._deliver = reader.deliver_local
+        qos = reader.endpoint.qos
         reliable = ReliabilityPolicy.RELIABLE
         self._confirms = (
-            reader.endpoint.qos.resolved().reliability is reliable
+            qos.resolved().reliability is reliable
             and publisher.qos.resolved().reliability is reliable
         )
+        self._keep_all = keeps_all(qos)
+        # The publisher writes to both routes after this number; changes when a link is opened.
+        self._base = 0
+        # Whether the publisher sends over a link now, and whether it has sent its last frame.
+        self._linked = False
+        self._gone = False
+        # Links that have ended and whose unconfirmed messages were not all sent again yet.
+        self._owed = 0
+        # By number: what came over one route and has to wait for another; empty in a steady state.
+        self._held: dict[int, tuple[Any, SampleInfo]] = {}
+        self._max_held = MAX_HELD
+        if self._keep_all:
+            self._max_held = MAX_RECOVERING
+        elif self._confirms:
+            self._max_held = max(MAX_HELD, depth_of(qos))
+        # What arrived over the link since the last confirmation.
         self._used = 0
         self._used_bytes = 0
         self._waiting_for_room = False
-        self._looking = False
-        self._moved = False
+        # Whether `_on_timer` is due, and whether anything has arrived since it was set.
+        self._timer_runs = False
+        self._progressed = False
 
-    @property
-    def gid(self) -> bytes:
-        """Of the subscription."""
-        return self.reader.gid
+    # The link
 
     def open(self, connection: Connection) -> None:
         """Ask for the publisher's messages over `connection`."""
         self.connection = connection
         self._used = self._used_bytes = 0
-        connection.send(Kind.OPEN, self._window, self.publisher, self.gid, int(self._confirms))
+        connection.receivers.add(self.publisher, self)
+        window = WINDOW if self._keep_all else 0
+        connection.send(Open(self.publisher, self.gid, window, self._confirms))
 
     def opened(self, sequence: int) -> None:
-        """Note from where on they come."""
-        self.handover.opened(sequence)
-        self._after()
+        """Expect what follows message number `sequence` over the link."""
+        self._base = sequence
+        self._linked = True
+        if self.route is Route.RECOVERING:
+            self._recover()
+        else:
+            self.route = Route.BOTH
+            if self.last >= sequence:
+                self._switch()
+        self._route_changed()
 
-    def from_zenoh(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int) -> None:
-        """Take a message that came over Zenoh."""
-        handover = self.handover
-        if handover.route is Route.ZENOH:
-            handover.from_zenoh(msg, sample_info, inline_deadline_ns)
-            return
-        self._moved = True
-        before = handover.route
-        handover.from_zenoh(msg, sample_info, inline_deadline_ns)
-        if handover.route is not before or handover.waits:
-            self._after()
+    def close(self) -> None:
+        """Need nothing from the publisher any more."""
+        connection, self.connection = self.connection, None
+        if connection is not None:
+            connection.receivers.remove(self.publisher, self)
+            connection.send(Close(self.publisher, self.gid))
 
-    def from_retransmit(self, payload: Data, one: Frame) -> None:
-        """Take what a broken link left unsaid."""
-        try:
-            msg = self._decode(payload)
-        except DecodeError as error:
-            self.reader.reject(error)
-            return
-        self._moved = True
-        self.handover.from_retransmit(msg, SampleInfo(one.gid, one.sequence, one.source_ns, True))
-        self._after()
+    def gone(self) -> None:
+        """Expect nothing more over the link: the publisher was destroyed.
+
+        What it has written to Zenoh may still be on its way: older messages than those from the
+        link, or copies of them.
+        """
+        self._linked = False
+        self._gone = True
+        if self.route is IPC or (self.route is Route.BOTH and self.last >= self._base):
+            self._release()
+            self.route = ZENOH
+        self._confirm()  # or the publisher's process keeps the messages until the link ends
+        self._start_timer()
+
+    def broken(self) -> None:
+        """Take Zenoh again, as soon as nothing is missing: the link has ended."""
+        self.connection = None
+        self._owed += 1
+        self._linked = False
+        if self.route is not ZENOH:
+            self.route = Route.RECOVERING
+            self._recover()
+        self._route_changed()
 
     def retransmit_done(self) -> None:
-        """Note that this was all."""
-        self.handover.retransmit_done()
-        self._after()
+        """Expect no more messages that a broken link left unconfirmed."""
+        self._owed = max(self._owed - 1, 0)
+        self._recover()
+        self._route_changed()
 
-    def from_link(self, payload: Data, one: Frame, inline_deadline_ns: int) -> None:
-        """Take a message that came over the link."""
+    # Messages
+
+    def from_link(self, payload: Data, frame: Frame, inline_deadline_ns: int) -> None:
+        """Take a message that came over the link; before `opened` it is for another reader."""
         try:
             msg = self._decode(payload)
         except DecodeError as error:
             self.reader.reject(error)
             return
-        sample_info = SampleInfo(one.gid, one.sequence, one.source_ns, True)
-        handover = self.handover
-        if handover.steady and not self._patient:  # what `from_link` does, in fewer calls
-            if one.sequence > handover.last:
-                handover.last = one.sequence
+        sequence = frame.sequence
+        if self.route is IPC and not self._held and not self._keep_all:
+            if sequence > self.last:
+                self.last = sequence
+                sample_info = SampleInfo(frame.gid, sequence, frame.source_ns, True)
                 self._deliver(msg, sample_info, inline_deadline_ns)
         else:
-            if len(self.full) >= MAX_FULL:
-                name = self.reader.endpoint.name
-                raise FrameError(f"{name}: {MAX_FULL} messages ahead of what was allowed")
-            before = handover.route
-            # It may be held for a while, and it is now that it has arrived.
-            sample_info = SampleInfo(
-                one.gid, one.sequence, one.source_ns, True, self._manager.now_ns()
-            )
-            handover.from_link(msg, sample_info, inline_deadline_ns)
-            if handover.route is not before or handover.waits:
-                self._after()
+            # It may be held for a while, so note that it has arrived now.
+            now_ns = self._registry.now_ns()
+            sample_info = SampleInfo(frame.gid, sequence, frame.source_ns, True, now_ns)
+            self._from_link_in_order(msg, sample_info, inline_deadline_ns)
         if self._confirms:
             self._used += 1
             self._used_bytes += len(payload)
-            if self._used >= CONFIRM_MESSAGES or self._used_bytes >= CONFIRM_BYTES or one.in_shm:
+            if self._used >= CONFIRM_MESSAGES or self._used_bytes >= CONFIRM_BYTES or frame.in_shm:
                 self._confirm()
 
-    def _after(self) -> None:
-        """Say that the way has changed, or look again soon for what is waited for."""
-        handover = self.handover
-        if handover.route is Route.IPC and self.connection is not None:
-            self.connection.send(Kind.SWITCHED, 0, self.publisher, self.gid)
-            self._confirm()
-        elif handover.waits and not self._looking:
-            self._look_later()
-
-    def _look_later(self) -> None:
-        self._looking = True
-        self._moved = False
-        # What a KEEP_ALL reader waits for comes for certain, perhaps sent once more.
-        patient = self._patient or self.handover.route is Route.RECOVERING
-        self._manager.later(RECOVERY_S if patient else ZENOH_LATE_S, self._look_again)
-
-    def _look_again(self) -> None:
-        """Wait no longer if nothing has come all the while."""
-        self._looking = False
-        handover = self.handover
-        if not handover.waits:
-            return
-        if self._moved:
-            self._look_later()
-            return
-        handover.switch()
-        handover.finish()
-        self._after()
-
-    def _deliver_patiently(
+    def _from_link_in_order(
         self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int
     ) -> None:
-        """Give a KEEP_ALL reader a message as soon as it has room for it."""
-        if self.full or not self.reader.has_room():
+        if len(self.full) >= MAX_FULL:
+            raise FrameError(
+                f"{self.reader.endpoint.name}: {MAX_FULL} messages beyond the window of "
+                f"{WINDOW} that was granted"
+            )
+        before = self.route
+        if before is Route.BOTH:
+            self._hold(msg, sample_info)
+            if len(self._held) >= self._max_held:
+                self._switch()
+        elif before is IPC and sample_info.sequence > self.last:
+            self._next(msg, sample_info, inline_deadline_ns)
+            held = self._held
+            while held and (oldest := next(iter(held))) <= self.last:
+                del held[oldest]
+        elif before is Route.RECOVERING and self._linked and sample_info.sequence > self.last:
+            self._hold(msg, sample_info)
+            self._recover()
+        if self.route is not before or self.waits:
+            self._route_changed()
+
+    def from_zenoh(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
+        """Take a message that came over Zenoh."""
+        before = self.route
+        self._progressed = True
+        number = sample_info.sequence
+        if number > self.last:
+            if before is IPC or before is Route.RECOVERING:
+                self._hold(msg, sample_info)
+                self._recover()
+            else:
+                self._next(msg, sample_info, inline_deadline_ns)
+                if before is Route.BOTH and number >= self._base:
+                    self._switch()
+        if self.route is not before or self.waits:
+            self._route_changed()
+
+    def from_retransmit(self, payload: Data, frame: Frame) -> None:
+        """Take a message that a broken link left unconfirmed."""
+        try:
+            msg = self._decode(payload)
+        except DecodeError as error:
+            self.reader.reject(error)
+            return
+        self._progressed = True
+        if frame.sequence > self.last:
+            if self.route is ZENOH:  # never opened here: what is older was sent over Zenoh
+                self.route = Route.RECOVERING
+                self._base = frame.sequence - 1
+                self._owed = max(self._owed, 1)
+            self._hold(msg, SampleInfo(frame.gid, frame.sequence, frame.source_ns, True))
+            self._recover()
+        self._route_changed()
+
+    # The state machine
+
+    @property
+    def waits(self) -> bool:
+        """Whether messages are held until others have arrived."""
+        return bool(self._held) and self.route in (Route.BOTH, Route.RECOVERING)
+
+    def stop_waiting(self) -> None:
+        """Deliver what is held: what has not arrived by now was lost."""
+        self._finish()
+        self._route_changed()
+
+    def _switch(self) -> None:
+        """Take the link from now on, and first what it has brought so far."""
+        if self.route is Route.BOTH:
+            self._finish()
+
+    def _finish(self) -> None:
+        """Deliver what is held, and go on with the link if there is one, else with Zenoh."""
+        self._owed = 0
+        if self.route is Route.BOTH or self.route is Route.RECOVERING:
+            self._release()
+            self.route = IPC if self._linked else ZENOH
+
+    def _next(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
+        self.last = sample_info.sequence
+        if self._keep_all and (self.full or not self.reader.has_room_itself()):
             self.full.append((msg, sample_info))
             self._wait_for_room()
         else:
             self._deliver(msg, sample_info, inline_deadline_ns)
 
+    def _hold(self, msg: Any, sample_info: SampleInfo) -> None:
+        self._held[sample_info.sequence] = (msg, sample_info)
+        if self.route is IPC and len(self._held) > MAX_HELD:
+            # A copy: it comes over the link as well, or is retransmitted if that ends.
+            del self._held[next(iter(self._held))]
+        elif len(self._held) > MAX_RECOVERING:
+            self._finish()
+
+    def _recover(self) -> None:
+        if self.route is not Route.RECOVERING:
+            return
+        while self.last + 1 in self._held:
+            self._next(*self._held.pop(self.last + 1))
+        if not self._owed and self.last >= self._base:
+            if self._linked:  # what is held came over Zenoh, ahead of the link
+                self.route = IPC
+            else:
+                self._finish()
+
+    def _release(self) -> None:
+        """Deliver everything that is held, in order."""
+        held, self._held = self._held, {}
+        for number in sorted(held):
+            if number > self.last:
+                self._next(*held[number])
+
+    # What follows from it
+
+    def _route_changed(self) -> None:
+        """Tell the publisher that the link is taken, or wait for what is missing."""
+        if self.route is IPC and self.connection is not None:
+            self.connection.send(Switched(self.publisher, self.gid))
+            self._confirm()
+        elif self.waits:
+            self._start_timer()
+
+    def _start_timer(self) -> None:
+        if self._timer_runs:
+            return
+        self._timer_runs = True
+        self._progressed = False
+        # What a KEEP_ALL subscription waits for arrives for certain, perhaps sent once more.
+        patient = self._keep_all or self._gone or self.route is Route.RECOVERING
+        self._registry.later(RECOVERY_S if patient else ZENOH_LATE_S, self._on_timer)
+
+    def _on_timer(self) -> None:
+        """Stop waiting if nothing has arrived since the timer was set."""
+        self._timer_runs = False
+        if (self._gone or self.waits) and self._progressed:
+            self._start_timer()
+            return
+        if self.waits:
+            self.stop_waiting()
+        if self._gone and self.full:
+            self._start_timer()
+        elif self._gone:
+            self.reader.forget(self)
+
     def _wait_for_room(self) -> None:
         if not self._waiting_for_room:
             self._waiting_for_room = True
-            self.reader.when_room(self._look_for_room)
+            self.reader.when_room(self._on_room)
 
-    def _look_for_room(self) -> None:
+    def _on_room(self) -> None:
         self._waiting_for_room = False
         full = self.full
-        while full and self.reader.has_room():
+        while full and self.reader.has_room_itself():
             self._deliver(*full.popleft(), 0)
         if full:
             self._wait_for_room()
@@ -229,29 +424,101 @@ class RemotePublisher:
             self._confirm()
 
     def _confirm(self) -> None:
-        """Say what is here, unless a KEEP_ALL reader has no room for it, or it is still held."""
+        """Confirm what was received, unless it is held or a KEEP_ALL queue has no room for it."""
         if self._used and self.connection is not None and not self.full:
-            if self.handover.route is not Route.IPC:
+            if self.route is not IPC and not self._gone:
                 return
             used, self._used, self._used_bytes = self._used, 0, 0
-            last = self.handover.last
-            self.connection.send(Kind.CREDIT, used, self.publisher, self.gid, last)
+            # What is held when the publisher has gone is here, and is not asked for again.
+            last = max(self.last, *self._held) if self._gone and self._held else self.last
+            self.connection.send(Credit(self.publisher, self.gid, used, last))
 
-    def gone(self) -> None:
-        """Wait for nothing more: the publisher has said its last."""
-        self.handover.switch()
-        self.handover.finish()
-        self._confirm()  # or the publisher's process keeps it until the link ends
 
-    def broken(self) -> None:
-        """Take Zenoh again."""
-        self.connection = None
-        self.handover.broken()
-        self._after()
+class IpcReader(Registration):
+    """A subscription that hears some of its publishers over links.
+
+    Zenoh delivers to this in place of the subscription's own reader, so that what arrives over both
+    routes is delivered once.
+
+    Args:
+        registry: The links of this context.
+        msg_type: The type of the messages.
+        reader: Where they go.
+
+    Attributes:
+        endpoint: The subscription.
+        raw: Whether messages are delivered as CDR bytes.
+        gid: The subscription's gid as other processes know it.
+        remote_publishers: The publishers that it was linked to, by gid. One is added when it is
+            asked for over a link; it stays when the link ends, and goes after the publisher has.
+    """
+
+    def __init__(self, registry: LinkRegistry, msg_type: type[Any], reader: Reader) -> None:
+        self.endpoint = reader.endpoint
+        self.raw = reader.raw
+        self.reject = reader.reject
+        self.when_room = reader.when_room
+        self.wait_for_room = reader.wait_for_room
+        self.deliver_local = reader.deliver
+        self.has_room_itself = reader.has_room
+        self.gid = self.endpoint.gid
+        self.remote_publishers: dict[bytes, RemotePublisher] = {}
+        self._msg_type = msg_type
+        self._registry = registry
+        self._zenoh: Registration | None = None
+
+    def attach(self, zenoh: Registration) -> None:
+        """Set the subscription's registration with Zenoh, whose token has the gid."""
+        self._zenoh = zenoh
+        # Others know it by its token, which may say more than the graph does (`CPU_BACKEND`).
+        self.gid = getattr(zenoh, "gid", self.gid)
+
+    def decoder(self) -> Callable[[Data], Any]:
+        """Return the function that decodes its messages."""
+        return bytes if self.raw else cdr.decoder(self._msg_type)
+
+    def deliver(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
+        """Take a message that came over Zenoh."""
+        remote_publisher = self.remote_publishers.get(sample_info.gid)
+        if remote_publisher is None:
+            self.deliver_local(msg, sample_info, inline_deadline_ns)
+        else:
+            remote_publisher.from_zenoh(msg, sample_info, inline_deadline_ns)
+
+    def has_room(self) -> bool:
+        """Whether a message can be taken without losing one that should be kept."""
+        return self.has_room_itself() and not any(
+            remote_publisher.full for remote_publisher in self.remote_publishers.values()
+        )
+
+    def open(self, publisher: EndpointInfo, connection: Connection) -> None:
+        """Ask for the messages of `publisher` over `connection`, unless that was done already."""
+        if not can_link(publisher) or not self.endpoint.matches(publisher):
+            return
+        remote_publisher = self.remote_publishers.get(publisher.gid)
+        if remote_publisher is None:
+            remote_publisher = self.remote_publishers[publisher.gid] = RemotePublisher(
+                self._registry, self, publisher
+            )
+        if remote_publisher.connection is None:
+            remote_publisher.open(connection)
+
+    def forget(self, remote_publisher: RemotePublisher) -> None:
+        """Forget a publisher that was destroyed, when nothing of it is on its way any more."""
+        self.remote_publishers.pop(remote_publisher.publisher, None)
+
+    def close(self) -> None:
+        """Withdraw the subscription."""
+        self._registry.remove(self.gid)
+        if self._zenoh is not None:
+            self._zenoh.close()
+        for remote_publisher in self.remote_publishers.values():
+            remote_publisher.close()
+        self.remote_publishers.clear()
 
 
 def may_be_large(msg_type: type[Any]) -> bool:
-    """Whether messages hold numbers or bytes without a bound, at any depth."""
+    """Whether messages contain unbounded numbers or bytes, at any depth."""
     types = [field.type for field in fields(msg_type)]
     return any(
         may_be_large(type_.nested)
@@ -259,71 +526,3 @@ def may_be_large(msg_type: type[Any]) -> bool:
         else type_.container == "unbounded" and type_.kind not in ("string", "wstring")
         for type_ in types
     )
-
-
-class IpcReader(Registration):
-    """A subscription with its inlets, one for each publisher that it hears over a link.
-
-    Args:
-        manager: The links of this context.
-        msg_type: Its messages.
-        reader: Where they go.
-        zenoh_filter: What Zenoh delivers to.
-        zenoh: Its other way.
-    """
-
-    def __init__(
-        self,
-        manager: LinkManager,
-        msg_type: type[Any],
-        reader: Reader,
-        zenoh_filter: ZenohFilter,
-        zenoh: Registration,
-    ) -> None:
-        self.endpoint = reader.endpoint
-        self.deliver = reader.deliver
-        self.reject = reader.reject
-        self.has_room = reader.has_room
-        self.when_room = reader.when_room
-        self._raw = reader.raw
-        self._msg_type = msg_type
-        self._manager = manager
-        self._zenoh_filter = zenoh_filter
-        self._zenoh = zenoh
-        # Others know it by its token, which may say more than the graph does (`CPU_BACKEND`).
-        self.gid: bytes = getattr(zenoh, "gid", self.endpoint.gid)
-        manager.readers[self.gid] = self
-
-    def decoder(self) -> Callable[[Data], Any]:
-        """Return what makes its messages of bytes."""
-        return bytes if self._raw else cdr.decoder(self._msg_type)
-
-    @property
-    def remote_publishers(self) -> dict[bytes, RemotePublisher]:
-        """By the publisher's gid."""
-        return self._zenoh_filter.remote_publishers
-
-    def meet(self, publisher: EndpointInfo, connection: Connection) -> None:
-        """Ask for the messages of `publisher`, if that was not done yet."""
-        if not can_link(publisher) or not self.endpoint.matches(publisher):
-            return
-        remote_publisher = self.remote_publishers.get(publisher.gid)
-        if remote_publisher is None:
-            remote_publisher = self.remote_publishers[publisher.gid] = RemotePublisher(
-                self._manager, self, publisher
-            )
-        if remote_publisher.connection is None:
-            self._manager.listen(remote_publisher, connection)
-            remote_publisher.open(connection)
-
-    def close(self) -> None:
-        """Withdraw the subscription."""
-        self._manager.readers.pop(self.gid, None)
-        self._zenoh.close()
-        for remote_publisher in self.remote_publishers.values():
-            if remote_publisher.connection is not None:
-                remote_publisher.connection.send(
-                    Kind.CLOSE, 0, remote_publisher.publisher, remote_publisher.gid
-                )
-            self._manager.forget(remote_publisher)
-        self.remote_publishers.clear()

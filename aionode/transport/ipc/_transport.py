@@ -1,4 +1,4 @@
-"""Zenoh, and links beside it: the contract of transports with two ways to each reader."""
+"""The transport that uses links where there are some, and Zenoh for everything else."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from aionode.transport.ipc._manager import LinkManager
 from aionode.transport.ipc._protocol import can_link
 from aionode.transport.ipc._publisher import IpcWriter
 from aionode.transport.ipc._service import IpcRequester, IpcServer
-from aionode.transport.ipc._subscription import IpcReader, ZenohFilter, may_be_large
+from aionode.transport.ipc._subscription import IpcReader, may_be_large
 
 if TYPE_CHECKING:
     from aionode.graph import EndpointInfo, Graph, NodeInfo
     from aionode.transport.base import LinkStatus, Reader, Registration, Requester, Serve, Writer
-    from aionode.transport.ipc._manager import PeerDirectory
+    from aionode.transport.ipc._registry import PeerDirectory
 
 __all__ = ["IpcTransport"]
 
@@ -26,13 +26,13 @@ logger = logging.getLogger("aionode.transport.ipc")
 
 
 class IpcTransport(Transport):
-    """Uses links where there are some, and another transport for everything else.
+    """Uses links to processes of this user on this host, and another transport for all others.
 
     Args:
         participant: Id of the context: hexadecimal, no leading zeros.
         domain_id: The ROS domain.
         zenoh: The other transport.
-        peer_directory: What it knows of who is there.
+        peer_directory: What the other transport knows about other contexts.
     """
 
     def __init__(
@@ -48,11 +48,11 @@ class IpcTransport(Transport):
 
     @property
     def other_domains(self) -> frozenset[int]:
-        """Domains of nodes that can be reached, but are not heard."""
+        """Other domains whose nodes can be reached; they do not hear nodes of this domain."""
         return frozenset(getattr(self.zenoh, "other_domains", ()))
 
     async def open(self, graph: Graph) -> None:
-        """Connect; without a folder to meet in, or descriptors, over the other transport only."""
+        """Connect; without a folder for sockets, or descriptors, over the other transport only."""
         listener = None
         try:
             listener = Listener(socket_folder(os.environ), self.manager.participant)
@@ -80,11 +80,11 @@ class IpcTransport(Transport):
             self.manager.on_advertisement(advertisement, present)
 
     async def all_known(self, quiet_s: float) -> bool:
-        """Wait until everybody who can be reached has said what there is."""
+        """Wait until every context that can be reached has announced its endpoints."""
         return await self.zenoh.all_known(quiet_s)
 
     async def link_status(self) -> LinkStatus:
-        """Ask everybody who can be linked, and who is."""
+        """Return which contexts can be linked, and which are; all of them are asked."""
         return await self.zenoh.link_status()
 
     async def close(self) -> None:
@@ -92,6 +92,7 @@ class IpcTransport(Transport):
 
         Linked processes get what waits for them as long as they read; one that reads nothing for a
         second is given up, and a warning says what was lost. The rest takes a second at most.
+        Cancelling it closes everything at once, and what waits is lost.
         """
         try:
             await self.manager.flush()
@@ -112,25 +113,34 @@ class IpcTransport(Transport):
     def create_writer(self, endpoint: EndpointInfo, msg_type: type[Any]) -> Writer:
         """Announce a publisher."""
         zenoh = self.zenoh.create_writer(endpoint, msg_type)
-        return IpcWriter(self.manager, endpoint, msg_type, zenoh) if can_link(endpoint) else zenoh
+        if not can_link(endpoint):
+            return zenoh
+        writer = IpcWriter(self.manager, endpoint, msg_type, zenoh)
+        self.manager.add(writer)
+        return writer
 
     def create_reader(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
     ) -> Registration:
         """Announce a subscription."""
         if may_be_large(msg_type):
-            # Shared memory is looked at through it: the first message would wait for the import.
+            # Shared memory is read through it: the first message would wait for the import.
             import numpy  # noqa: F401, ICN001
-        zenoh_filter = ZenohFilter(reader)
-        zenoh = self.zenoh.create_reader(endpoint, msg_type, zenoh_filter)
-        return IpcReader(self.manager, msg_type, reader, zenoh_filter, zenoh)
+        ipc_reader = IpcReader(self.manager, msg_type, reader)
+        ipc_reader.attach(self.zenoh.create_reader(endpoint, msg_type, ipc_reader))
+        self.manager.add(ipc_reader)
+        return ipc_reader
 
     def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Registration:
         """Announce a server."""
         zenoh = self.zenoh.create_server(endpoint, srv_type, serve)
-        return IpcServer(self.manager, endpoint, srv_type, serve, zenoh)
+        server = IpcServer(self.manager, endpoint, srv_type, serve, zenoh)
+        self.manager.add(server)
+        return server
 
     def create_requester(self, endpoint: EndpointInfo, srv_type: Any) -> Requester:
         """Announce a client."""
         zenoh = self.zenoh.create_requester(endpoint, srv_type)
-        return IpcRequester(self.manager, endpoint, srv_type, zenoh)
+        requester = IpcRequester(self.manager, endpoint, srv_type, zenoh)
+        self.manager.add(requester)
+        return requester

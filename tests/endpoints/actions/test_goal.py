@@ -66,14 +66,14 @@ def test_an_illegal_move_says_what_is_possible() -> None:
     """The text is what a user sees who called succeed() too early."""
     with pytest.raises(
         GoalTransitionError,
-        match="goal 42: SUCCEED while ACCEPTED; only EXECUTE, CANCEL_GOAL can follow",
+        match="goal 42: cannot SUCCEED while ACCEPTED; only EXECUTE, CANCEL_GOAL is allowed",
     ):
         next_status(GoalStatus.ACCEPTED, GoalEvent.SUCCEED, "42")
 
 
 def test_a_move_after_the_end_says_that_nothing_is_possible() -> None:
     """An empty list of possibilities would read like a mistake."""
-    with pytest.raises(GoalTransitionError, match="nothing can follow that"):
+    with pytest.raises(GoalTransitionError, match="no event is allowed"):
         next_status(GoalStatus.SUCCEEDED, GoalEvent.ABORT)
 
 

@@ -12,13 +12,13 @@ from typing import Any
 import pytest
 
 from aionode._concurrency import checkpoint
-from aionode.clock import Clock, ClockType, ManualTime, ROSClock, Time
+from aionode.clock import Clock, ClockType, ROSClock, Time
 from aionode.endpoints._core.callback_runner import CallbackContext, CallbackRunner
 from aionode.endpoints.stats import CallbackStats
 from aionode.endpoints.timer import Timer, TimerInfo
 from aionode.endpoints.timer._timer import to_period_ns
 from aionode.errors import AionodeError, EntityDestroyedError
-from aionode.testing import settle
+from aionode.testing import ManualClock, settle
 
 MS = 1_000_000
 S = 1_000_000_000
@@ -52,7 +52,7 @@ class Bench:
     """A manual time, a clock on it, and timers that write down when they were called."""
 
     def __init__(self, start_s: float = 0, clock_type: ClockType = ClockType.ROS_TIME) -> None:
-        self.manual = ManualTime(Time(seconds=start_s, clock_type=ClockType.ROS_TIME))
+        self.manual = ManualClock(Time(seconds=start_s, clock_type=ClockType.ROS_TIME))
         self.clock = Clock(clock_type, time_base=self.manual)
         self.calls: list[int] = []
 
@@ -460,7 +460,7 @@ async def test_switching_the_source_keeps_what_was_waited() -> None:
     assert bench.calls == [50_700 * MS, 1011 * S]
 
 
-class SettableTime(ManualTime):
+class SettableTime(ManualClock):
     """A machine whose system clock can be set."""
 
     offset_ns = 0

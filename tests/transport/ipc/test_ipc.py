@@ -26,12 +26,21 @@ from aionode.interfaces.std_msgs.msg import Int32
 from aionode.qos import QoSProfile, ReliabilityPolicy
 from aionode.transport.ipc import _listener as listener
 from aionode.transport.ipc import _subscription as subscription
-from aionode.transport.ipc._subscription import ZenohFilter
+from aionode.transport.ipc._subscription import IpcReader
 from aionode.transport.ipc._transport import IpcTransport
 from aionode.wire import cdr
 from aionode.wire._key_expression import data_key
 from aionode.wire.typehash import type_hash
-from tests.support.links import Counting, Two, folder, hub_of, link_of, two_nodes, writer_of
+from tests.support.links import (
+    Counting,
+    Two,
+    calls_of,
+    folder,
+    link_of,
+    manager_of,
+    two_nodes,
+    writer_of,
+)
 from tests.support.peers import DOMAIN_ID, KEEP_ALL, Collector, quiet_node, raw_session
 
 __all__ = ["folder"]  # a fixture
@@ -59,14 +68,14 @@ async def test_a_message_that_is_held_has_the_time_of_its_arrival(
 ) -> None:
     """Not that of its release: rates that are measured would be those of the hand-over."""
     monkeypatch.setattr(subscription, "ZENOH_LATE_S", 0.05)
-    monkeypatch.setattr(ZenohFilter, "deliver", lambda *_: None)  # Zenoh brings nothing
+    monkeypatch.setattr(IpcReader, "deliver", lambda *_: None)  # Zenoh brings nothing
     async with two_nodes() as nodes:
         infos: list[MessageInfo] = []
         publisher = nodes.a.create_publisher(Int32, "n", 100)
         publisher.publish(Int32())  # which is waited for
         nodes.b.create_subscription(Int32, "n", lambda _, info: infos.append(info), 100)
         await publisher.wait_for_subscribers()
-        while not hub_of(nodes.a).links:
+        while not manager_of(nodes.a).links:
             await checkpoint()
         while not infos:  # a few at a time: when there are too many, none is held
             publisher.publish(Int32())
@@ -145,7 +154,7 @@ async def test_a_stream_goes_on_over_zenoh_when_the_link_ends_and_back_when_it_i
             link.close()
             await numbers.go(20)
             while link in (
-                hub_of(n).linked(p) for n in nodes for p in hub_of(n).links
+                manager_of(n).linked(p) for n in nodes for p in manager_of(n).links
             ):  # the other end has not heard yet
                 await numbers.go()
         await numbers.until_linked()
@@ -198,7 +207,7 @@ async def test_garbage_ends_the_link_and_not_the_stream(
             await numbers.go()
         await numbers.go(100)
         assert numbers.subscription.stats.lost == 0
-    assert len(garbage) < 40 or "no frame" in caplog.text
+    assert len(garbage) < 40 or "expected a frame" in caplog.text
 
 
 async def test_junk_by_post_is_said_once_and_counted(
@@ -207,10 +216,10 @@ async def test_junk_by_post_is_said_once_and_counted(
     """Anybody on the network may send any amount of it."""
     async with quiet_node("one") as node:
         for _ in range(500):
-            hub_of(node)._on_retransmit(b"no frame at all" * 10)
+            manager_of(node)._on_retransmit(b"no frame at all" * 10)
 
-        assert hub_of(node)._junk == 500
-    assert sum("came by post" in text for text in caplog.messages) == 1
+        assert manager_of(node)._malformed == 500
+    assert sum("retransmitted" in text for text in caplog.messages) == 1
 
 
 async def test_strangers_at_the_socket_get_nothing_and_stop_nothing(folder: Path) -> None:
@@ -224,7 +233,7 @@ async def test_strangers_at_the_socket_get_nothing_and_stop_nothing(folder: Path
                 stranger.send(said)
                 await numbers.publisher.wait_for_subscribers()
                 await numbers.go(5)
-        assert hub_of(nodes.b).links in ([], [nodes.a.context.participant])
+        assert manager_of(nodes.b).links in ([], [nodes.a.context.participant])
 
 
 async def test_other_users_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -234,7 +243,7 @@ async def test_other_users_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
         numbers = Counting(nodes)
         await numbers.publisher.wait_for_subscribers()
         await numbers.go(20)
-        assert hub_of(nodes.a).links == hub_of(nodes.b).links == []
+        assert manager_of(nodes.a).links == manager_of(nodes.b).links == []
 
 
 def open_to_others(folder: Path) -> None:
@@ -348,7 +357,7 @@ async def test_a_call_takes_the_link_and_ends_with_it() -> None:
         nodes.b.create_service(AddTwoInts, "add", serve, concurrent=True)
         client: Any = nodes.a.create_client(AddTwoInts, "add")
         await client.wait_for_service()
-        while not hub_of(nodes.a).links:
+        while not manager_of(nodes.a).links:
             assert (await client.call(AddTwoInts.Request(a=1, b=2))).sum == 3
         async with asyncio.TaskGroup() as tasks:
             call = tasks.create_task(fails(client.call(AddTwoInts.Request(a=0, b=0))))
@@ -372,14 +381,14 @@ async def test_an_action_takes_the_link() -> None:
         nodes.b.create_action_server(Fibonacci, "count", execute)
         client: Any = nodes.a.create_action_client(Fibonacci, "count")
         await client.wait_for_server()
-        while not hub_of(nodes.a).links:
+        while not manager_of(nodes.a).links:
             await checkpoint()
         for _ in range(3):
             goal = await client.send_goal(Fibonacci.Goal(order=20))
             got = [list(feedback.sequence) async for feedback in goal]
             assert got == [[number] for number in range(20)]
             assert list((await goal.result()).result.sequence) == [1, 2]
-        assert not hub_of(nodes.a).calls
+        assert not calls_of(nodes.a)
 
 
 async def fails(awaitable: Any) -> Exception | None:
@@ -408,7 +417,7 @@ async def test_a_server_in_a_bare_session_is_asked_over_zenoh() -> None:
                 await nodes.a.graph.changed()
             await client.call(AddTwoInts.Request(a=1))
             await client.call(AddTwoInts.Request(a=2))
-            assert hub_of(nodes.a).calls == {}
+            assert calls_of(nodes.a) == {}
         assert set(served) == {1, 2}
 
 
@@ -478,7 +487,7 @@ async def test_a_receiver_without_descriptors_goes_on_over_zenoh_and_loses_nothi
     """The system drops the descriptor on the way in, and with it the place of the image."""
     async with two_nodes() as nodes:
         publisher, subscription = await linked_images(nodes)
-        pool = hub_of(nodes.a).pool
+        pool = manager_of(nodes.a).pool
         fresh = pool.filled(bytes(600_000))  # which the receiver has no descriptor of
         assert fresh is not None
         pool.release(fresh)
@@ -514,7 +523,10 @@ def sockets(folder: Path) -> int:
 
 
 async def test_nothing_stays_behind(folder: Path) -> None:
-    """No descriptor and no socket."""
+    """No descriptor and no socket.
+
+    Zenoh closes its shared memory in a thread of its own, a moment after the session.
+    """
     async with two_nodes():  # what is opened once for all
         pass
     before = descriptors()
@@ -524,6 +536,9 @@ async def test_nothing_stays_behind(folder: Path) -> None:
         assert sockets(folder) == 2
     assert sockets(folder) == 0
     gc.collect()
+    async with asyncio.timeout(10):
+        while descriptors() > before:
+            await asyncio.to_thread(threading.Event().wait, 0.01)
     assert descriptors() <= before
 
 
@@ -564,7 +579,7 @@ async def test_contexts_with_and_without_links_hear_each_other() -> None:
         numbers = Counting(nodes)
         await numbers.publisher.wait_for_subscribers()
         await numbers.go(50)
-        assert hub_of(nodes.a).links == []
+        assert manager_of(nodes.a).links == []
 
 
 def test_a_beacon_says_who_can_be_linked() -> None:

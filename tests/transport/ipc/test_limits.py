@@ -13,6 +13,7 @@ import pytest
 
 from aionode._concurrency import checkpoint
 from aionode.context import Context
+from aionode.errors import TransportError
 from aionode.interfaces.sensor_msgs.msg import Image
 from aionode.transport.ipc import (
     _connection as connection,
@@ -24,9 +25,9 @@ from aionode.transport.ipc import _protocol as protocol
 from aionode.transport.ipc import (
     _send_queue as send_queue,
 )
-from aionode.transport.ipc._listener import Listener
+from aionode.transport.ipc._listener import Advertisement, Listener, socket_folder
 from aionode.transport.ipc._protocol import Kind
-from tests.support.links import Counting, folder, hub_of, link_of, two_nodes, writer_of
+from tests.support.links import Counting, folder, link_of, manager_of, two_nodes, writer_of
 from tests.support.peers import DOMAIN_ID, quiet_node
 
 __all__ = ["folder"]  # a fixture
@@ -66,7 +67,7 @@ async def test_who_does_not_say_who_he_is_is_hung_up_on(
     async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
         with closing(await dialled(folder, node.context)) as sock:
             await until_closed(sock)
-        assert not hub_of(node)._opening
+        assert not manager_of(node)._opening
 
 
 async def test_of_many_silent_sockets_the_oldest_are_closed(folder: Path) -> None:
@@ -79,7 +80,7 @@ async def test_of_many_silent_sockets_the_oldest_are_closed(folder: Path) -> Non
                 await checkpoint()  # or the backlog is full
             for sock in socks[:20]:
                 await until_closed(sock)
-            assert len(hub_of(node)._opening) == manager.MAX_OPENING
+            assert len(manager_of(node)._opening) == manager.MAX_OPENING
 
 
 async def test_a_frame_cannot_begin_in_place_of_the_greeting(folder: Path) -> None:
@@ -110,7 +111,7 @@ async def test_frames_without_an_end_take_so_much_memory_and_no_more(
                 rest = bytes(megabytes << 20)
                 await loop.sock_sendall(sock, greeting(number) + head + rest)
             await until_closed(socks[0])
-            assert len(hub_of(node).links) == 3
+            assert len(manager_of(node).links) == 3
 
 
 async def test_a_reader_that_takes_no_answers_is_hung_up_on(
@@ -139,7 +140,7 @@ async def test_a_reader_that_confirms_nothing_is_not_kept_everything_for(
         numbers = Counting(nodes)
         await numbers.until_linked()
         (remote_publisher,) = next(
-            iter(hub_of(nodes.b).readers.values())
+            iter(manager_of(nodes.b).readers.values())
         ).remote_publishers.values()
         remote_publisher._confirms = False
         await numbers.go(1000)
@@ -178,8 +179,8 @@ async def test_a_publisher_that_goes_gives_its_memory_back() -> None:
             await numbers.go()
         publisher.publish(Image(height=1, width=600_000, data=bytes(600_000)))
         publisher.destroy()  # before any confirmation can have come
-        assert hub_of(nodes.a)._ending
-        while hub_of(nodes.a)._ending:
+        assert manager_of(nodes.a)._ending
+        while manager_of(nodes.a)._ending:
             await checkpoint()
 
 
@@ -215,12 +216,115 @@ async def test_a_context_that_did_not_answer_is_dialled_again(
         await numbers.publisher.wait_for_subscribers()
         for _ in range(20):
             await numbers.go()
-        assert hub_of(nodes.a).links == []
+        assert manager_of(nodes.a).links == []
         monkeypatch.setattr(manager, "MAX_OPENING", 64)
         await numbers.until_linked()
 
 
+async def test_a_context_whose_advertisement_flaps_is_dialled_once(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """At the start tokens come and go; the second socket was refused with a warning."""
+    attempts: list[str] = []
+    dial = Listener.dial
+
+    async with two_nodes() as nodes:
+        managers = [manager_of(node) for node in nodes]
+
+        def flapping(self: Listener, participant: str) -> socket.socket | None:
+            attempts.append(participant)
+            (dialling,) = (one for one in managers if one.participant != participant)
+            own = Advertisement.own(participant)
+
+            def flap() -> None:  # while neither Hello has come
+                dialling.on_advertisement(own, False)
+                dialling.on_advertisement(own, True)
+
+            asyncio.get_running_loop().call_soon(flap)
+            return dial(self, participant)
+
+        monkeypatch.setattr(Listener, "dial", flapping)
+        await Counting(nodes).until_linked()
+
+    assert len(attempts) == 1
+    assert "second link" not in caplog.text
+
+
+async def test_a_context_that_dials_again_replaces_a_link_whose_end_is_unread(
+    folder: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Its new socket can be read before the end of the old one."""
+    loop = asyncio.get_running_loop()
+    async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
+        with closing(await dialled(folder, node.context)) as first:
+            await loop.sock_sendall(first, greeting(1))
+            while not manager_of(node).links:
+                await checkpoint()
+            old = link_of(node)
+            loop.remove_reader(old._fd)
+        with closing(await dialled(folder, node.context)) as second:
+            await loop.sock_sendall(second, greeting(1))
+            while manager_of(node).linked("1") in (None, old):
+                await checkpoint()
+        assert old.closed
+    assert "second link" not in caplog.text
+
+
+# Closing
+
+
+async def test_each_part_of_a_large_frame_that_the_socket_takes_is_progress() -> None:
+    """Or a reader that takes a large message slowly would be given up when the context closes."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.until_linked()
+        link, other = link_of(nodes.a), link_of(nodes.b)
+        loop = asyncio.get_running_loop()
+        loop.remove_reader(other._fd)
+        assert link.write(protocol.pack(Kind.DATA, 1, 1, bytes(16), bytes(8 << 20)))
+        for _ in range(3):
+            progress = link.progress()
+            assert not link.idle
+            while not progress.done():
+                other._on_readable()
+                await checkpoint()
+        assert not link.idle
+        loop.add_reader(other._fd, other._on_readable)
+
+
 # The folder
+
+
+@pytest.mark.parametrize("size", [69, 70])
+def test_a_folder_is_refused_whose_path_leaves_no_room_for_the_name_of_a_socket(
+    size: int, folder: Path
+) -> None:
+    """The name of a longer id would not fit, though that of this context may."""
+    runtime = folder.parent / ("x" * (size - len(str(folder)) - 1))
+    runtime.mkdir()
+    environ = {"XDG_RUNTIME_DIR": str(runtime)}
+    longest = runtime / "aionode" / ("f" * 32 + ".sock")
+    if size == 69:
+        assert socket_folder(environ).is_dir()
+        with socket.socket(socket.AF_UNIX) as sock:
+            sock.bind(str(longest))
+        return
+    with pytest.raises(TransportError, match="set XDG_RUNTIME_DIR to a shorter path"):
+        socket_folder(environ)
+
+
+async def test_a_folder_with_a_long_path_is_reported_and_everything_goes_over_zenoh(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Links are missing then, and nothing else says why."""
+    runtime = folder.parent / ("x" * 100)
+    runtime.mkdir()
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(runtime))
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.publisher.wait_for_subscribers()
+        await numbers.go(20)
+    assert "too long for the path of a Unix socket" in caplog.text
 
 
 def test_a_socket_that_was_never_finished_is_removed(tmp_path: Path) -> None:

@@ -1,0 +1,88 @@
+"""Which subscriptions of this process hear which publishers of the other one over a link."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.transport.ipc._protocol import Frame
+    from aionode.wire.cdr import Data
+
+__all__ = ["Receiver", "ReceiverTable"]
+
+
+class Receiver(Protocol):
+    """A subscription of this process that hears one publisher of the other process."""
+
+    @property
+    def gid(self) -> bytes:
+        """The gid of the subscription."""
+
+    def from_link(self, payload: Data, frame: Frame, inline_deadline_ns: int) -> None:
+        """Take a message."""
+
+    def opened(self, sequence: int) -> None:
+        """Expect what follows message number `sequence` over the link."""
+
+    def gone(self) -> None:
+        """Expect nothing more: the publisher was destroyed."""
+
+    def broken(self) -> None:
+        """Expect nothing more: the link has ended."""
+
+
+class ReceiverTable:
+    """The receivers of one link, by the gid of the publisher that they hear.
+
+    One is added when it asks for the publisher, and removed when either is destroyed or the link
+    ends.
+
+    Attributes:
+        handlers: What takes a publisher's messages, by its gid; changes with the receivers.
+    """
+
+    def __init__(self) -> None:
+        self.handlers: dict[bytes, Callable[[Data, Frame, int], None]] = {}
+        self._receivers: dict[bytes, list[Receiver]] = {}
+
+    def add(self, publisher: bytes, receiver: Receiver) -> None:
+        """Pass the messages of a publisher of the other process to `receiver`."""
+        receivers = self._receivers.setdefault(publisher, [])
+        receivers.append(receiver)
+        self.handlers[publisher] = handler_for(receivers)
+
+    def remove(self, publisher: bytes, receiver: Receiver) -> None:
+        """Pass nothing to `receiver` any more."""
+        receivers = self._receivers.get(publisher, [])
+        if receiver in receivers:
+            receivers.remove(receiver)
+        if receivers:
+            self.handlers[publisher] = handler_for(receivers)
+        else:
+            self._receivers.pop(publisher, None)
+            self.handlers.pop(publisher, None)
+
+    def of(self, publisher: bytes) -> list[Receiver]:
+        """Return the subscriptions here that hear a publisher over this link."""
+        return list(self._receivers.get(publisher, ()))
+
+    def clear(self) -> list[Receiver]:
+        """Remove and return all of them: the link has ended."""
+        found = [receiver for receivers in self._receivers.values() for receiver in receivers]
+        self._receivers.clear()
+        self.handlers.clear()
+        return found
+
+
+def handler_for(receivers: list[Receiver]) -> Callable[[Data, Frame, int], None]:
+    """Return what passes a publisher's messages to its receivers; mostly there is one."""
+    if len(receivers) == 1:
+        return receivers[0].from_link
+
+    def take(payload: Data, frame: Frame, inline_deadline_ns: int) -> None:
+        for receiver in tuple(receivers):
+            receiver.from_link(payload, frame, inline_deadline_ns)
+
+    return take

@@ -1,0 +1,74 @@
+"""What publishers, subscriptions and services need of the links of their context."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.graph import EndpointInfo, EndpointKind
+    from aionode.transport.ipc._connection import Connection
+    from aionode.transport.ipc._send_queue import IpcSendQueue
+    from aionode.transport.ipc._shared_memory import BufferPool
+
+__all__ = ["LinkRegistry", "PeerDirectory"]
+
+
+class LinkRegistry(Protocol):
+    """The links of one context, as its endpoints see them.
+
+    Attributes:
+        pool: Shared memory for large payloads.
+        now_ns: Returns the system time, in nanoseconds since 1970.
+    """
+
+    pool: BufferPool
+    now_ns: Callable[[], int]
+
+    @property
+    def changes(self) -> int:
+        """A number that is incremented whenever endpoints or links change."""
+
+    @property
+    def has_unannounced_peers(self) -> bool:
+        """Whether there may be subscriptions that nothing announces."""
+
+    def linked(self, participant: str) -> Connection | None:
+        """Return the link to a context, if there is one."""
+
+    def remote(self, kind: EndpointKind, name: str) -> list[EndpointInfo]:
+        """Return the endpoints of other contexts that have this name."""
+
+    def later(self, delay_s: float, call: Callable[[], None]) -> None:
+        """Call `call` after a delay, unless the links are closed before."""
+
+    def keep(self, gid: bytes, send_queue: IpcSendQueue) -> None:
+        """Keep what a destroyed publisher left to be sent or confirmed."""
+
+    def remove(self, gid: bytes) -> None:
+        """Forget an endpoint of this context, which was closed."""
+
+
+class PeerDirectory(Protocol):
+    """What the other transport knows about other contexts, apart from the graph.
+
+    Attributes:
+        advertisement: What it announces of this context; None for nothing.
+        on_advertisement: Called with what another context announces, and whether it is present.
+        has_unannounced_peers: Whether there may be subscriptions that nothing announces.
+        on_unannounced_peers: Called when that has changed.
+        on_retransmit: Called with what another context has retransmitted to this one.
+    """
+
+    advertisement: str | None
+    on_advertisement: Callable[[str, bool], None]
+    has_unannounced_peers: bool
+    on_unannounced_peers: Callable[[bool], None]
+    on_retransmit: Callable[[bytes], None]
+
+    def retransmit(self, participant: str, data: bytes) -> None:
+        """Send bytes to one other context, in order."""
+
+    def announce_link(self, participant: str, on: bool) -> None:
+        """Announce a link to another context, or withdraw that; for tools that ask."""
