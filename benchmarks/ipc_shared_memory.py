@@ -92,7 +92,7 @@ class End:
         self._loop.add_reader(sock, self._on_readable)
 
     def step(self, name: str) -> None:
-        """Note how long it took since the last step."""
+        """Record the time since the last step."""
         if self.noting:
             self.steps[name].append(time.perf_counter_ns() - self._began_ns)
         self._began_ns = time.perf_counter_ns()

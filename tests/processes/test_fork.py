@@ -60,7 +60,7 @@ def test_a_forked_child_cannot_publish_with_what_it_has_inherited() -> None:
 
 @pytest.mark.parametrize("how", ["nothing", "destroy", "local"])
 def test_a_forked_child_that_uses_no_network_does_its_work(how: str) -> None:
-    """Collecting garbage, tidying up, and nodes of a context without network harm nobody."""
+    """Garbage collection, cleanup, and nodes of a context without network do no harm."""
     assert told(how) == ["child: done", "exit 0", "sockets 2", "parent: done"]
 
 

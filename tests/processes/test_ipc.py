@@ -1,4 +1,4 @@
-"""A linked process that is killed or frozen in mid-stream takes nobody with it."""
+"""A linked process that is killed or frozen in mid-stream does not stop the other one."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ MEMBER = Path(__file__).with_name("ipc_member.py")
 
 @pytest.fixture(autouse=True)
 def isolated(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """The processes of a test hear each other only, and meet in a folder of their own."""
+    """The processes of a test hear only each other, and have a folder for sockets of their own."""
     root = tempfile.mkdtemp(prefix="aio")
     monkeypatch.setenv("XDG_RUNTIME_DIR", root)
     for name, value in isolated_environment().items():
@@ -69,14 +69,14 @@ class Pings:
 
     @property
     def links(self) -> list[str]:
-        """Who is linked."""
+        """The linked contexts."""
         transport = self.node.context.transports[1]
         assert isinstance(transport, IpcTransport)
         return transport.manager.links
 
     @property
     def writer(self) -> IpcWriter:
-        """The publisher's end of both ways."""
+        """The publisher's end of both routes."""
         writer = self.there._writers[1]
         assert isinstance(writer, IpcWriter)
         return writer

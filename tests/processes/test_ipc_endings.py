@@ -1,4 +1,4 @@
-"""What a process has published before it ends reaches those whom it is linked to."""
+"""What a process has published before it ends reaches the processes that it is linked to."""
 
 from __future__ import annotations
 

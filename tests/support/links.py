@@ -1,4 +1,4 @@
-"""Two nodes in two contexts that may be linked, and numbers that go from one to the other."""
+"""Two nodes in two contexts that can be linked, and numbers sent from one to the other."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ __all__ = [
 
 @pytest.fixture(autouse=True)
 def folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """Sockets of a test lie in a folder of its own, with a path short enough for a socket."""
+    """Give a test a folder for sockets of its own, with a path that is short enough."""
     root = Path(tempfile.mkdtemp(prefix="aio"))
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(root))
     monkeypatch.setattr(manager, "AGAIN_S", 0.01)
@@ -81,7 +81,7 @@ def link_of(node: Node) -> Connection:
 
 
 def writer_of(publisher: Any) -> IpcWriter:
-    """Return the publisher's end of both ways."""
+    """Return the publisher's end of both routes."""
     writer = publisher._writers[1]
     assert isinstance(writer, IpcWriter)
     return writer

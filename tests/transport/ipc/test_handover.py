@@ -151,7 +151,7 @@ class Stream:
             self._linked = True
             self.link.append(("opened", self.published))
 
-    def meet_unannounced(self) -> None:
+    def hear_unannounced(self) -> None:
         """Publish over both routes from now on, for an unannounced subscription."""
         self._needs_zenoh = True
 
@@ -228,7 +228,7 @@ STEPS: list[Callable[[Stream], None]] = [
     Stream.publish,
     Stream.open,
     Stream.confirm,
-    Stream.meet_unannounced,
+    Stream.hear_unannounced,
     Stream.lose_unannounced,
     Stream.take_zenoh,
     Stream.take_retransmitted,

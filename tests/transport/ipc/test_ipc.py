@@ -1,4 +1,4 @@
-"""Links between contexts: which way messages take, and what happens when a link breaks."""
+"""Links between contexts: which route messages take, and what happens when a link breaks."""
 
 from __future__ import annotations
 
@@ -49,12 +49,12 @@ NUMBERS = data_key(DOMAIN_ID, "/n", "std_msgs/msg/Int32", type_hash(Int32))
 
 
 def number_of(sample: Any) -> int:
-    """Return what a bare session has heard."""
+    """Return the number that a bare session has received."""
     return cdr.decode(Int32, sample.payload.to_bytes()).data
 
 
 async def test_a_stream_changes_to_the_link_and_leaves_zenoh() -> None:
-    """Each message once and in order meanwhile, and Zenoh's threads rest afterwards."""
+    """Each message arrives once and in order, and Zenoh is not used afterwards."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
         await numbers.until_linked()
@@ -111,8 +111,8 @@ async def test_every_kind_of_reader_gets_each_message_once() -> None:
         assert numbers.subscription.stats.lost == 0
 
 
-async def test_what_was_in_a_broken_link_reaches_its_reader_and_nobody_twice() -> None:
-    """Also what went both ways, and what was sent before a stranger came to listen."""
+async def test_what_was_in_a_broken_link_reaches_each_reader_once() -> None:
+    """Also what took both routes, and what was sent before an unannounced peer subscribed."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes, 10_000)
         await numbers.until_linked()
@@ -123,7 +123,7 @@ async def test_what_was_in_a_broken_link_reaches_its_reader_and_nobody_twice() -
         with raw_session() as session:
             samples = Collector()
             subscriber = session.declare_subscriber(NUMBERS, samples)
-            while not writer_of(numbers.publisher).update():  # until the stranger is known
+            while not writer_of(numbers.publisher).update():  # until the unannounced peer is known
                 await checkpoint()
             while not samples.items:
                 numbers.publish()
@@ -145,7 +145,7 @@ async def test_what_was_in_a_broken_link_reaches_its_reader_and_nobody_twice() -
 
 
 async def test_a_stream_goes_on_over_zenoh_when_the_link_ends_and_back_when_it_is_there() -> None:
-    """Either end may close it; nobody notices."""
+    """Either end may close it, and no message is lost."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
         for node in nodes:
@@ -194,7 +194,7 @@ async def test_the_end_is_seen_where_something_is_left_to_read_and_nothing_to_wr
 async def test_garbage_ends_the_link_and_not_the_stream(
     garbage: bytes, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Both ends go on over Zenoh, and say why."""
+    """Both ends go on over Zenoh, and a warning says why."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
         await numbers.until_linked()
@@ -210,10 +210,10 @@ async def test_garbage_ends_the_link_and_not_the_stream(
     assert len(garbage) < 40 or "expected a frame" in caplog.text
 
 
-async def test_junk_by_post_is_said_once_and_counted(
+async def test_retransmissions_that_cannot_be_read_are_reported_once_and_counted(
     folder: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Anybody on the network may send any amount of it."""
+    """Any process on the network may send any number of them."""
     async with quiet_node("one") as node:
         for _ in range(500):
             manager_of(node)._on_retransmit(b"no frame at all" * 10)
@@ -222,22 +222,22 @@ async def test_junk_by_post_is_said_once_and_counted(
     assert sum("retransmitted" in text for text in caplog.messages) == 1
 
 
-async def test_strangers_at_the_socket_get_nothing_and_stop_nothing(folder: Path) -> None:
-    """Silence, garbage, or a frame before the greeting: none of it becomes a link."""
+async def test_unknown_clients_of_the_socket_get_no_link_and_stop_nothing(folder: Path) -> None:
+    """Silence, garbage, or a frame before the Hello: none of it becomes a link."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
         path = folder / f"{nodes.b.context.participant}.sock"
-        for said in (b"", b"x" * 100, bytes(7)):
-            with socket.socket(socket.AF_UNIX) as stranger:
-                stranger.connect(str(path))
-                stranger.send(said)
+        for sent in (b"", b"x" * 100, bytes(7)):
+            with socket.socket(socket.AF_UNIX) as client:
+                client.connect(str(path))
+                client.send(sent)
                 await numbers.publisher.wait_for_subscribers()
                 await numbers.go(5)
         assert manager_of(nodes.b).links in ([], [nodes.a.context.participant])
 
 
 async def test_other_users_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whoever is at the other end of the socket, it is not this user."""
+    """The process at the other end of the socket is not one of this user."""
     monkeypatch.setattr(listener, "is_own_user", lambda _: False)
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
@@ -265,7 +265,7 @@ def no_parent(folder: Path) -> None:
 async def test_without_a_folder_of_its_own_everything_goes_over_zenoh(
     spoil: Any, folder: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """And it is said once what is wrong with it."""
+    """A warning says what is wrong with it."""
     spoil(folder)
     with caplog.at_level(logging.WARNING, "aionode.transport.ipc"):
         async with two_nodes() as nodes:
@@ -343,7 +343,7 @@ async def test_keep_all_loses_nothing_while_the_link_comes_up() -> None:
 
 
 async def test_a_call_takes_the_link_and_ends_with_it() -> None:
-    """Nobody can tell whether the server has begun, so it is not sent again."""
+    """The client cannot know whether the server has begun, so it is not sent again."""
     async with two_nodes() as nodes:
         begun = asyncio.Event()
 
@@ -441,7 +441,7 @@ async def linked_images(nodes: Two) -> tuple[Any, Any]:
 
 
 async def test_images_come_in_shared_memory_that_is_used_again() -> None:
-    """Read in place, unchanged as long as anybody looks, and given back afterwards."""
+    """Read in place, unchanged as long as anything refers to them, and released afterwards."""
     async with two_nodes() as nodes:
         publisher, subscription = await linked_images(nodes)
         assert not writer_of(publisher).update()  # and Zenoh is spared
@@ -543,7 +543,7 @@ async def test_nothing_stays_behind(folder: Path) -> None:
 
 
 async def test_sockets_of_the_killed_are_removed(folder: Path) -> None:
-    """Who was killed could not do it."""
+    """A killed process could not remove its socket."""
     os.mkdir(folder, 0o700)  # noqa: PTH102  # nothing else uses the loop here
     with socket.socket(socket.AF_UNIX) as dead:
         dead.bind(str(folder / "dead.sock"))
@@ -555,7 +555,7 @@ async def test_sockets_of_the_killed_are_removed(folder: Path) -> None:
 
 
 def test_a_link_is_used_unless_it_was_switched_off(monkeypatch: pytest.MonkeyPatch) -> None:
-    """By the variable, unless the argument says otherwise."""
+    """The variable decides, unless the argument is given."""
 
     def linked(**options: Any) -> bool:
         return isinstance(Context(**options).transports[-1], IpcTransport)
@@ -574,7 +574,7 @@ def test_a_link_is_used_unless_it_was_switched_off(monkeypatch: pytest.MonkeyPat
 
 
 async def test_contexts_with_and_without_links_hear_each_other() -> None:
-    """An older release, or one that was told not to."""
+    """One is an older release, or has links switched off."""
     async with two_nodes(links=(True, False)) as nodes:
         numbers = Counting(nodes)
         await numbers.publisher.wait_for_subscribers()
@@ -582,8 +582,8 @@ async def test_contexts_with_and_without_links_hear_each_other() -> None:
         assert manager_of(nodes.a).links == []
 
 
-def test_a_beacon_says_who_can_be_linked() -> None:
-    """Same host, same user, same version; and what is no beacon is none."""
+def test_an_advertisement_says_which_contexts_can_be_linked() -> None:
+    """Same host, same user, same version; any other text is rejected."""
     own = listener.Advertisement.own("1a")
     assert listener.Advertisement.parse(own.text()) == own
     assert own.is_near(own._replace(participant="2b"))

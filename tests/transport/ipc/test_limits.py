@@ -34,14 +34,14 @@ __all__ = ["folder"]  # a fixture
 
 
 async def dialled(folder: Path, context: Context) -> socket.socket:
-    """Return a socket to a context, without a word said."""
+    """Return a socket to a context, without a Hello."""
     sock = socket.socket(socket.AF_UNIX)
     sock.setblocking(False)
     await asyncio.get_running_loop().sock_connect(sock, str(folder / f"{context.participant}.sock"))
     return sock
 
 
-def greeting(participant: int) -> bytes:
+def hello(participant: int) -> bytes:
     """Return the first frame of a process."""
     return protocol.pack(Kind.HELLO, protocol.VERSION, DOMAIN_ID, participant.to_bytes(16, "big"))
 
@@ -56,10 +56,10 @@ async def until_closed(sock: socket.socket) -> None:
         pass
 
 
-# Before the greeting
+# Before the Hello
 
 
-async def test_who_does_not_say_who_he_is_is_hung_up_on(
+async def test_a_client_without_a_hello_is_disconnected(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A descriptor is kept for a few seconds, not for ever."""
@@ -83,8 +83,8 @@ async def test_of_many_silent_sockets_the_oldest_are_closed(folder: Path) -> Non
             assert len(manager_of(node)._opening) == manager.MAX_OPENING
 
 
-async def test_a_frame_cannot_begin_in_place_of_the_greeting(folder: Path) -> None:
-    """What is unknown may make nobody hold its megabytes."""
+async def test_a_long_frame_in_place_of_the_hello_is_refused(folder: Path) -> None:
+    """An unknown client must not make a process hold megabytes."""
     async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
         with closing(await dialled(folder, node.context)) as sock:
             head = protocol.HEADER.pack(1 << 26, Kind.HELLO, 0, protocol.MARK, 1, 1, bytes(16))
@@ -109,32 +109,32 @@ async def test_frames_without_an_end_take_so_much_memory_and_no_more(
                 socks.append(sock)
                 head = protocol.HEADER.pack(1 << 26, Kind.DATA, 0, protocol.MARK, 1, 1, bytes(16))
                 rest = bytes(megabytes << 20)
-                await loop.sock_sendall(sock, greeting(number) + head + rest)
+                await loop.sock_sendall(sock, hello(number) + head + rest)
             await until_closed(socks[0])
             assert len(manager_of(node).links) == 3
 
 
-async def test_a_reader_that_takes_no_answers_is_hung_up_on(
+async def test_a_client_that_reads_no_responses_is_disconnected(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Whoever asks on and on and reads nothing would fill the server's memory."""
+    """A client that sends requests and reads nothing would fill the server's memory."""
     monkeypatch.setattr(connection, "URGENT_BYTES", 1 << 16)
     loop = asyncio.get_running_loop()
     async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
         with closing(await dialled(folder, node.context)) as sock:
-            await loop.sock_sendall(sock, greeting(1))
-            question = protocol.pack(Kind.REQUEST, 1, 1, bytes(16), bytes(16))
+            await loop.sock_sendall(sock, hello(1))
+            request = protocol.pack(Kind.REQUEST, 1, 1, bytes(16), bytes(16))
             while True:
                 try:
-                    await loop.sock_sendall(sock, question * 100)
+                    await loop.sock_sendall(sock, request * 100)
                 except (BrokenPipeError, ConnectionResetError):
                     break
 
 
-async def test_a_reader_that_confirms_nothing_is_not_kept_everything_for(
+async def test_what_is_kept_for_a_reader_that_confirms_nothing_is_bounded(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """It said that it would."""
+    """It has announced confirmations, and sends none."""
     monkeypatch.setattr(send_queue, "MAX_UNCONFIRMED", 200)
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
@@ -257,13 +257,13 @@ async def test_a_context_that_dials_again_replaces_a_link_whose_end_is_unread(
     loop = asyncio.get_running_loop()
     async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
         with closing(await dialled(folder, node.context)) as first:
-            await loop.sock_sendall(first, greeting(1))
+            await loop.sock_sendall(first, hello(1))
             while not manager_of(node).links:
                 await checkpoint()
             old = link_of(node)
             loop.remove_reader(old._fd)
         with closing(await dialled(folder, node.context)) as second:
-            await loop.sock_sendall(second, greeting(1))
+            await loop.sock_sendall(second, hello(1))
             while manager_of(node).linked("1") in (None, old):
                 await checkpoint()
         assert old.closed

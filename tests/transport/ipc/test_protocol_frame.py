@@ -1,4 +1,4 @@
-"""Frames on a stream: whatever goes in comes out, and garbage is noticed."""
+"""Frames on a stream come out as they went in, and garbage is noticed."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def test_what_is_cut_off_stays_missing(one: Frame, data: st.DataObject) -> None:
 @given(st.binary(max_size=400), st.lists(st.integers(0, 400), max_size=4))
 @settings(max_examples=200)
 def test_garbage_is_an_error_or_waits_for_more(stream: bytes, cuts: list[int]) -> None:
-    """Nothing else may come out of it, whoever is at the other end."""
+    """Nothing else may come out of it, whatever the other end sends."""
     parser = FrameParser()
     try:
         for piece in pieces_of(stream, cuts):
@@ -75,11 +75,11 @@ def test_garbage_is_an_error_or_waits_for_more(stream: bytes, cuts: list[int]) -
         pass
 
 
-@pytest.mark.parametrize("place", [4, 5, 6, 7], ids=["kind", "flags", "mark", "mark"])
-def test_a_wrong_byte_in_the_header_is_noticed(place: int) -> None:
-    """Going on would take one thing for another."""
+@pytest.mark.parametrize("offset", [4, 5, 6, 7], ids=["kind", "flags", "mark", "mark"])
+def test_a_wrong_byte_in_the_header_is_noticed(offset: int) -> None:
+    """Otherwise the receiver would misread what follows."""
     header = bytearray(packed(Frame(Kind.DATA)))
-    header[place] ^= 0xF0
+    header[offset] ^= 0xF0
     with pytest.raises(FrameError):
         FrameParser().feed(bytes(header))
 
@@ -93,19 +93,19 @@ def test_a_wrong_length_is_noticed_before_memory_is_taken_for_it() -> None:
 
 
 def test_what_does_not_fit_is_not_packed() -> None:
-    """The other end would break the link."""
+    """The other end would end the link."""
     with pytest.raises(FrameError):
         protocol.pack(Kind.DATA, 0, 0, bytes(16), bytes(protocol.MAX_INLINE + 1))
 
 
 @given(st.integers(0, 2**64 - 1), st.integers(0, 2**64 - 1))
-def test_a_place_comes_out_as_it_went_in(number: int, size: int) -> None:
-    """Another place would be another message."""
+def test_a_buffer_reference_comes_out_as_it_went_in(number: int, size: int) -> None:
+    """Another buffer would be another message."""
     assert BufferRef.unpack(BufferRef(number, size).pack()) == (number, size)
 
 
 @given(st.binary(max_size=40).filter(lambda data: len(data) != 16))
-def test_what_is_no_place_is_refused(data: bytes) -> None:
-    """Memory is not looked for at random."""
+def test_what_is_no_buffer_reference_is_refused(data: bytes) -> None:
+    """A buffer is not chosen at random."""
     with pytest.raises(FrameError):
         BufferRef.unpack(data)

@@ -38,7 +38,7 @@ def pool() -> Iterator[BufferPool]:
 
 
 def filled(pool: BufferPool, payload: bytes) -> SharedBuffer:
-    """Return memory with a payload: there is always some in these tests."""
+    """Return a buffer with a payload: there is always memory in these tests."""
     found = pool.filled((payload,), len(payload))
     assert found is not None
     return found
@@ -50,7 +50,7 @@ def given(one: SharedBuffer) -> int:
 
 
 class Done:
-    """Counts how often a payload was said to be done with."""
+    """Counts how often a payload was released."""
 
     def __init__(self) -> None:
         self.count = 0
@@ -69,7 +69,7 @@ def descriptors() -> int:
 
 
 def test_parts_are_put_together_in_the_memory(pool: BufferPool) -> None:
-    """They are copied from where they lie, and stand there as one payload."""
+    """They are copied from where they are, and form one payload in the buffer."""
     parts: list[cdr.Data] = [b"abc", memoryview(bytes(5000)), bytearray(b"xyz")]
 
     one = pool.filled(parts, 5006)
@@ -91,7 +91,7 @@ def test_memory_that_was_released_is_used_again(pool: BufferPool) -> None:
 
 
 def test_memory_in_use_is_left_alone(pool: BufferPool) -> None:
-    """Each user holds it: two got it, and one is still reading."""
+    """Two receivers got it, and one is still reading."""
     first = filled(pool, b"a" * SIZE)
     first.users += 1
     pool.release(first)
@@ -120,7 +120,7 @@ def test_small_payloads_leave_large_memory_to_others(pool: BufferPool) -> None:
 
 
 def test_payloads_that_vary_a_little_share_a_memory(pool: BufferPool) -> None:
-    """As compressed images do: sizes are rounded up by some percent."""
+    """As with compressed images: sizes are rounded up by some percent."""
     sizes = range(1_000_000, 1_040_000, 1000)
     numbers = set()
     for size in sizes:
@@ -151,7 +151,7 @@ def test_the_pool_keeps_few_and_says_which_it_closes(pool: BufferPool) -> None:
 def test_the_pool_keeps_a_limited_number_of_bytes(
     pool: BufferPool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What is larger than all it may keep does not drive out the rest."""
+    """A buffer larger than the limit does not replace the others."""
     monkeypatch.setattr(shared_memory, "MAX_IDLE", 3 * SIZE)
     closed: list[int] = []
     pool.listeners.add(closed.append)
@@ -166,7 +166,7 @@ def test_the_pool_keeps_a_limited_number_of_bytes(
 
 
 def test_memory_of_a_dead_receiver_is_not_used_again(pool: BufferPool) -> None:
-    """Its process may look at it as long as it likes, and others must forget it."""
+    """Its process may go on reading it, and the others must forget it."""
     closed: list[int] = []
     pool.listeners.add(closed.append)
     one = filled(pool, bytes(SIZE))
@@ -208,7 +208,7 @@ def test_without_descriptors_there_is_no_memory(
 
 
 def test_a_payload_is_read_in_place(pool: BufferPool) -> None:
-    """The sender's memory itself, and nobody but the sender can write there."""
+    """It is the sender's memory itself, and only the sender can write to it."""
     one = filled(pool, b"a" * SIZE)
     mappings = BufferMappings()
 
@@ -260,7 +260,7 @@ def an_image(view: memoryview) -> object:
 
 
 @pytest.mark.parametrize("look", [a_slice, a_cast, an_array, an_array_of_an_array, an_image])
-def test_a_payload_is_done_with_when_the_last_look_at_it_has_ended(
+def test_a_payload_is_released_when_the_last_reference_to_it_is_gone(
     pool: BufferPool, look: Callable[[memoryview], object]
 ) -> None:
     """Views and arrays of any part keep it, and not each other's payloads in the same memory."""
@@ -296,11 +296,11 @@ def test_what_is_looked_at_outlives_its_mapping(pool: BufferPool) -> None:
     assert len(mappings) == 0
     assert bytes(view) == b"a" * SIZE
     del view
-    assert done.count == 0  # nobody is left to tell
+    assert done.count == 0  # the link is closed, so the sender cannot be told
 
 
 def test_a_forgotten_mapping_leaves_nothing_open(pool: BufferPool) -> None:
-    """Neither descriptors nor pages; to forget what is not known is nothing."""
+    """Neither descriptors nor pages; forgetting an unknown buffer does nothing."""
     one = filled(pool, bytes(SIZE))
     before = descriptors_and_maps()
     mappings = BufferMappings()
@@ -319,7 +319,7 @@ def descriptors_and_maps() -> tuple[int, int]:
 
 
 def test_a_number_without_its_descriptor_is_refused(pool: BufferPool) -> None:
-    """Never seen, or forgotten: there is nothing to look at."""
+    """It was never mapped, or is forgotten: there is nothing to read."""
     one = filled(pool, bytes(SIZE))
     mappings = BufferMappings()
     mappings.view(one.number, SIZE, given(one), Done())
@@ -340,7 +340,7 @@ def test_a_payload_larger_than_its_memory_is_refused(pool: BufferPool, size: int
         mappings.view(one.number, size, given(one), done)
     mappings.view(one.number, SIZE, given(one), Done())
 
-    with pytest.raises(FrameError, match="in a memory of"):
+    with pytest.raises(FrameError, match="in a shared buffer of"):
         mappings.view(one.number, size, None, done)
     assert done.count == 0
 
@@ -384,7 +384,7 @@ def test_what_is_no_sealed_memory_is_refused(make: Callable[[], int]) -> None:
     fd = make()
     mappings = BufferMappings()
 
-    with pytest.raises(FrameError, match="memory that"):
+    with pytest.raises(FrameError, match=r"a shared buffer (cannot be mapped|is not sealed)"):
         mappings.view(1, 100, fd, Done())
 
     assert len(mappings) == 0
@@ -392,7 +392,7 @@ def test_what_is_no_sealed_memory_is_refused(make: Callable[[], int]) -> None:
         os.fstat(fd)
 
 
-def test_nobody_else_can_write_to_sealed_memory(pool: BufferPool) -> None:
+def test_only_the_sender_can_write_to_sealed_memory(pool: BufferPool) -> None:
     """A receiver that tries gets an error; the sender's own mapping is older than the seal."""
     one = filled(pool, bytes(SIZE))
 
