@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from aionode.qos import QoSProfile
     from aionode.transport.base import Registration, SampleInfo
 
-__all__ = ["MessageInfo", "Subscription", "SubscriptionCallback", "SubscriptionReader"]
+__all__ = ["MessageInfo", "Subscription", "SubscriptionCallback"]
 
 ItemT = TypeVar("ItemT")
 
@@ -104,9 +104,7 @@ class Subscription(Entity, Generic[ItemT]):
             self._runner = graph_entry.callbacks.make_runner(
                 callback, self, self.stats, on_error=on_error, offload=offload
             )
-        self._reader = SubscriptionReader(
-            endpoint, self.stats, time_base, raw=raw, wants_info=wants == 2
-        )
+        self._reader = _Reader(endpoint, self.stats, time_base, raw=raw, wants_info=wants == 2)
 
     def __repr__(self) -> str:
         return (
@@ -196,7 +194,7 @@ class Subscription(Entity, Generic[ItemT]):
         self._reader.close(discard=self._runner is not None)
 
 
-class SubscriptionReader(MessageQueue[Any]):
+class _Reader(MessageQueue[Any]):
     """The queue of a subscription, into which transports deliver: their `Reader`.
 
     Args:
