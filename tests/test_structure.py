@@ -25,7 +25,6 @@ MAX_CHAIN = 20
 """How many modules may import one another in a row, each at its top. The goal is 14."""
 
 CYCLES_FOR_NOW = (
-    ("aionode.arguments", "aionode.parameter"),
     ("aionode.endpoints.actions",),
     ("aionode.message",),
     ("aionode.transport.zenoh",),

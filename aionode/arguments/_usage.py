@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from aionode.names import RemapKind
 
@@ -12,12 +12,22 @@ if TYPE_CHECKING:
 
     from aionode.arguments._parse import Arguments
     from aionode.clock import TimeBase
-    from aionode.parameter import ParameterStore
 
 __all__ = ["Usage"]
 
 CHECK_AFTER_NS = 1_000_000_000
 """How long after the first node started the arguments are checked."""
+
+
+class NodeParameters(Protocol):
+    """What is read of the `ParameterStore` of a node; that imports the arguments itself."""
+
+    node_name: str
+    allow_undeclared: bool
+    asked: set[str]
+
+    def names(self) -> list[str]:
+        """Return the names of all declared parameters."""
 
 
 class Usage:
@@ -33,7 +43,7 @@ class Usage:
         self._rules = set(arguments.remap_rules)
         self._parameters = [rule for rule in arguments.parameter_rules if rule.typed]
         self._names: set[str] = set()
-        self._stores: list[ParameterStore] = []
+        self._stores: list[NodeParameters] = []
         self._begun = False
 
     @property
@@ -57,7 +67,7 @@ class Usage:
             and rule.new_name(name, node_name, namespace) is not None
         }
 
-    def note_parameters(self, store: ParameterStore) -> None:
+    def note_parameters(self, store: NodeParameters) -> None:
         """Record the parameters of a node, including those that it declares later."""
         self._stores.append(store)
 
