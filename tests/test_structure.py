@@ -21,12 +21,11 @@ MODULES = sorted(
 )
 
 MAX_LINES = 600
-MAX_CHAIN = 20
+MAX_CHAIN = 19
 """How many modules may import one another in a row, each at its top. The goal is 14."""
 
 CYCLES_FOR_NOW = (
     ("aionode.endpoints.actions",),
-    ("aionode.message",),
     ("aionode.transport.zenoh",),
 )
 """Packages with cycles of type-only imports that are being undone. Take them off, one by one."""
