@@ -1,15 +1,16 @@
 # aionode's commands. The first one makes .venv and installs what it needs; nothing else is touched.
 #
-#   make demo    two nodes talk: python -m aionode.examples.pubsub
-#   make test    the tests
-#   make check   style, types, layers, the documentation's code, the documentation itself
-#   make bench   the benchmarks; tables, JSON and pictures in benchmarks/results/
-#   make docs    the documentation as pages, in site/
-#   make fuzz    damaged input for every parser: by property tests, and guided by coverage
-#   make faults  processes that freeze, lag and die, FAULTS_TIMES times: writes docs/reliability.md
-#   make soak    everything at once, for SOAK_SECONDS seconds: nothing may grow
-#   make quotes  brings the code quoted in README.md and docs/ up to date
-#   make clean   removes what was made, .venv included
+#   make demo      two nodes talk: python -m aionode.examples.pubsub
+#   make test      the tests
+#   make check     style, types, layers and structure, the documentation and its code
+#   make coverage  how much of aionode the tests in one process reach; fails below the threshold
+#   make bench     the benchmarks; tables, JSON and pictures in benchmarks/results/
+#   make docs      the documentation as pages, in site/
+#   make fuzz      damaged input for every parser: by property tests, and guided by coverage
+#   make faults    processes that freeze, lag and die, FAULTS_TIMES times: writes docs/reliability.md
+#   make soak      everything at once, for SOAK_SECONDS seconds: nothing may grow
+#   make quotes    brings the code quoted in README.md and docs/ up to date
+#   make clean     removes what was made, .venv included
 
 # The first of these that is Python 3.11 or newer. Use another one with make PYTHON=/path/to/python.
 PYTHON ?= $(shell for name in python3 python3.14 python3.13 python3.12 python3.11 python; do \
@@ -21,10 +22,10 @@ FUZZ_SECONDS ?= 60
 FAULTS_TIMES ?= 3
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check bench docs fuzz faults soak quotes clean
+.PHONY: help demo test check coverage bench docs fuzz faults soak quotes clean
 
 help:
-	@sed -n '3,12s/^# *//p' Makefile
+	@sed -n '3,13s/^# *//p' Makefile
 
 demo: .venv/installed
 	$(BIN)/python -m aionode.examples.pubsub
@@ -38,8 +39,14 @@ check: .venv/installed-dev
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo
 	$(BIN)/python docs/quotes.py --check
-	$(BIN)/python -m pytest -q tests/test_docs.py
+	$(BIN)/python -m pytest -q tests/test_docs.py tests/test_structure.py
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs site
+
+# Tests that start processes reach nothing here. Tests with time limits may fail while every line is
+# counted: `make test` is what judges them, so only the share of the code counts.
+coverage: .venv/installed-dev
+	-$(BIN)/coverage run -m pytest -q --ignore=tests/processes --ignore=tests/test_examples.py
+	$(BIN)/coverage report --skip-covered --sort=cover
 
 bench: .venv/installed-dev
 	for program in benchmarks/*.py; do $(BIN)/python $$program || exit 1; done

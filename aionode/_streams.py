@@ -1,4 +1,4 @@
-"""Standard output and error, when nobody reads them or they cannot be written to."""
+"""Standard output and error streams that are not read, or cannot be written to."""
 
 from __future__ import annotations
 
@@ -18,87 +18,87 @@ __all__ = ["STANDARD", "UnreadWatch", "accepts", "discard", "interrupt_main", "o
 STANDARD = (1, 2)
 """The descriptors of standard output and error."""
 
-LOOK_S = 0.05
-"""How often the descriptors are looked at, in seconds."""
+CHECK_S = 0.05
+"""How often the descriptors are checked, in seconds."""
 
-PATIENCE = 4
-"""So many looks in a row have to find a descriptor full before it is given up."""
+FULL_CHECKS = 4
+"""How many checks in a row must find a descriptor full before it is discarded."""
 
 
 def accepts(descriptor: int) -> bool:
-    """Whether writing to a descriptor would not block; True where that cannot be told."""
+    """Whether a write to a descriptor would not block; True if that cannot be determined."""
     if not hasattr(select, "poll"):
         return True
-    looking = select.poll()
-    looking.register(descriptor, select.POLLOUT)
-    return bool(looking.poll(0))
+    poll = select.poll()
+    poll.register(descriptor, select.POLLOUT)
+    return bool(poll.poll(0))
 
 
 def discard(stream: TextIO | int) -> None:
-    """Send what is still written to a stream, or a descriptor, nowhere.
+    """Redirect a stream, or a descriptor, to the null device.
 
-    What waits in its buffer goes there as well, so Python's own flush at the exit does not fail.
+    Buffered text is lost too, so that Python's own flush at exit does not fail.
     """
     try:
         descriptor = stream if isinstance(stream, int) else stream.fileno()
-    except (OSError, ValueError):  # it is no file, or was closed
+    except (OSError, ValueError):  # not a file, or closed
         return
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, descriptor)
-    os.close(nowhere)
+    null = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null, descriptor)
+    os.close(null)
 
 
 def open_missing() -> None:
-    """Let the standard streams that were closed at the start lead nowhere.
+    """Open the null device for standard streams that were closed when the process started.
 
-    Without it the first sockets of the process would get their numbers, and Python has None for
-    them.
+    Otherwise the first sockets of the process would get their descriptors, and Python has None in
+    their place.
     """
     for descriptor, name in enumerate(("stdin", "stdout", "stderr")):
         if getattr(sys, name) is None:
-            nowhere = os.open(os.devnull, os.O_RDWR)
-            if nowhere != descriptor:
-                os.dup2(nowhere, descriptor)
-                os.close(nowhere)
+            null = os.open(os.devnull, os.O_RDWR)
+            if null != descriptor:
+                os.dup2(null, descriptor)
+                os.close(null)
             setattr(sys, name, open(descriptor, "w" if descriptor else "r", encoding="utf-8"))  # noqa: PTH123, SIM115
 
 
 class UnreadWatch:
-    """Keeps a process that is asked to end from waiting for a reader of its output that is gone.
+    """Keeps a process that is ending from blocking on output that is not being read.
 
-    A write to a full pipe, or a terminal that was stopped, holds up the whole event loop. After
-    `start` a thread gives up a standard stream that has taken nothing for 0.2 s: what is still
-    written to it is lost.
+    A write to a full pipe, or to a stopped terminal, blocks the whole event loop. After `start`, a
+    thread redirects a standard stream that has accepted nothing for 0.2 s to the null device; what
+    is written to it is lost.
 
     Args:
-        wake: Called, in that thread, to interrupt a write in the main thread, which then goes on
-            to nowhere.
+        wake: Called in that thread to interrupt a blocked write in the main thread, which then
+            succeeds.
     """
 
     def __init__(self, wake: Callable[[], object]) -> None:
         self._wake = wake
         self._ended = threading.Event()
-        self._waking = threading.Lock()  # a signal after `stop` would meet another handler
+        self._waking = threading.Lock()  # held while waking: no signal may come after `stop`
 
     def start(self) -> None:
-        """Begin to look."""
-        # Not waited for at the end: it does nothing but look.
-        threading.Thread(target=self._look, name="aionode-unread", daemon=True).start()
+        """Start checking."""
+        # A daemon, as the process need not wait for it at exit.
+        threading.Thread(target=self._check, name="aionode-unread", daemon=True).start()
 
     def stop(self) -> None:
-        """Look no longer; `wake` is not called after this."""
+        """Stop checking; `wake` is not called after this."""
         with self._waking:
             self._ended.set()
 
-    def _look(self) -> None:
+    def _check(self) -> None:
         full = dict.fromkeys(STANDARD, 0)
-        while not self._ended.wait(LOOK_S):
+        while not self._ended.wait(CHECK_S):
             for descriptor in STANDARD:
                 full[descriptor] = 0 if accepts(descriptor) else full[descriptor] + 1
-                if full[descriptor] == PATIENCE:
-                    self._give_up(descriptor)
+                if full[descriptor] == FULL_CHECKS:
+                    self._discard(descriptor)
 
-    def _give_up(self, descriptor: int) -> None:
+    def _discard(self, descriptor: int) -> None:
         with self._waking:
             if not self._ended.is_set():
                 discard(descriptor)
@@ -106,7 +106,7 @@ class UnreadWatch:
 
 
 def interrupt_main(number: signal.Signals) -> None:
-    """Send the main thread a signal, which ends the system call that it waits in."""
+    """Send the main thread a signal, which interrupts the system call that it is blocked in."""
     main = threading.main_thread().ident
     if main is not None and hasattr(signal, "pthread_kill"):
         signal.pthread_kill(main, number)

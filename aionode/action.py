@@ -1,4 +1,4 @@
-"""Actions: goals that take their time, that report how far they are, and that can be cancelled.
+"""Actions: goals that take time, report their progress, and can be cancelled.
 
 A server::
 
@@ -19,7 +19,7 @@ and a client::
         print(feedback.distance_left)
     print((await goal.result()).status)
 
-In aionode.errors are `GoalRejectedError`, `GoalAbortedError`, `GoalCanceledError` and
+The errors of goals are here too: `GoalRejectedError`, `GoalAbortedError`, `GoalCanceledError` and
 `GoalLostError`.
 """
 

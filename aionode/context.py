@@ -1,4 +1,4 @@
-"""One participant of the system: its transports, its graph, its nodes."""
+"""The context that nodes share: one participant in the ROS graph, with its transports."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import os
 import secrets
 import threading
 import weakref
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self
 
 from aionode._concurrency import to_the_end
 from aionode.arguments import Arguments, Usage
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from types import TracebackType
 
     from aionode.clock import TimeBase
-    from aionode.node import Node
     from aionode.qos import QoSProfile
 
 __all__ = ["Context"]
@@ -41,15 +40,15 @@ LINK_SETTINGS = {"on": True, "off": False, "": True}
 
 
 def wants_link(asked: bool | None, environ: Mapping[str, str]) -> bool:
-    """Return whether processes of this host are to be linked, and can be.
+    """Return whether to reach processes of this host over the ipc transport.
 
     Raises:
-        ConfigurationError: the variable says neither on nor off.
+        ConfigurationError: the environment variable is neither on nor off.
     """
     if asked is None:
         word = environ.get(LINK_VARIABLE, "")
         if word not in LINK_SETTINGS:
-            raise ConfigurationError(LINK_VARIABLE, word, "on and off fit")
+            raise ConfigurationError(LINK_VARIABLE, word, "use on or off")
         asked = LINK_SETTINGS[word]
     if not asked:
         return False
@@ -58,26 +57,36 @@ def wants_link(asked: bool | None, environ: Mapping[str, str]) -> bool:
     return available()
 
 
+class ContextNode(Protocol):
+    """What a context needs of its nodes. A protocol, as `Node` itself imports the context."""
+
+    def destroy_node(self) -> None:
+        """End the node."""
+
+    def _abandon(self) -> None:
+        """Mark the node destroyed without closing anything; in a forked child."""
+
+
 class Context:
     """What the nodes of one participant share: transports, graph, domain and time.
 
-    Nodes made without a context share `Context.default()`. A context opens with its first running
-    node and closes after the last; ``async with Context() as context`` holds it open, and ends it
-    with all its nodes.
+    Nodes created without a context share `Context.default()`. A context opens with its first
+    running node and closes after the last; ``async with Context() as context`` keeps it open for
+    the whole block, and destroys all its nodes at the end.
 
     Args:
-        domain_id: The ROS domain, a number from 0 up; ``ROS_DOMAIN_ID`` or 0 without it.
+        domain_id: The ROS domain, 0 or more; by default ``ROS_DOMAIN_ID``, or 0.
         transport: ``"zenoh"`` reaches other processes and ROS 2, ``"local"`` only the nodes of this
-            context. A `Transport` object, or several, are used as they are.
+            context. One or several `Transport` objects are used as they are.
         clock: Where the time comes from: the machine, or an `aionode.testing.ManualClock`.
-        discovery_range: How far others are looked for: ``"LOCALHOST"``, ``"SUBNET"`` or ``"OFF"``;
-            ``ROS_AUTOMATIC_DISCOVERY_RANGE`` without it.
-        static_peers: Hosts to connect to; ``ROS_STATIC_PEERS`` without it.
-        config: Path of a Zenoh configuration file in place of ``ZENOH_SESSION_CONFIG_URI``, or
-            single settings by their key path.
-        link: Whether other processes of this user on this host are reached through a Unix socket
-            in the event loop, where the system has what it needs; ``AIONODE_LINK`` (``on`` or
-            ``off``) without it, and on without that.
+        discovery_range: Where to look for other processes: ``"LOCALHOST"``, ``"SUBNET"`` or
+            ``"OFF"``; by default ``ROS_AUTOMATIC_DISCOVERY_RANGE``.
+        static_peers: Hosts to connect to; by default ``ROS_STATIC_PEERS``.
+        config: Path of a Zenoh configuration file, in place of ``ZENOH_SESSION_CONFIG_URI``, or
+            individual settings by their key path.
+        link: Whether to reach other processes of this user on this host over a Unix socket served
+            by the event loop, where the platform supports it; by default ``AIONODE_LINK`` (``on``
+            or ``off``), or on.
 
     Attributes:
         network: Domain, discovery and peers, from the arguments and the environment.
@@ -86,14 +95,15 @@ class Context:
         participant: Id of this context in the graph, in hexadecimal.
 
     Raises:
-        ConfigurationError: an argument, or the environment variable in its place, does not fit (a
+        ConfigurationError: an argument, or the environment variable used instead, is invalid (a
             ValueError).
-        ValueError: `transport` is an unknown word.
+        ValueError: `transport` is an unknown name.
     """
 
     _default: ClassVar[Context | None] = None
     _command_line: ClassVar[Usage] = Usage(Arguments())
-    # For children that are forked from this process, and in them.
+    # For forked children: every context of this process, and whether one of them, or of the
+    # parent, has ever opened a connection, which a fork breaks.
     _all: ClassVar[weakref.WeakSet[Context]] = weakref.WeakSet()
     _has_connected: ClassVar[bool] = False
     _parent_has_connected: ClassVar[bool] = False
@@ -109,7 +119,7 @@ class Context:
         config: str | Path | Mapping[str, Any] | None = None,
         link: bool | None = None,
     ) -> None:
-        # Zenoh writes ids without leading zeros, and every peer has to see the same text.
+        # Zenoh writes ids without leading zeros, and all peers must see the same text.
         self.participant = secrets.token_hex(16).lstrip("0") or "1"
         self.graph = Graph()
         MismatchReport(self.graph, self.participant)
@@ -122,17 +132,17 @@ class Context:
             config=config,
         )
         self._transports = self._make_transports(transport, link)
-        self._usage: Usage | None = None  # of arguments for this context alone
-        self._nodes: dict[Node, None] = {}
-        self._ids = 0
-        self._users = 0
-        self._shut_down = False
-        self._open = False
-        self._loop: asyncio.AbstractEventLoop | None = None
-        self._entrance = threading.Lock()
-        self._turn = asyncio.Lock()  # to open or to close, one after the other
-        self._closed = asyncio.Event()
-        self._inherited = False
+        self._usage: Usage | None = None  # of arguments that were set for this context alone
+        self._nodes: dict[ContextNode, None] = {}  # from construction until destroyed
+        self._next_id = 0  # of a node or endpoint
+        self._users = 0  # running nodes and `async with` blocks; the transports close at 0
+        self._shut_down = False  # set by `shutdown`, and never reset
+        self._open = False  # whether the transports are open
+        self._loop: asyncio.AbstractEventLoop | None = None  # in which it was opened last
+        self._loop_guard = threading.Lock()  # held to check and set `_loop` and `_users`
+        self._transition = asyncio.Lock()  # held while the transports open or close
+        self._closed = asyncio.Event()  # set when the last user has released the context
+        self._inherited = False  # whether it belongs to the parent of this forked process
         Context._all.add(self)
 
     def __repr__(self) -> str:
@@ -149,7 +159,7 @@ class Context:
         if transport == "local":
             return (LocalTransport(),)
         if transport == "zenoh":
-            # Imported here, because it is large and a context without network does not need it.
+            # Imported on demand: it is large, and a local context does not need it.
             from aionode.transport.zenoh import ZenohTransport
 
             zenoh = ZenohTransport(self.participant, self.network)
@@ -174,18 +184,18 @@ class Context:
 
     @classmethod
     def default(cls) -> Context:
-        """Return the context of nodes that are made without one; made at the first use.
+        """Return the context of nodes created without one; it is created on first use.
 
-        A forked process gets one of its own.
+        A forked process gets its own.
         """
-        if cls._default is None or not cls._default.ok() or cls._default._inherited:  # noqa: SLF001
+        if cls._default is None or not cls._default.ok() or cls._default._inherited:
             cls._default = cls()
         return cls._default
 
     @classmethod
     @contextlib.contextmanager
     def as_default(cls, context: Context) -> Iterator[None]:
-        """Let `context` be the default one meanwhile: nodes made without a context are in it."""
+        """Make `context` the default for nodes created in the ``with`` block."""
         before, cls._default = cls._default, context
         try:
             yield
@@ -194,8 +204,8 @@ class Context:
 
     @classmethod
     @contextlib.contextmanager
-    def obeying(cls, arguments: Arguments) -> Iterator[None]:
-        """Let `arguments` hold meanwhile for the nodes of every context. For `aionode.run`."""
+    def _obeying(cls, arguments: Arguments) -> Iterator[None]:
+        """Apply `arguments` to the nodes of every context for the ``with`` block."""
         before, cls._command_line = cls._command_line, Usage(arguments)
         try:
             yield
@@ -204,21 +214,28 @@ class Context:
 
     @property
     def arguments(self) -> Arguments:
-        """What the command line says; it holds for nodes made from now on."""
-        return self.usage.arguments
+        """The ROS arguments that apply to nodes created from now on."""
+        return self._current_usage.arguments
 
     @arguments.setter
     def arguments(self, arguments: Arguments) -> None:
         self._usage = Usage(arguments)
 
     def ok(self) -> bool:
-        """Whether the context can be used: `shutdown` was not called."""
+        """Whether the context can be used, that is `shutdown` was not called."""
         return not self._shut_down
 
     async def __aenter__(self) -> Self:
-        """Open the context: connect its transports, and return when others are known."""
+        """Open the context: connect its transports, and wait for the first discovery.
+
+        Raises:
+            EntityDestroyedError: the context was shut down (a RuntimeError).
+            RuntimeError: the context is open in another event loop.
+            ForkedProcessError: it is the parent's, or the parent was connected (a RuntimeError).
+            TransportError: a transport cannot connect.
+        """
         self._refuse_if_shut_down()
-        await self.acquire()
+        await self._acquire()
         return self
 
     async def __aexit__(
@@ -227,34 +244,34 @@ class Context:
         exc: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        """Destroy the nodes, wait for them, and close."""
+        """Destroy the nodes, wait until they have ended, and close the transports."""
         self.shutdown()
-        await to_the_end(self.release())
+        await to_the_end(self._release())
         if self._users:
             await self._closed.wait()
 
     def shutdown(self) -> None:
-        """Destroy all nodes, and refuse new ones. Twice is allowed.
+        """Destroy all nodes, and refuse new ones. Calling it again has no effect.
 
-        A node that runs ends soon after; the transports are closed when the last has.
+        Running nodes end soon after; the transports close when the last of them has ended.
         """
         self._shut_down = True
         for node in list(self._nodes):
             node.destroy_node()
 
-    async def acquire(self) -> None:
-        """Hold the context open: the first holder opens it. For nodes.
+    async def _acquire(self) -> None:
+        """Keep the context open until `_release`; the first user opens the transports.
 
         Raises:
             RuntimeError: the context is open in another event loop.
-            ForkedProcessError: it is the parent's, or the parent's network is (a RuntimeError).
+            ForkedProcessError: it is the parent's, or the parent was connected (a RuntimeError).
         """
         self._refuse_if_inherited()
-        with self._entrance:  # loops may be in different threads
-            self._enter_loop()
-            self._users += 1  # before it is open, so that another loop sees it in use
+        with self._loop_guard:  # event loops may run in different threads
+            self._bind_to_loop()
+            self._users += 1  # before opening, so that another loop sees it in use
         try:
-            async with self._turn:
+            async with self._transition:
                 if not self._open and not self._shut_down:
                     await self._open_transports()
                     self._open = True
@@ -263,18 +280,18 @@ class Context:
             self._users -= 1
             raise
 
-    def _enter_loop(self) -> None:
-        """Note which loop the context works in: one at a time, but one after the other is fine."""
+    def _bind_to_loop(self) -> None:
+        """Use the running loop from now on; a context works in one loop at a time."""
         loop = asyncio.get_running_loop()
         if self._loop is loop:
             return
         if self._loop is not None and not self._loop.is_closed() and self._users:
             raise RuntimeError(
-                f"{self!r}: it is open in another event loop already; its nodes have to run in one "
-                "loop, so make a context for each"
+                f"{self!r}: already open in another event loop; all nodes of a context must run in "
+                "one loop, so create one context for each loop"
             )
         self._loop = loop
-        self._turn = asyncio.Lock()
+        self._transition = asyncio.Lock()
         self._closed = asyncio.Event()
         self._users = 0
         self._open = False
@@ -294,16 +311,16 @@ class Context:
                 await to_the_end(transport.close())
             raise
 
-    async def release(self) -> None:
-        """Hold the context open no longer: the last holder closes it. For nodes.
+    async def _release(self) -> None:
+        """Undo one `_acquire`; the last user closes the transports.
 
-        It is not to be cancelled: see `to_the_end`.
+        Must not be cancelled half-way: call it through `to_the_end`.
         """
         if self._inherited:
             return
         self._users -= 1
-        async with self._turn:
-            if self._users == 0 and self._open:  # else somebody goes on with what is open
+        async with self._transition:
+            if self._users == 0 and self._open:  # unless it was acquired again meanwhile
                 self._open = False
                 await self._close_transports()
         if self._users == 0:
@@ -327,68 +344,68 @@ class Context:
             raise ForkedProcessError(repr(self))
 
     def _abandon(self) -> None:
-        """Do nothing with this context any more: it belongs to the process that forked this one.
+        """Leave this context to the parent process, from which this one was forked.
 
-        Nothing in it may be closed, nor collected, since both would act on what the parent uses.
+        Nothing in it may be closed or garbage-collected, as both would affect what the parent uses.
         """
         self._inherited = True
         for node in self._nodes:
-            node.abandon()
+            node._abandon()
         for transport in self._transports:
             transport.abandon()
-        ctypes.pythonapi.Py_IncRef(ctypes.py_object(self))  # for ever, the interpreter's end too
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(self))  # never collected, not even at exit
 
     @classmethod
-    def after_fork(cls) -> None:
-        """Leave all contexts to the parent. Called in each forked child, before anything else."""
+    def _after_fork(cls) -> None:
+        """Leave all contexts to the parent. Called in a forked child before anything else runs."""
         for context in list(cls._all):
-            context._abandon()  # noqa: SLF001  # its own class
+            context._abandon()
         cls._parent_has_connected = cls._has_connected
 
-    # What nodes need
+    # For nodes
 
-    def add_node(self, node: Node) -> None:
-        """Take `node` in.
+    def _add_node(self, node: ContextNode) -> None:
+        """Add `node`, which `shutdown` destroys.
 
         Raises:
             EntityDestroyedError: the context was shut down.
-            ForkedProcessError: it belongs to the process that this one was forked from.
+            ForkedProcessError: it belongs to the parent of this forked process.
         """
         self._refuse_if_shut_down()
         self._refuse_if_inherited()
         self._nodes[node] = None
 
-    def remove_node(self, node: Node) -> None:
+    def _remove_node(self, node: ContextNode) -> None:
         """Forget `node`."""
         self._nodes.pop(node, None)
 
     @property
-    def usage(self) -> Usage:
-        """What the nodes have made of the arguments that hold now."""
+    def _current_usage(self) -> Usage:
+        """Which of the current arguments the nodes have used."""
         return self._command_line if self._usage is None else self._usage
 
     @property
     def transports(self) -> tuple[Transport, ...]:
-        """The ways that messages travel, this context itself first."""
+        """The transports, in the order in which they open; the local one is first."""
         return self._transports
 
-    def new_id(self) -> int:
+    def _new_id(self) -> int:
         """Return a number that no other node or endpoint of this context has."""
-        self._ids += 1
-        return self._ids - 1
+        self._next_id += 1
+        return self._next_id - 1
 
-    def describe_node(self, name: str, namespace: str, enclave: str) -> NodeInfo:
-        """Return a new node's entry in the graph."""
-        return NodeInfo(self.participant, self.new_id(), name, namespace, enclave)
+    def _describe_node(self, name: str, namespace: str, enclave: str) -> NodeInfo:
+        """Return the graph entry of a new node."""
+        return NodeInfo(self.participant, self._new_id(), name, namespace, enclave)
 
-    def describe_endpoint(
+    def _describe_endpoint(
         self, kind: EndpointKind, node: NodeInfo, name: str, ros_type: Any, qos: QoSProfile
     ) -> EndpointInfo:
-        """Return a new endpoint's entry in the graph."""
+        """Return the graph entry of a new endpoint."""
         endpoint = EndpointInfo(
             kind=kind,
             node=node,
-            endpoint_id=self.new_id(),
+            endpoint_id=self._new_id(),
             name=name,
             type_name=type_name(ros_type),
             type_hash=type_hash(ros_type),
@@ -399,5 +416,5 @@ class Context:
         return dataclasses.replace(endpoint, gid=gid)
 
 
-if hasattr(os, "register_at_fork"):  # Windows does not fork
-    os.register_at_fork(after_in_child=Context.after_fork)
+if hasattr(os, "register_at_fork"):  # not on Windows
+    os.register_at_fork(after_in_child=Context._after_fork)

@@ -1,7 +1,7 @@
-"""Who offers what: the nodes and endpoints that a context knows of, and questions about them.
+"""The nodes and endpoints that a context knows of, and queries about them.
 
 `Graph` is a store that the context and its transports write to. It does no I/O: a transport adds
-what it hears of, the context adds its own, and whoever waits is woken at each change.
+what it discovers, the context adds its own, and each change wakes the tasks that wait for one.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import asyncio
 import enum
 from collections import defaultdict
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeVar
 
 from aionode import names, qos
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from aionode.qos import QoSProfile
 
-__all__ = ["TOPIC_KINDS", "EndpointInfo", "EndpointKind", "Graph", "NodeInfo"]
+__all__ = ["TOPIC_KINDS", "EndpointInfo", "EndpointKind", "Graph", "Mismatch", "NodeInfo"]
 
 K = TypeVar("K")
 
@@ -34,7 +34,7 @@ class EndpointKind(enum.Enum):
 
     @property
     def opposite(self) -> EndpointKind:
-        """The kind that an endpoint of this kind talks to."""
+        """The kind that an endpoint of this kind communicates with."""
         return OPPOSITES[self]
 
 
@@ -70,11 +70,25 @@ class NodeInfo:
         return names.fully_qualified_name(self.namespace, self.name)
 
 
+class Mismatch(NamedTuple):
+    """Why two opposite endpoints of one name do not communicate.
+
+    Attributes:
+        aspect: What differs: the name of the type, its definition, or the QoS.
+        reason: Both values, in words.
+        policy: The last incompatible policy, if the QoS differs.
+    """
+
+    aspect: Literal["type", "definition", "qos"]
+    reason: str
+    policy: qos.QoSPolicyKind = qos.QoSPolicyKind.INVALID
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class EndpointInfo:
     """One publisher, subscription, server or client as the graph knows it.
 
-    Two are equal if their `gid` is: it identifies an endpoint, whoever describes it.
+    Two are equal if their `gid` is, as that identifies an endpoint.
 
     Attributes:
         kind: What it does.
@@ -83,8 +97,8 @@ class EndpointInfo:
         name: Full name of its topic or service.
         type_name: ROS name of its type, such as ``std_msgs/msg/String``.
         type_hash: RIHS01 hash of the type, as text.
-        qos: Its profile.
-        gid: 16 bytes that no other endpoint has.
+        qos: Its QoS.
+        gid: 16 bytes that identify it.
     """
 
     kind: EndpointKind
@@ -102,41 +116,52 @@ class EndpointInfo:
     def __hash__(self) -> int:
         return hash(self.gid)
 
-    def mismatch(self, other: EndpointInfo) -> str | None:
-        """Return why this endpoint and its opposite `other` do not talk; None if they do.
+    def compare(self, other: EndpointInfo) -> Mismatch | None:
+        """Return the first difference to the opposite endpoint `other`; None if there is none.
 
-        Within one context the QoS rules of DDS hold; between contexts rmw_zenoh delivers whatever
-        the QoS says, so only the types count there (see `qos_mismatch` for a diagnosis).
+        A difference in QoS matters within one context, and between contexts over DDS; rmw_zenoh
+        delivers between contexts whatever the QoS is.
         """
         if self.type_name != other.type_name:
-            return f"type: {self.type_name} here, {other.type_name} there"
+            return Mismatch("type", f"type: {self.type_name} here, {other.type_name} there")
         if self.type_hash != other.type_hash:
-            return f"definition of {self.type_name}: {self.type_hash} here, {other.type_hash} there"
-        if self.node.participant == other.node.participant:
-            return self.qos_mismatch(other)
-        return None
+            hashes = f"{self.type_hash} here, {other.type_hash} there"
+            return Mismatch("definition", f"definition of {self.type_name}: {hashes}")
+        if self.kind not in TOPIC_KINDS:
+            return None  # services neither offer nor request QoS
+        is_publisher = self.kind is EndpointKind.PUBLISHER
+        publisher, subscription = (self, other) if is_publisher else (other, self)
+        reason = qos.mismatch(publisher.qos, subscription.qos)
+        if reason is None:
+            return None
+        last = qos.incompatibilities(publisher.qos, subscription.qos)[-1]
+        return Mismatch("qos", reason, last.kind)
 
-    def qos_mismatch(self, other: EndpointInfo) -> str | None:
-        """Return why a publisher cannot give what a subscription asks for; None if it can."""
-        if self.kind is EndpointKind.PUBLISHER:
-            return qos.mismatch(self.qos, other.qos)
-        if self.kind is EndpointKind.SUBSCRIPTION:
-            return qos.mismatch(other.qos, self.qos)
-        return None  # services have no offer and request
+    def mismatch(self, other: EndpointInfo) -> str | None:
+        """Return why this endpoint and its opposite `other` do not communicate; None if they do.
+
+        Between contexts only the types count: rmw_zenoh delivers whatever the QoS is.
+        """
+        found = self.compare(other)
+        if found is None or (
+            found.aspect == "qos" and self.node.participant != other.node.participant
+        ):
+            return None
+        return found.reason
 
     def matches(self, other: EndpointInfo) -> bool:
-        """Whether this endpoint and its opposite `other` talk."""
+        """Whether this endpoint communicates with its opposite `other`."""
         return self.mismatch(other) is None
 
 
 class Graph:
     """The nodes and endpoints known now.
 
-    Endpoints of one name are found through an index, so that a question costs what it answers and
-    not what the whole system holds.
+    Endpoints are indexed by name and by node, so the cost of a query depends on its answer and not
+    on the size of the system.
 
     Attributes:
-        changes: Rises with each change: an answer is good as long as this is the same.
+        changes: Incremented by each change: an answer is valid while this stays the same.
     """
 
     def __init__(self) -> None:
@@ -145,7 +170,7 @@ class Graph:
         self._endpoints: dict[EndpointInfo, None] = {}
         self._by_name: dict[tuple[EndpointKind, str], dict[EndpointInfo, None]] = defaultdict(dict)
         self._by_node: dict[NodeInfo, dict[EndpointInfo, None]] = defaultdict(dict)
-        self._waiters: dict[asyncio.Future[None], None] = {}
+        self._waiters: dict[asyncio.Future[None], None] = {}  # of `changed`, until the next change
         self._listeners: list[Callable[[EndpointInfo], None]] = []
 
     def __repr__(self) -> str:
@@ -154,31 +179,31 @@ class Graph:
     # Changes
 
     def add_node(self, node: NodeInfo) -> None:
-        """Note that `node` is there; twice is the same as once."""
+        """Add `node`; adding it again has no effect."""
         if node not in self._nodes:
             self._nodes[node] = None
             self._wake()
 
     def remove_node(self, node: NodeInfo) -> None:
-        """Note that `node` has gone, whether it was known or not."""
+        """Remove `node`, if it is known."""
         if node in self._nodes:
             del self._nodes[node]
             self._wake()
 
     def add_endpoint(self, endpoint: EndpointInfo) -> None:
-        """Note that `endpoint` is there; twice is the same as once."""
+        """Add `endpoint`; adding it again has no effect."""
         if endpoint in self._endpoints:
             return
         self._endpoints[endpoint] = None
         self._by_name[endpoint.kind, endpoint.name][endpoint] = None
         self._by_node[endpoint.node][endpoint] = None
-        self.changes += 1  # before anybody asks
+        self.changes += 1  # before listeners query the graph
         for listener in self._listeners:
             listener(endpoint)
         self._wake()
 
     def remove_endpoint(self, endpoint: EndpointInfo) -> None:
-        """Note that `endpoint` has gone, whether it was known or not."""
+        """Remove `endpoint`, if it is known."""
         if endpoint not in self._endpoints:
             return
         del self._endpoints[endpoint]
@@ -187,18 +212,18 @@ class Graph:
         self._wake()
 
     def remove_participant(self, participant: str) -> None:
-        """Forget everything of the context `participant`."""
+        """Remove all nodes and endpoints of the context `participant`."""
         for endpoint in [e for e in self._endpoints if e.node.participant == participant]:
             self.remove_endpoint(endpoint)
         for node in [n for n in self._nodes if n.participant == participant]:
             self.remove_node(node)
 
     def on_endpoint(self, listener: Callable[[EndpointInfo], None]) -> None:
-        """Call `listener` with every endpoint that is added from now on."""
+        """Call `listener` with each endpoint added from now on."""
         self._listeners.append(listener)
 
     def changed(self) -> asyncio.Future[None]:
-        """Return a future that is done at the next change: anything that comes or goes.
+        """Return a future that is done at the next change: a node or endpoint added or removed.
 
         Await it, or keep it to cancel the wait from elsewhere; cancelling is safe.
         """
@@ -208,7 +233,7 @@ class Graph:
         return waiter
 
     async def until(self, condition: Callable[[], bool]) -> None:
-        """Wait until `condition()` is true; it is asked again at each change."""
+        """Wait until `condition()` is true; it is called again at each change."""
         while not condition():
             await self.changed()
 
@@ -222,16 +247,16 @@ class Graph:
                 waiter.set_result(None)
         self._waiters.clear()
 
-    # Questions
+    # Queries
 
     def nodes(self) -> list[NodeInfo]:
-        """Return every node, in the order in which they were seen."""
+        """Return every node, in the order in which they were added."""
         return list(self._nodes)
 
     def endpoints(
         self, *kinds: EndpointKind, name: str | None = None, node: NodeInfo | None = None
     ) -> list[EndpointInfo]:
-        """Return the endpoints of these kinds (all without any), of this name, of this node."""
+        """Return the endpoints of these kinds (by default all), this name, and this node."""
         kinds = kinds or tuple(EndpointKind)
         found: Iterable[EndpointInfo]
         if name is not None:
@@ -242,25 +267,25 @@ class Graph:
         return [e for e in found if node is None or e.node == node]
 
     def count(self, kind: EndpointKind, name: str) -> int:
-        """Return how many endpoints of `kind` there are under the full name `name`."""
+        """Return how many endpoints of `kind` have the full name `name`."""
         return len(self._by_name.get((kind, name), ()))
 
     def names_and_types(
         self, *kinds: EndpointKind, node: NodeInfo | None = None
     ) -> list[tuple[str, list[str]]]:
-        """Return every name that endpoints of these kinds use, each with its types, sorted."""
+        """Return the names of endpoints of these kinds, each with its types, sorted."""
         types: dict[str, set[str]] = defaultdict(set)
         for endpoint in self.endpoints(*kinds, node=node):
             types[endpoint.name].add(endpoint.type_name)
         return [(name, sorted(types[name])) for name in sorted(types)]
 
     def find_nodes(self, fully_qualified_name: str) -> Iterator[NodeInfo]:
-        """Yield every node of this full name; names need not be unique."""
+        """Return an iterator over the nodes of this full name; names need not be unique."""
         return (n for n in self._nodes if n.fully_qualified_name == fully_qualified_name)
 
 
 def _take_out(index: dict[K, dict[EndpointInfo, None]], key: K, endpoint: EndpointInfo) -> None:
-    """Remove `endpoint` from its group, and the group when it was the last."""
+    """Remove `endpoint` from its group, and the group if it is then empty."""
     del index[key][endpoint]
     if not index[key]:
         del index[key]

@@ -1,7 +1,7 @@
-"""Running a node again when it fails, and telling how it is.
+"""Restarting a node when it fails, and reporting its health.
 
-The words are those of systemd: `restart` is its ``Restart=``. What takes a node down is an
-exception of a callback; the next node is a new one, made by the same function.
+The terms are those of systemd: `restart` is its ``Restart=``. A node fails through an exception in
+one of its callbacks; the next node is a new one, created by the same function.
 """
 
 from __future__ import annotations
@@ -32,16 +32,16 @@ Restart = Literal["on-failure", "always", "no"]
 
 @dataclass(frozen=True)
 class Health:
-    """How a supervised node is, for a log or as the answer of ``/healthz``.
+    """The health of a supervised node, for a log or an HTTP endpoint such as ``/healthz``.
 
     Attributes:
-        ok: Whether the node runs now: 200, and else 503.
+        ok: Whether the node is running: HTTP status 200, otherwise 503.
         state: ``"starting"`` for the first time, ``"running"``, ``"restarting"`` (it failed, and
             the next one starts soon) or ``"ended"``.
-        node: Full name of the node; empty before the first was made.
-        restarts: How often it was started again.
-        uptime_sec: For how long it has run, in seconds; 0 while it does not.
-        error: Why the last one failed, in one line; empty if none did.
+        node: Full name of the node; empty before the first was created.
+        restarts: How often it was restarted.
+        uptime_sec: How long it has been running, in seconds; 0 while it is not.
+        error: Why the last one failed, in one line; empty if none has.
     """
 
     ok: bool
@@ -53,32 +53,32 @@ class Health:
 
 
 class Supervisor(Generic[NodeT]):
-    """Keeps a node running: makes a new one when it fails.
+    """Keeps a node running: creates a new one when it fails.
 
-    As the main program, or for as long as a web application lives::
+    Use it as the main program, or for the lifetime of a web application::
 
         aionode.run(Supervisor(Robot).run)
 
         async with Supervisor(Robot) as robot:
             ...
-            robot.node.arm.call(...)    # the node that runs now
+            robot.node.arm.call(...)    # the node running now
             robot.health()
 
-    The delay before a restart is `min_delay_sec`, and twice as long after each failure that follows
-    soon, up to `max_delay_sec`; a node that has run for `max_delay_sec` begins anew. Each failure
-    is logged with its traceback. What fails at the very first start, before the node runs, is not
-    tried again but raised: it is a mistake of the program, or of its arguments.
+    The delay before a restart is `min_delay_sec`, and doubles with each failure in a row up to
+    `max_delay_sec`; a node that has run for `max_delay_sec` resets it. Each failure is logged with
+    its traceback. A failure of the very first start, before the node runs, is raised and not
+    retried: it is a mistake in the program, or in its arguments.
 
     Args:
-        make_node: Makes the node, such as its class; called in the running loop, for each restart.
-        restart: ``"on-failure"`` when a callback raised; ``"always"`` also when the node was
-            destroyed; ``"no"`` never, for `health` alone.
+        make_node: Creates the node, such as its class; called in the running loop for each start.
+        restart: ``"on-failure"``: when a callback raised; ``"always"``: also when the node was
+            destroyed; ``"no"``: never, for `health` alone.
         min_delay_sec: The first delay, in seconds.
         max_delay_sec: The longest delay, in seconds.
-        clock: Whose time the delays are, such as a `ManualClock`; the machine's without it.
+        clock: The time base of the delays, such as a `ManualClock`; the machine's by default.
 
     Raises:
-        ValueError: `restart` is an unknown word, or the delays are not in order.
+        ValueError: `restart` is unknown, or the delays are negative or not in order.
     """
 
     def __init__(
@@ -97,7 +97,7 @@ class Supervisor(Generic[NodeT]):
         if not 0 <= min_delay_sec <= max_delay_sec:
             raise ValueError(
                 f"Supervisor: min_delay_sec={min_delay_sec}, max_delay_sec={max_delay_sec}; the "
-                "first delay is at least 0 and at most the longest"
+                "first delay must be at least 0 and at most the longest"
             )
         self._make_node = make_node
         self._restart = restart
@@ -121,14 +121,14 @@ class Supervisor(Generic[NodeT]):
     # Lifetime
 
     async def __aenter__(self) -> Self:
-        """Make the node, and return when it runs.
+        """Create the node, and return when it is running.
 
         Raises:
             RuntimeError: it was entered before.
-            Exception: the node could not be made, or not be started.
+            Exception: the node could not be created or started.
         """
         if self._tasks is not None:
-            raise RuntimeError("Supervisor: it can be entered once; make another one")
+            raise RuntimeError("Supervisor: cannot be entered twice; create another one")
         started: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._tasks = await asyncio.TaskGroup().__aenter__()
         self._work = self._tasks.create_task(self._supervise(started), name="supervisor")
@@ -147,7 +147,7 @@ class Supervisor(Generic[NodeT]):
     ) -> None:
         """Destroy the node, and wait until its callbacks have ended.
 
-        What the block raised comes out as it is.
+        An exception from the body propagates unchanged.
         """
         assert self._tasks is not None  # noqa: S101  # set by __aenter__
         assert self._work is not None  # noqa: S101  # as above
@@ -167,14 +167,14 @@ class Supervisor(Generic[NodeT]):
         if self._last_end is not None and self._last_end.error is not None:
             raise self._last_end.error
 
-    # Looking at it
+    # Health
 
     @property
     def node(self) -> NodeT:
-        """The node that runs now. Ask each time: after a restart it is another one.
+        """The node running now. Read it each time, as it is another one after a restart.
 
         Raises:
-            NodeNotRunningError: none does, as it failed or was destroyed (a RuntimeError).
+            NodeNotRunningError: none is running, as it failed or was destroyed (a RuntimeError).
         """
         if self._node is None:
             raise NodeNotRunningError(self._name or "of the supervisor", self._why_none())
@@ -184,11 +184,11 @@ class Supervisor(Generic[NodeT]):
         if self._state == "starting":
             return "it has not started yet; enter the supervisor with `async with` first"
         if self._state == "restarting":
-            return f"it failed ({self._error}), and starts again soon; answer 503, or ask later"
+            return f"it failed ({self._error}) and restarts soon; answer 503, or retry later"
         return f"it failed ({self._error})" if self._error else "it was destroyed"
 
     def health(self) -> Health:
-        """Return how the node is now."""
+        """Return the health of the node now."""
         running = self._state == "running"
         return Health(
             ok=running,
@@ -199,7 +199,7 @@ class Supervisor(Generic[NodeT]):
             error=self._error,
         )
 
-    # The work
+    # Supervision
 
     async def _supervise(self, started: asyncio.Future[None]) -> None:
         try:
@@ -216,7 +216,7 @@ class Supervisor(Generic[NodeT]):
             self._state = "ended"
 
     async def _run_one(self, started: asyncio.Future[None]) -> NodeEnd:
-        """Run one node until it ends; an exception is how it ended."""
+        """Run one node until it ends; an exception is returned as its end."""
         try:
             node = self._make_node()
             self._name = node.get_fully_qualified_name()
@@ -227,7 +227,7 @@ class Supervisor(Generic[NodeT]):
                 if not started.done():
                     started.set_result(None)
                 await node.until_destroyed()
-        except Exception as error:  # noqa: BLE001  # said in the log, in `health` and by `run`
+        except Exception as error:  # noqa: BLE001  # reported by the log, `health` and `run`
             self._error = short_text(error)
             return NodeEnd("failed", error)
         finally:
@@ -240,17 +240,17 @@ class Supervisor(Generic[NodeT]):
         )
 
     async def _pause(self, end: NodeEnd) -> None:
-        """Wait before the next start, longer after each failure that follows soon."""
+        """Wait before the next start, longer after each failure in a row."""
         was_running, self._state = self._state == "running", "restarting"
         ran_ns = self._clock.now_ns() - self._since_ns
         if was_running and ran_ns >= self._max_delay_sec * S_TO_NS:
             self._failed_in_a_row = 0
-        # Bounded, as 2.0**1024 overflows in a robot that fails for a week.
+        # The exponent is bounded: 2.0**1024 overflows, after a week of failures.
         factor = 2.0 ** min(self._failed_in_a_row, 64)
         delay_sec = min(self._max_delay_sec, self._min_delay_sec * factor)
         self._failed_in_a_row += 1
         trace = "" if end.error is None else ":\n" + "".join(traceback.format_exception(end.error))
         get_logger("aionode.supervisor").error(
-            f"node {self._name} {end.reason}; it starts again in {delay_sec:g} s{trace}"
+            f"node {self._name} {end.reason}; restarting in {delay_sec:g} s{trace}"
         )
         await self._clock.sleep(delay_sec)

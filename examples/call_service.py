@@ -1,4 +1,4 @@
-"""Ask a service for a sum, from any async program."""
+"""Call a service from an ordinary async program."""
 
 import asyncio
 
@@ -7,8 +7,8 @@ from aionode.interfaces.example_interfaces.srv import AddTwoInts
 
 
 async def add(a: int, b: int) -> int:
-    """Return the sum that /add_two_ints gives; TimeoutError after two seconds without one."""
-    async with asyncio.timeout(2), Node("asker") as node:
+    """Return the sum from /add_two_ints; raise TimeoutError after two seconds without an answer."""
+    async with asyncio.timeout(2), Node("adder_client") as node:
         client = node.create_client(AddTwoInts, "/add_two_ints")
         await client.wait_for_service()
         response = await client.call(AddTwoInts.Request(a=a, b=b))

@@ -1,4 +1,4 @@
-"""Parameters as a class: set them at the start or while the program runs.
+"""Parameters as a class, set at the start or while the program runs.
 
 Run it with ``python examples/driver.py --ros-args -p speed:=0.8``, and from a second terminal
 ``aionode param set /driver speed 1.5``.
@@ -14,7 +14,7 @@ from aionode import Node
 
 
 class Driving(msgspec.Struct):
-    """What can be set about driving."""
+    """The parameters of the driver."""
 
     frame: str = "base_link"
     speed: Annotated[float, Meta(ge=0.0, le=2.0, description="in m/s")] = 0.5
@@ -22,15 +22,15 @@ class Driving(msgspec.Struct):
 
 
 class Driver(Node):
-    """Says how fast it drives, and says it again when that is changed."""
+    """Logs its speed at the start, and whenever a parameter changes."""
 
     def __init__(self) -> None:
         super().__init__("driver")
-        self.driving = self.declare_struct(Driving, on_change=self.tell)
-        self.tell(self.driving)
+        self.driving = self.declare_struct(Driving, on_change=self.log_driving)
+        self.log_driving(self.driving)
 
-    def tell(self, driving: Driving) -> None:
-        """Log the speed."""
+    def log_driving(self, driving: Driving) -> None:
+        """Log the speed and the mode."""
         self.get_logger().info(f"Driving at {driving.speed} m/s, {driving.mode}")
 
 

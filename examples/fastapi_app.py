@@ -1,6 +1,6 @@
 """A web application that awaits a service and streams a topic to the browser.
 
-Run it with ``python examples/fastapi_app.py`` and open http://127.0.0.1:8000. It asks the service
+Run it with ``python examples/fastapi_app.py`` and open http://127.0.0.1:8000. It calls the service
 /add_two_ints (``python examples/service_client_server.py``) and shows the messages of
 /robot/message (``python examples/simple_publisher.py``). It needs ``pip install fastapi uvicorn``.
 """
@@ -39,7 +39,7 @@ PAGE = """<!doctype html>
 
 
 def make_app(context: Context | None = None) -> FastAPI:
-    """Return the application; its node lives as long as the application runs."""
+    """Return the application; its node runs as long as the application."""
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:

@@ -1,4 +1,4 @@
-"""Drive until Ctrl-C, and stop the wheels with the last message.
+"""Drive until Ctrl-C, then publish a last message that stops the wheels.
 
 Run it with ``python examples/last_message.py``, watch it with ``aionode topic echo /cmd_vel``, and
 end it with Ctrl-C.
@@ -10,7 +10,7 @@ from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
 
 
 class Wanderer(Node):
-    """Drives on, ten commands a second."""
+    """Publishes a velocity ten times a second."""
 
     def __init__(self) -> None:
         super().__init__("wanderer")
@@ -18,7 +18,7 @@ class Wanderer(Node):
         self.start = self.create_timer(0.0, self.wander)
 
     async def wander(self) -> None:
-        """Drive, and stop whatever ends it: Ctrl-C, SIGTERM, destroy_node, an error."""
+        """Drive; stop the wheels on Ctrl-C, SIGTERM, destroy_node or an error."""
         self.start.cancel()
         try:
             async for _ in self.create_rate(10):

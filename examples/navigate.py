@@ -1,7 +1,7 @@
-"""Drive to a place: an action of a type of its own, with progress on the way.
+"""Drive to a place: an action of a custom type, with feedback on the way.
 
 Run the server with ``python examples/navigate.py``, and in a second terminal a client with
-``python examples/navigate.py --ros-args -p mode:=client -p x:=3.0 -p y:=4.0``. Ctrl-C at the client
+``python examples/navigate.py --ros-args -p mode:=client -p x:=3.0 -p y:=4.0``. Ctrl-C in the client
 stops the robot.
 """
 
@@ -19,21 +19,21 @@ STEP_SEC = 0.1
 
 
 class NavigateTo(ActionType, typename="tutorial_interfaces/action/NavigateTo"):
-    """Where to go, how far it was, and how far it still is; all in metres."""
+    """Drives to a place; all distances are in metres."""
 
     class Goal(Message):
-        """The place."""
+        """The destination."""
 
         x: float64 = 0.0
         y: float64 = 0.0
 
     class Result(Message):
-        """How far the robot went."""
+        """The distance that the robot travelled."""
 
         travelled: float64 = 0.0
 
     class Feedback(Message):
-        """How far it still has to go."""
+        """The distance that is left."""
 
         distance_left: float64 = 0.0
 
@@ -42,7 +42,7 @@ Handle = ServerGoalHandle[NavigateTo.Goal, NavigateTo.Result, NavigateTo.Feedbac
 
 
 async def main() -> None:
-    """Be the robot, or a client that sends it somewhere, as the parameter `mode` says."""
+    """Run the robot, or with the parameter `mode` set to `client`, send it a goal."""
     async with Node("navigate") as node:
         if node.declare_parameter("mode", "server").value == "client":
             await send(node)
@@ -51,10 +51,10 @@ async def main() -> None:
 
 
 async def serve(node: Node) -> None:
-    """Be a robot that drives where it is told to, until Ctrl-C."""
+    """Serve the action until Ctrl-C."""
 
     async def drive(handle: Handle) -> NavigateTo.Result:
-        """Drive there in a straight line, and tell how far it still is."""
+        """Drive in a straight line, and publish the distance left."""
         distance = left = math.hypot(handle.request.x, handle.request.y)
         try:
             while left > 0:
@@ -76,7 +76,7 @@ async def serve(node: Node) -> None:
 
 
 async def send(node: Node) -> None:
-    """Send the goal, and log the progress and the result; Ctrl-C cancels the goal."""
+    """Send a goal, and log its feedback and result; Ctrl-C cancels the goal."""
     x = node.declare_parameter("x", 3.0).value
     y = node.declare_parameter("y", 4.0).value
     client = node.create_action_client(NavigateTo, "/navigate_to")

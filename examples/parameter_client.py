@@ -11,7 +11,7 @@ from aionode.parameter_client import AsyncParameterClient
 
 
 async def main() -> None:
-    """Make the driver twice as fast."""
+    """Double the speed of the driver."""
     async with Node("tuner") as node:
         driver = AsyncParameterClient(node, "/driver")
         while not await driver.wait_for_services(timeout_sec=1.0):
@@ -23,7 +23,7 @@ async def main() -> None:
         if result.successful:
             node.get_logger().info(f"speed: {speed.value} -> {speed.value * 2}")
         else:
-            node.get_logger().error(f"speed stays {speed.value}: {result.reason}")
+            node.get_logger().error(f"speed is still {speed.value}: {result.reason}")
 
 
 if __name__ == "__main__":

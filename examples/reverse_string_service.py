@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Exercise of the tutorial: a service of a type of its own, which reverses a string.
+"""Exercise of the tutorial: a service of a custom type, which reverses a string.
 
 Run the server with ``python examples/reverse_string_service.py``, and in a second terminal a client
 with ``python examples/reverse_string_service.py --ros-args -p mode:=client -p text:=hello``.
@@ -13,7 +13,7 @@ from aionode.message import Message, ServiceType
 
 
 class ReverseString(ServiceType, typename="tutorial_interfaces/srv/ReverseString"):
-    """What a file ReverseString.srv with ``string text``, ``---``, ``string reversed`` says."""
+    """The same type as a file ReverseString.srv: ``string text``, ``---``, ``string reversed``."""
 
     class Request(Message):
         """The string to reverse."""
@@ -27,14 +27,14 @@ class ReverseString(ServiceType, typename="tutorial_interfaces/srv/ReverseString
 
 
 class ReverseStringService(Node):
-    """A server of /reverse_string, or a client that asks it once."""
+    """A server of /reverse_string, or a client that calls it once."""
 
     def __init__(self) -> None:
         super().__init__("reverse_string_service")
         if self.declare_parameter("mode", "server").value == "client":
             self.text = self.declare_parameter("text", "hello").value
             self.client = self.create_client(ReverseString, "/reverse_string")
-            self.timer = self.create_timer(0.0, self.ask)
+            self.timer = self.create_timer(0.0, self.call)
         else:
             self.service = self.create_service(ReverseString, "/reverse_string", self.reverse)
             self.get_logger().info("Service server ready: /reverse_string")
@@ -47,8 +47,8 @@ class ReverseStringService(Node):
         self.get_logger().info(f'Request: "{request.text}" -> "{response.reversed}"')
         return response
 
-    async def ask(self) -> None:
-        """Ask once, print the answer, and end."""
+    async def call(self) -> None:
+        """Call the service once, log the response, and end."""
         self.timer.cancel()
         await self.client.wait_for_service()
         response = await self.client.call(ReverseString.Request(text=self.text))

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Add two integers: one program that is the server or the client, as its parameter says.
+"""Add two integers: a server or a client, depending on a parameter.
 
 Run the server with ``python examples/service_client_server.py --ros-args -p mode:=server``, and in
 a second terminal a client with the same command and ``-p mode:=client -p a:=10 -p b:=25``.
@@ -32,15 +32,15 @@ class AddTwoIntsServer(Node):
 
 
 class AddTwoIntsClient(Node):
-    """Asks /add_two_ints once."""
+    """Calls /add_two_ints once."""
 
     def __init__(self, a: int, b: int) -> None:
         super().__init__("add_two_ints_client")
         self.client = self.create_client(AddTwoInts, "/add_two_ints")
         self.request = AddTwoInts.Request(a=a, b=b)
 
-    async def ask(self) -> None:
-        """Wait for the service, ask it, and log the answer."""
+    async def call(self) -> None:
+        """Wait for the service, call it, and log the response."""
         logger, a, b = self.get_logger(), self.request.a, self.request.b
         while not await self.client.wait_for_service(timeout_sec=1.0):
             logger.info("Waiting for service /add_two_ints...")
@@ -51,7 +51,7 @@ class AddTwoIntsClient(Node):
 
 
 async def main() -> None:
-    """Be the server or a client, as the parameter `mode` says."""
+    """Run the server or the client, depending on the parameter `mode`."""
     reader = Node("param_reader")
     mode = reader.declare_parameter("mode", "server").value
     a = reader.declare_parameter("a", 0).value
@@ -62,9 +62,9 @@ async def main() -> None:
         await AddTwoIntsServer().run()
     elif mode == "client":
         async with AddTwoIntsClient(a, b) as client:
-            await client.ask()
+            await client.call()
     else:
-        sys.exit(f"mode: {mode!r}; it is 'server' or 'client'")
+        sys.exit(f"mode: {mode!r} given; expected 'server' or 'client'")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Publish a counted greeting on /robot/message, once a second.
 
-Run it with ``python examples/simple_publisher.py``, and end it with Ctrl-C.
+Run it with ``python examples/simple_publisher.py``; Ctrl-C ends it.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Print every message of /robot/message.
 
-Run it with ``python examples/simple_subscriber.py``, and end it with Ctrl-C.
+Run it with ``python examples/simple_subscriber.py``; Ctrl-C ends it.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from aionode.interfaces.std_msgs.msg import String
 
 
 class SimpleSubscriber(Node):
-    """Logs and counts what it hears."""
+    """Logs and counts the messages it receives."""
 
     def __init__(self) -> None:
         super().__init__("simple_subscriber")

@@ -1,4 +1,4 @@
-"""Say hello on /chatter, twice a second."""
+"""Publish a greeting on /chatter, twice a second."""
 
 import aionode
 from aionode import Node
@@ -6,7 +6,7 @@ from aionode.interfaces.std_msgs.msg import String
 
 
 class Talker(Node):
-    """Publishes with a timer."""
+    """Publishes from a timer."""
 
     def __init__(self) -> None:
         super().__init__("talker")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Exercise of the tutorial: publish the time on /robot/timestamp, ten times a second.
 
-Run it with ``python examples/timestamp_publisher.py``, and end it with Ctrl-C.
+Run it with ``python examples/timestamp_publisher.py``; Ctrl-C ends it.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from aionode.interfaces.builtin_interfaces.msg import Time
 
 
 class TimestampPublisher(Node):
-    """Publishes what its clock says, which is simulated time with ``-p use_sim_time:=true``."""
+    """Publishes the time of its clock: simulated time with ``-p use_sim_time:=true``."""
 
     def __init__(self) -> None:
         super().__init__("timestamp_publisher")
@@ -20,7 +20,7 @@ class TimestampPublisher(Node):
         self.timer = self.create_timer(0.1, self.timer_callback)
 
     def timer_callback(self) -> None:
-        """Publish the time of this moment."""
+        """Publish the current time."""
         stamp = self.get_clock().now().to_msg()
         self.publisher.publish(stamp)
         self.get_logger().info(f"Publishing: {stamp.sec}.{stamp.nanosec:09d}")

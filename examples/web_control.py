@@ -1,4 +1,4 @@
-"""A robot that a web page drives: the web application.
+"""A robot controlled from a web page: the web application.
 
 Run it with ``python examples/web_control.py``, the robot with ``python examples/web_robot.py``, and
 open http://127.0.0.1:8001. The robot stops when the page is closed. It needs
@@ -45,24 +45,24 @@ PAGE = """<!doctype html>
 
 
 class Operator(Node):
-    """What the application has of ROS: clients of the robot."""
+    """The application's node: clients of the robot."""
 
     def __init__(self, context: Context | None = None) -> None:
         super().__init__("operator", context=context)
         self.set_speed = self.create_client(SetSpeed, "/set_speed")
         self.drive = self.create_action_client(Drive, "/drive")
-        self.create_subscription(Float32, "/battery", self.note_battery, 10)
+        self.create_subscription(Float32, "/battery", self.on_battery, 10)
         self.volts = 0.0
 
-    def note_battery(self, msg: Float32) -> None:
-        """Keep the voltage for a page."""
+    def on_battery(self, msg: Float32) -> None:
+        """Keep the voltage."""
         if msg.data < 0.0:
-            raise ValueError(f"battery at {msg.data} V: the sensor cannot be right")
+            raise ValueError(f"battery at {msg.data} V: the sensor is broken")
         self.volts = msg.data
 
 
 def make_app(context: Context | None = None) -> FastAPI:
-    """Return the application; its node lives as long as the application runs."""
+    """Return the application; its node runs as long as the application."""
 
     @contextlib.asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
@@ -98,7 +98,7 @@ def make_app(context: Context | None = None) -> FastAPI:
         operator: Operator = app.state.supervisor.node
         await websocket.accept()
         async with asyncio.TaskGroup() as tasks:
-            browser = tasks.create_task(until_left(websocket))
+            browser = tasks.create_task(until_disconnected(websocket))
             robot = tasks.create_task(send_progress(websocket, operator, distance))
             await asyncio.wait([browser, robot], return_when=asyncio.FIRST_COMPLETED)
             browser.cancel()
@@ -108,13 +108,13 @@ def make_app(context: Context | None = None) -> FastAPI:
 
 
 def answer_error(_request: Request, error: Exception) -> JSONResponse:
-    """Say what the robot said, and whose fault it is."""
+    """Answer with the text of an error, and the HTTP status that fits it."""
     status = 500
     if isinstance(error, NodeNotRunningError | ServiceUnavailableError):
         status = 503
     elif isinstance(error, TimeoutError):
         status = 504
-    elif isinstance(error, ServiceError):  # after the one above, which is a ServiceError, too
+    elif isinstance(error, ServiceError):  # last, as ServiceUnavailableError is one too
         status = 400
     return JSONResponse({"detail": str(error)}, status)
 
@@ -127,22 +127,22 @@ async def server_sent(operator: Operator, distance: float) -> AsyncIterator[str]
 
 
 async def send_progress(websocket: WebSocket, operator: Operator, distance: float) -> None:
-    """Send the progress, each step as JSON, and close."""
+    """Send the progress as JSON, then close."""
     async with contextlib.aclosing(progress(operator, distance)) as events:
         async for name, text in events:
             await websocket.send_json({"event": name, "data": text})
     await websocket.close()
 
 
-async def until_left(websocket: WebSocket) -> None:
-    """Return when the browser has left; what it says meanwhile makes no difference."""
+async def until_disconnected(websocket: WebSocket) -> None:
+    """Return when the browser disconnects; what it sends is ignored."""
     with contextlib.suppress(WebSocketDisconnect):
         while True:
             await websocket.receive_text()
 
 
 async def progress(operator: Operator, distance: float) -> AsyncGenerator[tuple[str, str], None]:
-    """Drive, and yield how far the robot is; whoever closes this, or is cancelled, stops it."""
+    """Drive, and yield the progress; closing or cancelling this generator stops the robot."""
     try:
         async with asyncio.timeout(ANSWER_SEC):
             goal = await operator.drive.send_goal(Drive.Goal(distance=distance))
@@ -154,10 +154,10 @@ async def progress(operator: Operator, distance: float) -> AsyncGenerator[tuple[
             yield "feedback", to_json(feedback)
         outcome = await goal.result()
         yield "result", outcome.status.name
-    except AionodeError as error:  # the robot has gone
+    except AionodeError as error:  # the robot is gone
         yield "failure", str(error)
     finally:
-        if not goal.done:  # the stream was dropped between two events, while nobody awaited
+        if not goal.done:  # the generator was closed between two events
             with contextlib.suppress(AionodeError):
                 await goal.cancel()
 

@@ -1,4 +1,4 @@
-"""A robot that a web page drives: the half that runs on the robot.
+"""A robot controlled from a web page: the part that runs on the robot.
 
 Run it with ``python examples/web_robot.py``, and beside it, or on another machine, the web
 application with ``python examples/web_control.py``.
@@ -17,34 +17,34 @@ FASTEST = 1.0
 
 
 class SetSpeed(ServiceType, typename="tutorial_interfaces/srv/SetSpeed"):
-    """How fast to drive, in m/s."""
+    """Sets the speed, in m/s."""
 
     class Request(Message):
-        """The speed that is wanted."""
+        """The requested speed."""
 
         speed: float64 = 0.0
 
     class Response(Message):
-        """The speed from now on."""
+        """The new speed."""
 
         speed: float64 = 0.0
 
 
 class Drive(ActionType, typename="tutorial_interfaces/action/Drive"):
-    """Drive straight on; distances are in metres."""
+    """Drives straight ahead; distances are in metres."""
 
     class Goal(Message):
-        """How far."""
+        """The distance to drive."""
 
         distance: float64 = 0.0
 
     class Result(Message):
-        """How far it was."""
+        """The distance driven."""
 
         distance: float64 = 0.0
 
     class Feedback(Message):
-        """How far it is so far."""
+        """The distance driven so far."""
 
         distance: float64 = 0.0
 
@@ -53,7 +53,7 @@ Handle = ServerGoalHandle[Drive.Goal, Drive.Result, Drive.Feedback]
 
 
 class Robot(Node):
-    """Drives one goal at a time, and stops the wheels whatever ends it."""
+    """Drives one goal at a time, and stops the wheels however the goal ends."""
 
     def __init__(self, context: Context | None = None) -> None:
         super().__init__("robot", context=context)
@@ -72,18 +72,18 @@ class Robot(Node):
         self.get_logger().info("Ready to drive")
 
     def set_speed(self, request: SetSpeed.Request) -> SetSpeed.Response:
-        """Refuse what the motors cannot do: the caller is told, and the node goes on."""
+        """Set the speed; one that the motors cannot reach is an error for the caller only."""
         if not 0.0 < request.speed <= FASTEST:
-            raise ValueError(f"speed={request.speed} m/s; above 0 and up to {FASTEST} fits")
+            raise ValueError(f"speed={request.speed} m/s; expected above 0, at most {FASTEST}")
         self.speed = request.speed
         return SetSpeed.Response(speed=self.speed)
 
     def decide(self, _goal: Drive.Goal) -> GoalResponse:
-        """Take one goal at a time: two would both set the wheels."""
+        """Accept one goal at a time: two would both control the wheels."""
         return GoalResponse.REJECT if self.busy else GoalResponse.ACCEPT
 
     async def drive(self, handle: Handle) -> Drive.Result:
-        """Drive until the goal, a cancel request, or the end of the node; then stop."""
+        """Drive until the goal is reached or canceled or the node ends; then stop."""
         self.busy = True
         driven = 0.0
         try:
@@ -99,9 +99,9 @@ class Robot(Node):
         return Drive.Result(distance=driven)
 
     def check_battery(self, msg: Float32) -> None:
-        """Fail where nothing can be relied on any more; the supervisor begins anew."""
+        """Fail if the sensor cannot be trusted; the supervisor restarts the node."""
         if msg.data < 0.0:
-            raise ValueError(f"battery at {msg.data} V: the sensor cannot be right")
+            raise ValueError(f"battery at {msg.data} V: the sensor is broken")
 
 
 if __name__ == "__main__":

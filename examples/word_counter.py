@@ -25,7 +25,7 @@ class WordCounter(Node):
         self.get_logger().info("Word Counter started. Counting the words of /robot/message")
 
     def listener_callback(self, msg: String) -> None:
-        """Publish how many words there were so far."""
+        """Publish the number of words so far."""
         self.total += len(msg.data.split())
         self.publisher.publish(Int32(data=self.total))
         self.get_logger().info(f"Words so far: {self.total}")

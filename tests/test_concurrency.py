@@ -1,4 +1,4 @@
-"""Knowing when nothing is left to run."""
+"""Waiting until nothing is left to run: `settle`, and what it needs to know."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ import threading
 import pytest
 import uvloop
 
-from aionode import _concurrency as module
-from aionode._concurrency import Activity, checkpoint, run_in_thread
-from aionode.clock import Clock, ClockType, ManualTime
-from aionode.testing import settle
+from aionode._concurrency import checkpoint, run_in_thread
+from aionode.clock import Clock, ClockType
+from aionode.testing import ManualClock, settle
+from aionode.testing import _quiescence as module
 
 LOOPS = {"asyncio": asyncio.new_event_loop, "uvloop": uvloop.new_event_loop}
 
 
 @pytest.fixture(params=LOOPS)
 def runner(request: pytest.FixtureRequest) -> asyncio.Runner:
-    """Each kind of loop keeps its queue elsewhere."""
+    """Each kind of event loop keeps its queue in a different place."""
     return asyncio.Runner(loop_factory=LOOPS[request.param])
 
 
@@ -30,7 +30,7 @@ async def turns(count: int, done: list[int]) -> None:
 
 
 def test_tasks_run_until_they_wait(runner: asyncio.Runner) -> None:
-    """Also one that is ready again and again for a while."""
+    """Including a task that stays ready for many turns."""
 
     async def main() -> None:
         done: list[int] = []
@@ -46,7 +46,7 @@ def test_tasks_run_until_they_wait(runner: asyncio.Runner) -> None:
 
 
 def test_chains_of_plain_callbacks_run_to_their_end(runner: asyncio.Runner) -> None:
-    """No task shows them, only the loop's queue."""
+    """No task represents them; only the loop's queue shows them."""
 
     async def main() -> None:
         left = 30
@@ -66,7 +66,7 @@ def test_chains_of_plain_callbacks_run_to_their_end(runner: asyncio.Runner) -> N
 
 
 def test_several_may_settle_at_once(runner: asyncio.Runner) -> None:
-    """They do not take each other for work that is left."""
+    """They do not mistake each other for work that is left."""
 
     async def main() -> None:
         done: list[int] = []
@@ -82,7 +82,7 @@ def test_several_may_settle_at_once(runner: asyncio.Runner) -> None:
 
 
 def test_work_in_threads_is_waited_for(runner: asyncio.Runner) -> None:
-    """And so is what its result makes ready."""
+    """And so are the tasks that its result makes ready."""
 
     async def main() -> None:
         done: list[int] = []
@@ -109,7 +109,7 @@ def test_work_in_threads_is_waited_for(runner: asyncio.Runner) -> None:
 
 
 def test_a_failing_thread_is_not_waited_for_any_longer(runner: asyncio.Runner) -> None:
-    """Its error goes to whoever asked for the work."""
+    """Its exception propagates to the caller."""
 
     async def main() -> None:
         with pytest.raises(ZeroDivisionError):
@@ -121,10 +121,10 @@ def test_a_failing_thread_is_not_waited_for_any_longer(runner: asyncio.Runner) -
 
 
 def test_time_can_be_stepped_on_every_loop(runner: asyncio.Runner) -> None:
-    """The manual clock stands on `wait_all_tasks_blocked`."""
+    """The manual clock is built on `settle`."""
 
     async def main() -> None:
-        manual = ManualTime()
+        manual = ManualClock()
         clock = Clock(ClockType.ROS_TIME, time_base=manual)
         seen: list[int] = []
 
@@ -142,16 +142,15 @@ def test_time_can_be_stepped_on_every_loop(runner: asyncio.Runner) -> None:
         runner.run(main())
 
 
-async def test_a_loop_that_hides_its_queue_is_watched_through_its_tasks(
+async def test_a_loop_whose_queue_is_inaccessible_is_watched_through_its_tasks(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """For loops of other makers."""
+    """An event loop of another library may keep its queue out of reach."""
     monkeypatch.setattr(module, "ready_queue", lambda _: None)
-    activity = Activity(asyncio.get_running_loop())
     done: list[int] = []
     async with asyncio.TaskGroup() as tasks:
         tasks.create_task(turns(50, done))
         blocked = tasks.create_task(asyncio.Event().wait())
-        await activity.wait_all_tasks_blocked()
+        await settle()
         assert done == [50]
         blocked.cancel()

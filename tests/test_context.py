@@ -179,7 +179,7 @@ async def test_a_context_that_could_not_be_opened_is_not_in_use() -> None:
     transport = Failing()
     context = Context(transport=transport)
     with pytest.raises(ConnectionError):
-        await context.acquire()
+        await context._acquire()
     transport.fails = False
 
     async def use() -> None:
@@ -203,7 +203,7 @@ def test_a_context_may_be_used_in_one_loop_after_another() -> None:
 
 
 def test_a_loop_that_was_closed_over_a_node_does_not_hold_the_context() -> None:
-    """Nobody can end that node properly any more."""
+    """That node cannot be ended properly any more."""
     context = local_context()
     loop = asyncio.new_event_loop()
     loop.run_until_complete(Node("left", context=context).__aenter__())

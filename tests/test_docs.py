@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import asyncio
+import functools
 import importlib.util
 import inspect
 import re
@@ -17,7 +18,7 @@ import pytest
 
 from aionode.cli._main import root
 from aionode.context import Context
-from docs.quotes import QUOTE, ROOT, pages, refreshed
+from docs.quotes import QUOTE, ROOT, fragment, pages, refreshed
 
 if TYPE_CHECKING:
     from types import CodeType
@@ -27,6 +28,9 @@ BLOCK = re.compile(
     re.MULTILINE | re.DOTALL,
 )
 LINK = re.compile(r"\]\((?!https?:|#)(?P<target>[^)#\s]+)")
+HOP = re.compile(r"\| `(?P<file>aionode/[\w/]+\.py)` \| `(?P<name>[\w.]+)` \|")
+TERM = re.compile(r"^\| (?P<words>[^|`]+[^|]*) \| [^|]+ \| `(?P<place>[^`]+)` \|$", re.MULTILINE)
+NAME = re.compile(r"`([A-Z]\w+)`")
 PAGES = [str(page.relative_to(ROOT)) for page in pages()]
 
 
@@ -166,3 +170,58 @@ def test_a_page_has_one_sentence_for_each_line(page: str) -> None:
     prose = [line for line in text.splitlines() if not re.match(r"[|# *-]|\d+\.", line)]
 
     assert [line for line in prose if re.search(r"[a-z`)]\. [A-Z]", line)] == []
+
+
+def hops() -> list[Any]:
+    """Return each file and function of the page that follows a message."""
+    text = (ROOT / "docs/follow_one_message.md").read_text(encoding="utf-8")
+    found = {(hop["file"], hop["name"]) for hop in HOP.finditer(text)}
+    return [pytest.param(*hop, id="#".join(hop)) for hop in sorted(found)]
+
+
+@pytest.mark.parametrize(("file", "name"), hops())
+def test_a_hop_of_a_message_is_a_function_of_its_file(file: str, name: str) -> None:
+    """docs/follow_one_message.md names functions to open, so each has to be where it says."""
+    assert fragment((ROOT / file).read_text(encoding="utf-8"), name)
+
+
+@dataclass(frozen=True)
+class Term:
+    """A row of the glossary: its words, the classes named with them, and where to look."""
+
+    words: str
+    classes: list[str]
+    place: str
+
+
+def glossary() -> list[Any]:
+    """Return every row of the glossary."""
+    text = (ROOT / "docs/glossary.md").read_text(encoding="utf-8")
+    return [
+        pytest.param(
+            Term(re.sub(r"\(.*?\)", "", row["words"]), NAME.findall(row[0]), row["place"]),
+            id=row["words"],
+        )
+        for row in TERM.finditer(text)
+    ]
+
+
+@pytest.mark.parametrize("term", glossary())
+def test_the_glossary_explains_what_is_in_the_code(term: Term) -> None:
+    """A word that the code has given up is taken out of the glossary."""
+    source = source_of_aionode()
+    written_together = re.sub(r"[\s_-]", "", source.lower())
+    words = [re.sub(r"[\s-]", "", word.lower()) for word in term.words.split(",")]
+
+    assert [word for word in words if word not in written_together] == []
+    assert [name for name in term.classes if not re.search(rf"class {name}\b", source)] == []
+    assert (ROOT / term.place).exists(), term.place
+
+
+@functools.cache
+def source_of_aionode() -> str:
+    """Return the source of all modules but the standard messages."""
+    modules = sorted((ROOT / "aionode").rglob("*.py"))
+    return "\n".join(
+        module.read_text(encoding="utf-8") for module in modules if "interfaces" not in module.parts
+    )

@@ -1,4 +1,4 @@
-"""Every program that a newcomer runs: its output, its end, and what Ctrl-C does to it."""
+"""Every example program: its output, its end, and its reaction to Ctrl-C."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def domain() -> int:
 
 
 def test_the_first_example_tells_its_story() -> None:
-    """Each message is published, then heard, and the end says how it went."""
+    """Each message is published, then received; statistics come last."""
     with running("-m", "aionode.examples.pubsub") as program:
         text = program.rest()
 
@@ -132,7 +132,7 @@ def test_a_service_answers_together_what_is_asked_together() -> None:
 
 
 def test_a_goal_is_awaited_watched_and_cancelled() -> None:
-    """The three things that one does with a goal."""
+    """Await a goal, watch its feedback, cancel it."""
     with running("-m", "aionode.examples.fibonacci") as program:
         text = program.rest()
 
@@ -329,7 +329,7 @@ def test_the_word_counter_counts_what_the_publisher_says(domain: int) -> None:
 
 
 def test_the_parameters_of_another_node_are_read_and_set(domain: int) -> None:
-    """Twice what it was, until the limit refuses it with its reason."""
+    """The speed doubles until the limit refuses it, with a reason."""
     program = "examples/parameter_client.py"
     with running("examples/driver.py", domain=domain) as driver:
         driver.wait_until_running()
@@ -340,7 +340,7 @@ def test_the_parameters_of_another_node_are_read_and_set(domain: int) -> None:
 
     assert "speed: 0.5 -> 1.0" in texts[0]
     assert "speed: 1.0 -> 2.0" in texts[1]
-    assert "speed stays 2.0" in texts[2]
+    assert "speed is still 2.0" in texts[2]
 
 
 def test_the_last_message_of_a_program_is_that_the_wheels_stop(domain: int) -> None:
@@ -374,7 +374,7 @@ def test_the_robot_drives_where_a_client_in_another_process_tells_it(domain: int
 
 
 def test_ctrl_c_at_the_client_stops_the_robot(domain: int) -> None:
-    """Who gives up a goal cancels it, so nothing drives on that nobody waits for."""
+    """A client that stops waiting cancels its goal, so the robot does not drive on."""
     program = "examples/navigate.py"
     with running(program, domain=domain) as robot:
         asking = ["--ros-args", "-p", "mode:=client", "-p", "x:=1000.0"]
@@ -401,16 +401,16 @@ def test_ctrl_c_while_a_goal_is_worked_on_ends_cleanly(domain: int) -> None:
 
 
 def test_a_wrong_mode_is_one_line_and_status_1() -> None:
-    """A typo in a parameter names what fits."""
+    """The error for a mistyped parameter names the expected values."""
     with running("examples/service_client_server.py", "--ros-args", "-p", "mode:=sever") as program:
         text = program.rest()
 
-    assert "mode: 'sever'; it is 'server' or 'client'" in text
+    assert "mode: 'sever' given; expected 'server' or 'client'" in text
     assert program.process.returncode == 1
 
 
 def test_ci_runs_every_example() -> None:
-    """A new example is run before it lands."""
+    """A new example cannot be merged untested."""
     script = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
 
     modules = [f"aionode.examples.{path.stem}" for path in (ROOT / "aionode/examples").glob("*.py")]
@@ -422,7 +422,7 @@ def test_ci_runs_every_example() -> None:
 
 @pytest.fixture
 async def web(aionode_context: Context) -> AsyncIterator[httpx.AsyncClient]:
-    """A browser, as it were, in front of the web application."""
+    """An HTTP client of the web application."""
     listening = socket.create_server(("127.0.0.1", 0))
     config = uvicorn.Config(make_app(aionode_context), log_level="warning", loop="none")
     server = uvicorn.Server(config)

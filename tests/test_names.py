@@ -61,7 +61,7 @@ INSIDE = "substitution name must not contain characters other than alphanumerics
 def test_an_invalid_name_is_refused_with_rcls_message_and_index(
     name: str, message: str, index: int
 ) -> None:
-    """Whoever searches the web for the message finds rcl's answer."""
+    """A web search for the message finds rcl's answer."""
     with pytest.raises(InvalidTopicNameException) as info:
         names.validate_topic_name(name)
 

@@ -101,7 +101,7 @@ def without(
 def test_pytest_starts_where_no_plugin_for_async_tests_is(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Whoever installs aionode may have only tests that are not async."""
+    """A project that installs aionode may have only tests that are not async."""
     pytester.makepyfile("def test_one():\n    assert True\n")
     result = without("pytest_asyncio", "anyio", pytester=pytester, monkeypatch=monkeypatch)
     result.assert_outcomes(passed=1)

@@ -30,7 +30,7 @@ context = local_context()
 
 
 class Program:
-    """A Python program in a process of its own, which says when it is ready."""
+    """A Python program in a process of its own, which reports when it is ready."""
 
     def __init__(self, body: str) -> None:
         self.process = subprocess.Popen(  # the text is in this file
@@ -89,7 +89,7 @@ def test_a_signal_ends_the_program_cleanly(number: signal.Signals) -> None:
 
 
 def test_a_second_signal_ends_the_program_at_once() -> None:
-    """Also when a callback does not want to end."""
+    """Even if a callback refuses to end."""
     stubborn = """
     async def callback():
         try:
@@ -167,7 +167,7 @@ print("after run", flush=True)
 def test_ctrl_c_names_the_thread_that_it_waits_for_and_a_second_one_ends_at_once(
     loop: str,
 ) -> None:
-    """A thread cannot be cancelled, so the user has to know of it, and needs a way out of it."""
+    """A thread cannot be cancelled, so the user has to be told, and needs a way to stop it."""
     with Program(THREAD_AT_WORK.replace("{loop}", loop)) as program:
         program.wait_until_ready()
         program.process.send_signal(signal.SIGINT)
@@ -181,7 +181,7 @@ def test_ctrl_c_names_the_thread_that_it_waits_for_and_a_second_one_ends_at_once
 
 
 def test_a_second_ctrl_c_ends_a_program_whose_stderr_nobody_reads() -> None:
-    """A full pipe would hold up whoever writes the last line into it."""
+    """A full pipe would block the write of the last line."""
     full = """
     def callback():
         try:
@@ -212,7 +212,7 @@ def test_a_second_ctrl_c_ends_a_program_whose_stderr_nobody_reads() -> None:
 
 
 def test_a_bug_in_a_callback_is_shown_with_its_traceback() -> None:
-    """And the shell is told by the status."""
+    """The exit status reports it to the shell."""
     body = """
     def make():
         node = aionode.Node("node", context=context)
@@ -266,7 +266,7 @@ aionode.run(Speaker, args=[])
 def test_an_error_of_aionode_in_a_callback_says_where(
     tmp_path: Path, line: str, texts: list[str]
 ) -> None:
-    """Which of the hundred lines that publish made it; the traceback has too much for that."""
+    """The log names the line of user code; the traceback alone is too long to see it."""
     program = tmp_path / "speaker.py"
     program.write_text(PREAMBLE + SPEAKER.replace("{line}", line))
     at = program.read_text().splitlines().index(f"        {line}") + 1
@@ -293,7 +293,7 @@ def test_an_error_of_aionode_in_a_callback_says_where(
 
 
 def test_an_error_in_a_constructor_names_node_and_line() -> None:
-    """There is no callback, but the node has its name already."""
+    """There is no callback, but the node already has its name."""
     body = """
     class Robot(aionode.Node):
         def __init__(self):
@@ -310,7 +310,7 @@ def test_an_error_in_a_constructor_names_node_and_line() -> None:
 
 
 def test_arguments_that_come_too_late_for_a_node_are_refused() -> None:
-    """They would be ignored; the way that works is in the text."""
+    """They would be ignored; the text says what works instead."""
     body = """
     class Robot(aionode.Node):
         def __init__(self):
@@ -326,7 +326,7 @@ def test_arguments_that_come_too_late_for_a_node_are_refused() -> None:
 
 
 def test_arguments_that_no_node_needs_are_fine_for_a_node_made_before() -> None:
-    """A log level holds for the process."""
+    """A log level applies to the process."""
     node = Node("robot", context=local_context())
     node.create_timer(0.0, node.destroy_node)
     arguments = ["--ros-args", "--log-level", "info"]
@@ -334,7 +334,7 @@ def test_arguments_that_no_node_needs_are_fine_for_a_node_made_before() -> None:
 
 
 def test_arguments_hold_for_nodes_of_every_context_while_run_runs() -> None:
-    """Not only for those of the default context; and not for what comes after."""
+    """Not only for nodes of the default context; and not after the run."""
     context = local_context()
     names: list[str] = []
 
@@ -399,7 +399,7 @@ def test_a_failing_node_ends_the_others() -> None:
 
 
 def test_run_works_outside_the_main_thread() -> None:
-    """Where signals do not arrive; then nothing is installed for them."""
+    """Signals do not arrive there, so no handlers are installed."""
     ran: list[bool] = []
 
     async def main() -> None:
@@ -412,7 +412,7 @@ def test_run_works_outside_the_main_thread() -> None:
 
 
 def test_signal_handlers_are_restored() -> None:
-    """The program around it has its own."""
+    """The surrounding program has its own."""
     before = signal.getsignal(signal.SIGINT)
 
     async def main() -> None: ...
@@ -422,7 +422,7 @@ def test_signal_handlers_are_restored() -> None:
 
 
 def test_running_nothing_is_a_mistake() -> None:
-    """It would end at once, and nobody would know why."""
+    """It would end at once, without a reason."""
     with pytest.raises(TypeError, match="at least one node"):
         aionode.run()
 
@@ -430,7 +430,7 @@ def test_running_nothing_is_a_mistake() -> None:
 def test_a_factory_that_makes_something_else_is_a_mistake(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """It names what was made."""
+    """The error names what was created."""
     with pytest.raises(SystemExit):
         run_in_this_process(lambda: "node")
     assert "neither a node nor a coroutine" in capsys.readouterr().err
@@ -443,6 +443,6 @@ def test_failures_in_groups_are_told_one_by_one() -> None:
 
 
 async def test_inside_a_running_loop_it_says_what_to_use_instead() -> None:
-    """One who has a loop already needs no second one, and asyncio's own text does not say that."""
+    """A running loop needs no second one, which asyncio's own text does not say."""
     with pytest.raises(RuntimeError, match=r"await node\.run\(\)"):
         aionode.run(lambda: Node("never_made"))

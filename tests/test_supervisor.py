@@ -186,7 +186,7 @@ async def test_without_restarts_run_raises_what_the_node_failed_with(
 async def test_a_bad_request_is_no_reason_to_restart(
     supervise: Callable[..., Supervisor[Robot]], node: Node
 ) -> None:
-    """Servers survive it, so that everybody else goes on."""
+    """Servers survive it, so that other clients are not affected."""
     async with supervise() as robot:
         client = node.create_client(AddTwoInts, "/add")
         with pytest.raises(RuntimeError, match="only counts"):
@@ -334,5 +334,5 @@ async def test_a_node_whose_task_is_cancelled_says_so(context: Context) -> None:
 async def test_waiting_for_the_end_of_ones_own_block_is_refused(context: Context) -> None:
     """It would hang without a word."""
     async with Node("node", context=context) as node:
-        with pytest.raises(RuntimeError, match=r"/node: ended.*would wait for itself"):
+        with pytest.raises(RuntimeError, match=r"/node: awaiting ended.*would wait forever"):
             await node.ended()

@@ -1,4 +1,4 @@
-"""A web application and its robot in two processes: whatever goes wrong, nothing drives on."""
+"""A web application and its robot in two processes: after any failure the robot stops."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ pytestmark = pytest.mark.timeout(60)
 
 @pytest.fixture
 def network(monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
-    """What both processes need to find each other, and nobody else."""
+    """The environment in which both processes find each other, and no others."""
     env = {
         "ROS_DOMAIN_ID": str(1 + os.getpid() % 100),
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
@@ -47,20 +47,20 @@ def network(monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
 
 
 class Robots:
-    """Starts robots in processes of their own; the one that runs is `now`."""
+    """Starts robots in processes of their own; the running one is `now`."""
 
     def __init__(self, env: dict[str, str]) -> None:
         self._env = env
         self.now = self.start()
 
     def start(self) -> Program:
-        """Start one."""
+        """Start a robot."""
         self.now = Program("examples/web_robot.py", env=self._env)
         self.now.wait_until_running()
         return self.now
 
     def kill(self) -> None:
-        """Kill it, so that it can say nothing any more."""
+        """Kill the robot, so that it cannot send anything more."""
         self.now.process.send_signal(signal.SIGKILL)
         self.now.process.wait(timeout=10)
         self.now.close()
@@ -68,7 +68,7 @@ class Robots:
 
 @pytest.fixture
 def robots(network: dict[str, str]) -> Iterator[Robots]:
-    """A robot that runs."""
+    """A running robot."""
     robots = Robots(network)
     try:
         yield robots
@@ -78,13 +78,13 @@ def robots(network: dict[str, str]) -> Iterator[Robots]:
 
 @pytest.fixture
 async def context(network: dict[str, str]) -> AsyncIterator[Context]:
-    """The web application's place in the network."""
+    """The context of the web application."""
     async with Context() as context:
         yield context
 
 
 class Wheels:
-    """What the motors hear: the speed of the last command."""
+    """What the motors receive: the speed of the last command."""
 
     def __init__(self, node: Node) -> None:
         self.speed = 0.0
@@ -96,7 +96,7 @@ class Wheels:
         self._heard.set()
 
     async def until(self, *, turning: bool) -> None:
-        """Wait until the last command is to turn, or not to."""
+        """Wait until the last command is to drive, or to stop."""
         async with asyncio.timeout(20):
             while (self.speed > 0.0) is not turning:
                 self._heard.clear()
@@ -112,7 +112,7 @@ async def wheels(context: Context) -> AsyncIterator[Wheels]:
 
 @pytest.fixture
 def app(context: Context) -> FastAPI:
-    """The application, with one route more that trusts in cancellation alone."""
+    """The application, with an additional route that relies on cancellation alone."""
     app = make_app(context)
 
     async def feedback(operator: Operator) -> AsyncIterator[str]:
@@ -128,7 +128,7 @@ def app(context: Context) -> FastAPI:
 
 @pytest.fixture
 async def web(app: FastAPI, robots: Robots, wheels: Wheels) -> AsyncIterator[httpx.AsyncClient]:
-    """A browser in front of the application, which has found the robot."""
+    """An HTTP client of the application, which has discovered the robot."""
     listening = socket.create_server(("127.0.0.1", 0))
     config = uvicorn.Config(app, log_level="warning", loop="none", timeout_graceful_shutdown=5)
     server = uvicorn.Server(config)
@@ -149,7 +149,7 @@ async def web(app: FastAPI, robots: Robots, wheels: Wheels) -> AsyncIterator[htt
 async def driving(
     web: httpx.AsyncClient, wheels: Wheels, path: str = "/drive"
 ) -> AsyncIterator[AsyncIterator[str]]:
-    """A browser that watches the robot drive far away."""
+    """An HTTP client that streams a drive of a long distance."""
     async with web.stream("GET", path, params={"distance": FAR}) as response:
         lines = response.aiter_lines()
         await wheels.until(turning=True)
@@ -166,7 +166,7 @@ async def event(lines: AsyncIterator[str], name: str) -> str:
 
 
 async def healthy(web: httpx.AsyncClient, *, restarts: int) -> None:
-    """Wait until the application's node was restarted so often, and runs."""
+    """Wait until the application node has been restarted `restarts` times and runs."""
     async with asyncio.timeout(20):
         while True:
             response = await web.get("/healthz")
@@ -177,7 +177,7 @@ async def healthy(web: httpx.AsyncClient, *, restarts: int) -> None:
 
 
 async def drives_again(web: httpx.AsyncClient, app: FastAPI) -> None:
-    """See that a goal goes from its beginning to its end."""
+    """Check that a goal can be driven from start to end."""
     async with asyncio.timeout(20):
         await app.state.supervisor.node.drive.wait_for_server()
     async with web.stream("GET", "/drive", params={"distance": 0.1}) as response:
@@ -199,7 +199,7 @@ async def test_the_robot_stops_when_the_browser_leaves(
 async def test_the_robot_stops_when_a_websocket_is_closed(
     aionode_context: Context, node_factory: Callable[..., Node]
 ) -> None:
-    """In one process here: what comes from the socket is played by the test."""
+    """In one process: the test plays the part of the socket."""
     app = make_app(aionode_context)
     wheels = Wheels(node_factory("wheels"))
     incoming: asyncio.Queue[dict[str, object]] = asyncio.Queue()
@@ -231,7 +231,7 @@ async def test_the_robot_stops_when_a_websocket_is_closed(
 async def test_a_killed_robot_ends_the_stream_and_one_that_is_back_drives(
     web: httpx.AsyncClient, wheels: Wheels, robots: Robots, app: FastAPI
 ) -> None:
-    """The application was not touched, and needs no restart."""
+    """The application is not affected, and needs no restart."""
     async with driving(web, wheels) as lines:
         robots.kill()
         assert "the server went away" in await event(lines, "failure")
@@ -251,7 +251,7 @@ async def test_a_killed_robot_ends_the_stream_and_one_that_is_back_drives(
 async def test_a_bad_request_takes_nothing_away_from_others(
     web: httpx.AsyncClient, wheels: Wheels, robots: Robots
 ) -> None:
-    """The one who asked is told; the robot goes on driving for someone else."""
+    """The caller gets the error; the robot continues a goal of another client."""
     async with driving(web, wheels) as lines:
         response = await web.post("/speed", json={"speed": 17.0})
 
@@ -266,7 +266,7 @@ async def test_a_bad_request_takes_nothing_away_from_others(
 async def test_nodes_that_fail_are_restarted_and_nothing_drives_on(
     web: httpx.AsyncClient, wheels: Wheels, robots: Robots, app: FastAPI, context: Context
 ) -> None:
-    """The robot's and the application's at the same time: the worst moment."""
+    """The nodes of the robot and of the application restart at the same time: the worst case."""
     async with Node("battery", context=context) as battery:
         publisher = battery.create_publisher(Float32, "/battery", 10)
         await publisher.wait_for_subscribers(2)
@@ -274,7 +274,7 @@ async def test_nodes_that_fail_are_restarted_and_nothing_drives_on(
             publisher.publish(Float32(data=-1.0))
             await wheels.until(turning=False)
 
-        line = robots.now.line_with("starts again")
-        assert re.search(r"node /robot failed; it starts again in 0\.5 s", line)
+        line = robots.now.line_with("restarting in")
+        assert re.search(r"node /robot failed; restarting in 0\.5 s", line)
         await healthy(web, restarts=1)
         await drives_again(web, app)

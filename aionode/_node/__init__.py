@@ -1,1 +1,1 @@
-"""What `aionode.Node` is made of."""
+"""The classes and built-in services that make up `aionode.Node`."""

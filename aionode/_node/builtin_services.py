@@ -1,6 +1,7 @@
-"""What every node offers by itself: its log, its parameters, its types, and the time it follows.
+"""The built-in services of a node: its log, parameters, types, and simulated time.
 
-Each part is made of a node's public methods alone, as a user would write it.
+Each is made of the node's public methods, as a program would make it, apart from the hand-over of
+log messages to the node's event loop.
 """
 
 from __future__ import annotations
@@ -34,10 +35,10 @@ from aionode.wire.typehash import type_hash
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from aionode._node.endpoints import NodeEndpoints
     from aionode.clock import Clock
     from aionode.endpoints.subscription import Subscription
     from aionode.logging import LogEvent
-    from aionode.node import Node
     from aionode.parameter import ParameterStore
 
 __all__ = [
@@ -55,27 +56,27 @@ CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 # Log
 
 
-def publish_log(node: Node, profile: QoSProfile | int) -> Callable[[], None]:
-    """Publish what the node logs on ``/rosout``; return what ends that.
+def publish_log(node: NodeEndpoints, profile: QoSProfile | int) -> Callable[[], None]:
+    """Publish the node's log on ``/rosout``; return a function that stops it.
 
-    Messages may be logged in any thread; they are published in the loop's.
+    Messages may be logged in any thread; they are published in the thread of the event loop.
     """
     publisher = node.create_publisher(Log, "/rosout", profile)
 
     def publish(event: LogEvent) -> None:
-        # A full reader of the log must not make logging fail.
+        # Logging must not fail because a reader of the log is full.
         if not publisher.destroyed:
             with contextlib.suppress(QueueFullError):
                 publisher.publish(log_message(event, node.get_clock()))
 
     def sink(event: LogEvent) -> None:
-        node.call_in_loop(lambda: publish(event))
+        node._call_in_loop(lambda: publish(event))
 
     return node.get_logger().add_sink(sink)
 
 
 def log_message(event: LogEvent, clock: Clock) -> Log:
-    """Return what was logged as a message, with the time of the node."""
+    """Return a logged event as a message, stamped with the node's time."""
 
     def encodable(text: str) -> str:
         return text.encode(errors="replace").decode()
@@ -91,8 +92,8 @@ def log_message(event: LogEvent, clock: Clock) -> Log:
     )
 
 
-def serve_logger_levels(node: Node) -> None:
-    """Let others read and set the levels of loggers in this process."""
+def serve_logger_levels(node: NodeEndpoints) -> None:
+    """Serve the reading and setting of log levels in this process."""
 
     def get_levels(
         request: GetLoggerLevels.Request, response: GetLoggerLevels.Response
@@ -122,8 +123,8 @@ def serve_logger_levels(node: Node) -> None:
 # Parameters
 
 
-def publish_parameter_events(node: Node) -> Callable[[ParameterEvent], None]:
-    """Return what publishes changes of parameters on ``/parameter_events``."""
+def publish_parameter_events(node: NodeEndpoints) -> Callable[[ParameterEvent], None]:
+    """Return a function that publishes parameter changes on ``/parameter_events``."""
     publisher = node.create_publisher(
         ParameterEvent, "/parameter_events", qos.qos_profile_parameter_events
     )
@@ -136,8 +137,8 @@ def publish_parameter_events(node: Node) -> Callable[[ParameterEvent], None]:
     return publish
 
 
-def serve_parameters(node: Node, store: ParameterStore) -> None:
-    """Let others read and set the parameters of the node."""
+def serve_parameters(node: NodeEndpoints, store: ParameterStore) -> None:
+    """Serve the reading and setting of the node's parameters."""
     for service in parameter_services(store):
         node.create_service(
             service.srv_type,
@@ -150,8 +151,8 @@ def serve_parameters(node: Node, store: ParameterStore) -> None:
 # Types
 
 
-def serve_type_descriptions(node: Node) -> None:
-    """Tell others what the types consist of that the node uses."""
+def serve_type_descriptions(node: NodeEndpoints) -> None:
+    """Serve the descriptions of the types that the node uses."""
     name = "start_type_description_service"
     descriptor = ParameterDescriptor(
         description="If enabled, start the ~/get_type_description service.", read_only=True
@@ -182,8 +183,8 @@ def serve_type_descriptions(node: Node) -> None:
     node.create_service(GetTypeDescription, "~/get_type_description", describe)
 
 
-def types_of(node: Node) -> Iterator[Any]:
-    """Yield the types of all endpoints of the node, and those that they use."""
+def types_of(node: NodeEndpoints) -> Iterator[Any]:
+    """Yield the types of all endpoints of the node, and the types nested in them."""
     kinds: list[Any] = [publisher.msg_type for publisher in node.publishers]
     kinds += [subscription.msg_type for subscription in node.subscriptions]
     kinds += [service.srv_type for service in node.services]
@@ -194,8 +195,8 @@ def types_of(node: Node) -> Iterator[Any]:
 
 
 def source_of(kind: Any) -> TypeSource:
-    """Return the text that defines a type."""
-    # Rarely asked for, and the parser of definitions takes time to import.
+    """Return the definition of a type, as text."""
+    # Imported on demand: rarely requested, and slow to import.
     from aionode.idl import definition_text
 
     name = type_name(kind)
@@ -212,7 +213,7 @@ def source_of(kind: Any) -> TypeSource:
 class TimeSource:
     """Follows ``/clock`` while the parameter `use_sim_time` is true."""
 
-    def __init__(self, node: Node, clock: Clock) -> None:
+    def __init__(self, node: NodeEndpoints, clock: Clock) -> None:
         self._node = node
         self._clock = clock
         self._subscription: Subscription[ClockMsg] | None = None
@@ -243,7 +244,9 @@ class TimeSource:
             self._subscription = self._node.create_subscription(
                 ClockMsg, "/clock", self._on_tick, CLOCK_QOS
             )
-            self._subscription.stage = EndStage.GOALS  # callbacks that clean up may sleep
+            self._subscription._stage = (
+                EndStage.GOALS
+            )  # until callbacks have ended: their cleanup may sleep
         elif not active and self._subscription is not None:
             self._subscription.destroy()
             self._subscription = None
@@ -252,13 +255,13 @@ class TimeSource:
         if msg.clock.sec >= 0 and msg.clock.nanosec < S_TO_NS:
             self._clock.set_ros_time_override(Time.from_msg(msg.clock))
             return
-        # Anybody may publish there, and this node is not to end for it.
+        # Any node can publish on /clock; an invalid message must not end this one.
         if self._subscription is not None:
             self._subscription.stats.errors += 1
         if not self._warned:
             self._warned = True
             self._node.get_logger().warning(
-                f"/clock: a message holds no time: {msg.clock.sec} s and {msg.clock.nanosec} ns; "
-                f"0 s or more and less than {S_TO_NS} ns fit. It was left out, and more of them "
+                f"/clock: ignored an invalid time: {msg.clock.sec} s and {msg.clock.nanosec} ns; "
+                f"seconds must be at least 0, and nanoseconds less than {S_TO_NS}. Further ones "
                 "are only counted; `aionode topic info -v /clock` names the publishers"
             )

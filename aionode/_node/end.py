@@ -18,22 +18,22 @@ class NodeEnd:
     """How a node ended.
 
     Attributes:
-        reason: ``"destroyed"``: `destroy_node` was called, its context was shut down, or the block
-            of ``async with`` was left. ``"failed"``: a callback, or that block, raised.
-            ``"cancelled"``: the task that ran it was cancelled from outside.
-        error: What came out of ``async with`` or `run` if it failed, else None.
+        reason: ``"destroyed"``: `destroy_node` was called, its context was shut down, or the body
+            of ``async with`` ended. ``"failed"``: a callback, or that body, raised an exception.
+            ``"cancelled"``: the task that ran the node was cancelled.
+        error: The exception from ``async with`` or `run` if the node failed, else None.
     """
 
     reason: Literal["destroyed", "failed", "cancelled"]
     error: BaseException | None = None
 
     def __str__(self) -> str:
-        """Return it in one line: ``failed: ValueError: no map``."""
+        """Return one line, such as ``failed: ValueError: no map``."""
         return self.reason if self.error is None else f"{self.reason}: {short_text(self.error)}"
 
 
 def short_text(error: BaseException) -> str:
-    """Return type and text of an error in one line; of a group, those of its parts."""
+    """Return the type and text of an exception in one line; for a group, those of its members."""
     if isinstance(error, BaseExceptionGroup):
         return "; ".join(short_text(part) for part in error.exceptions)
     text = " ".join(str(error).split())
@@ -41,7 +41,7 @@ def short_text(error: BaseException) -> str:
 
 
 class EndRecord:
-    """Records the end of one node, for those who wait for it."""
+    """Records the end of one node, and wakes the tasks that wait for it."""
 
     def __init__(self, subject: str) -> None:
         self._subject = subject
@@ -50,21 +50,21 @@ class EndRecord:
         self._runs_in: asyncio.Task[object] | None = None
 
     def begin(self) -> None:
-        """Note that this task runs the node."""
+        """Record that the current task runs the node."""
         self._runs_in = asyncio.current_task()
 
     def note(self, end: NodeEnd) -> None:
-        """Tell of the end; the first counts."""
+        """Record the end and wake those waiting for it; only the first call counts."""
         if self._end is None:
             self._end = end
             self._known.set()
 
     @contextlib.contextmanager
     def recorded(self, body: BaseException | None) -> Iterator[None]:
-        """Note how this block ends, which waits for the last of the node.
+        """Record the end of the node from how the ``with`` block ends, which shuts it down.
 
         Args:
-            body: What the node's ``async with`` block raised.
+            body: The exception from the body of the node's ``async with``, if any.
         """
         error = body
         try:
@@ -76,15 +76,15 @@ class EndRecord:
             self.note(end_with(error))
 
     async def wait(self) -> NodeEnd:
-        """Return the end once it is there.
+        """Wait for the end and return it.
 
         Raises:
-            RuntimeError: the task that runs the node would wait for itself.
+            RuntimeError: called by the task that runs the node, which would wait for itself.
         """
         if self._end is None and self._runs_in is asyncio.current_task():
             raise RuntimeError(
-                f"{self._subject}: ended() inside its own `async with` would wait for itself, as "
-                "the node ends with that block; await it in another task, or leave the block"
+                f"{self._subject}: awaiting ended() inside the node's own `async with` would wait "
+                "forever, as the node ends after that block; await it in another task"
             )
         await self._known.wait()
         assert self._end is not None  # noqa: S101  # set before the event
@@ -92,7 +92,7 @@ class EndRecord:
 
 
 def end_with(error: BaseException | None) -> NodeEnd:
-    """Return the end of a node out of which `error` came."""
+    """Return the end of a node whose ``async with`` raised `error`, or None."""
     if error is None:
         return NodeEnd("destroyed")
     if isinstance(error, asyncio.CancelledError):

@@ -1,4 +1,4 @@
-"""What a node can ask about the system: rclpy's graph methods, over the graph of its context."""
+"""The graph queries of a node: rclpy's methods, over the graph of its context."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from enum import IntEnum
 from typing import TYPE_CHECKING
 
 from aionode import names
+from aionode._node.base import NodeBase
 from aionode.endpoints._core.future import asks
 from aionode.errors import NodeNameNonExistentError
 from aionode.graph import TOPIC_KINDS, EndpointKind
@@ -15,7 +16,7 @@ from aionode.graph import TOPIC_KINDS, EndpointKind
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from aionode.graph import EndpointInfo, Graph, NodeInfo
+    from aionode.graph import EndpointInfo, NodeInfo
     from aionode.qos import QoSProfile
 
 __all__ = ["NodeGraphQueries", "TopicEndpointInfo", "TopicEndpointTypeEnum"]
@@ -39,7 +40,7 @@ ENDPOINT_TYPES = {
 
 @dataclass(frozen=True, slots=True)
 class TopicEndpointInfo:
-    """A publisher or subscription, with rclpy's names.
+    """A publisher or subscription, with rclpy's attribute names.
 
     Attributes:
         node_name: Name of its node.
@@ -47,8 +48,8 @@ class TopicEndpointInfo:
         topic_type: ROS name of its type.
         topic_type_hash: RIHS01 hash of the type, as text.
         endpoint_type: Whether it publishes or subscribes.
-        endpoint_gid: The 16 numbers that identify it.
-        qos_profile: Its profile.
+        endpoint_gid: The 16 bytes that identify it, as numbers.
+        qos_profile: Its QoS.
     """
 
     node_name: str
@@ -60,21 +61,11 @@ class TopicEndpointInfo:
     qos_profile: QoSProfile
 
 
-class NodeGraphQueries:
-    """The part of `Node` that asks the graph.
+class NodeGraphQueries(NodeBase):
+    """The part of `aionode.Node` that queries the graph.
 
-    All answers are of this moment; ``await node.graph.changed()`` waits for the next change.
+    Answers reflect the present state; ``await node.graph.changed()`` waits for the next change.
     """
-
-    graph: Graph
-
-    def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
-        """Return the full name of a topic of this node, remapped unless `only_expand`."""
-        raise NotImplementedError
-
-    def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
-        """Return the full name of a service of this node, remapped unless `only_expand`."""
-        raise NotImplementedError
 
     # Nodes
 
@@ -87,11 +78,11 @@ class NodeGraphQueries:
         return [node.fully_qualified_name for node in self.graph.nodes()]
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
-        """Return name and namespace of all nodes."""
+        """Return the name and namespace of every node."""
         return [(node.name, node.namespace) for node in self.graph.nodes()]
 
     def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
-        """Return name, namespace and security enclave of all nodes."""
+        """Return the name, namespace and security enclave of every node."""
         return [(node.name, node.namespace, node.enclave) for node in self.graph.nodes()]
 
     @asks
@@ -102,15 +93,15 @@ class NodeGraphQueries:
         *,
         check_interval: float = 0.1,  # noqa: ARG002  # rclpy's signature
     ) -> bool:
-        """Wait until a node of this name is there.
+        """Wait until a node of this name exists.
 
         Args:
-            fully_qualified_node_name: Namespace and name; a leading slash may be left out.
-            timeout: How long at most, in seconds; None waits for ever.
-            check_interval: Makes no difference: the wait ends when the graph changes.
+            fully_qualified_node_name: Namespace and name; the leading slash is optional.
+            timeout: The longest wait, in seconds; None waits forever.
+            check_interval: Ignored: the wait ends as soon as the graph changes.
 
         Returns:
-            True when the node is there, False when `timeout` has passed.
+            True if the node exists, False if `timeout` has passed.
         """
         wanted = "/" + fully_qualified_node_name.removeprefix("/")
 
@@ -127,7 +118,7 @@ class NodeGraphQueries:
     # Topics and services by name
 
     def get_topic_names_and_types(self, no_demangle: bool = False) -> NamesAndTypes:  # noqa: ARG002  # rclpy's signature
-        """Return every topic with its types; `no_demangle` makes no difference here."""
+        """Return every topic with its types; `no_demangle` is ignored."""
         return self.graph.names_and_types(*TOPIC_KINDS)
 
     def get_service_names_and_types(self) -> NamesAndTypes:
@@ -139,19 +130,19 @@ class NodeGraphQueries:
         return actions_among(self.get_topic_names_and_types())
 
     def count_publishers(self, topic_name: str) -> int:
-        """Return how many publishers `topic_name` has; relative names belong to this node."""
+        """Return how many publishers `topic_name` has; a relative name is this node's."""
         return self.graph.count(EndpointKind.PUBLISHER, self.resolve_topic_name(topic_name))
 
     def count_subscribers(self, topic_name: str) -> int:
-        """Return how many subscriptions `topic_name` has; relative names belong to this node."""
+        """Return how many subscriptions `topic_name` has; a relative name is this node's."""
         return self.graph.count(EndpointKind.SUBSCRIPTION, self.resolve_topic_name(topic_name))
 
     def count_services(self, service_name: str) -> int:
-        """Return how many servers `service_name` has; relative names belong to this node."""
+        """Return how many servers `service_name` has; a relative name is this node's."""
         return self.graph.count(EndpointKind.SERVER, self.resolve_service_name(service_name))
 
     def count_clients(self, service_name: str) -> int:
-        """Return how many clients `service_name` has; relative names belong to this node."""
+        """Return how many clients `service_name` has; a relative name is this node's."""
         return self.graph.count(EndpointKind.CLIENT, self.resolve_service_name(service_name))
 
     def get_publishers_info_by_topic(
@@ -159,7 +150,7 @@ class NodeGraphQueries:
         topic_name: str,
         no_mangle: bool = False,  # noqa: ARG002  # rclpy's signature
     ) -> list[TopicEndpointInfo]:
-        """Return every publisher of a topic; `no_mangle` makes no difference here."""
+        """Return every publisher of a topic; `no_mangle` is ignored."""
         return self._topic_endpoints(EndpointKind.PUBLISHER, topic_name)
 
     def get_subscriptions_info_by_topic(
@@ -167,7 +158,7 @@ class NodeGraphQueries:
         topic_name: str,
         no_mangle: bool = False,  # noqa: ARG002  # rclpy's signature
     ) -> list[TopicEndpointInfo]:
-        """Return every subscription of a topic; `no_mangle` makes no difference here."""
+        """Return every subscription of a topic; `no_mangle` is ignored."""
         return self._topic_endpoints(EndpointKind.SUBSCRIPTION, topic_name)
 
     def _topic_endpoints(self, kind: EndpointKind, topic_name: str) -> list[TopicEndpointInfo]:
@@ -185,7 +176,7 @@ class NodeGraphQueries:
         """Return what a node publishes.
 
         Raises:
-            NodeNameNonExistentError: there is no such node.
+            NodeNameNonExistentError: there is no node of this name.
         """
         return self._of_node(EndpointKind.PUBLISHER, node_name, node_namespace)
 
@@ -198,7 +189,7 @@ class NodeGraphQueries:
         """Return what a node subscribes to.
 
         Raises:
-            NodeNameNonExistentError: there is no such node.
+            NodeNameNonExistentError: there is no node of this name.
         """
         return self._of_node(EndpointKind.SUBSCRIPTION, node_name, node_namespace)
 
@@ -208,7 +199,7 @@ class NodeGraphQueries:
         """Return the services that a node serves.
 
         Raises:
-            NodeNameNonExistentError: there is no such node.
+            NodeNameNonExistentError: there is no node of this name.
         """
         return self._of_node(EndpointKind.SERVER, node_name, node_namespace)
 
@@ -218,7 +209,7 @@ class NodeGraphQueries:
         """Return the services that a node calls.
 
         Raises:
-            NodeNameNonExistentError: there is no such node.
+            NodeNameNonExistentError: there is no node of this name.
         """
         return self._of_node(EndpointKind.CLIENT, node_name, node_namespace)
 
@@ -228,7 +219,7 @@ class NodeGraphQueries:
         """Return the actions that a node serves.
 
         Raises:
-            NodeNameNonExistentError: there is no such node.
+            NodeNameNonExistentError: there is no node of this name.
         """
         return actions_among(self._of_node(EndpointKind.PUBLISHER, node_name, node_namespace))
 
@@ -238,7 +229,7 @@ class NodeGraphQueries:
         """Return the actions that a node calls.
 
         Raises:
-            NodeNameNonExistentError: there is no such node.
+            NodeNameNonExistentError: there is no node of this name.
         """
         return actions_among(self._of_node(EndpointKind.SUBSCRIPTION, node_name, node_namespace))
 
@@ -252,7 +243,7 @@ class NodeGraphQueries:
 
 
 def topic_endpoint_info(endpoint: EndpointInfo) -> TopicEndpointInfo:
-    """Return `endpoint` with rclpy's names."""
+    """Return `endpoint` as rclpy's `TopicEndpointInfo`."""
     return TopicEndpointInfo(
         node_name=endpoint.node.name,
         node_namespace=endpoint.node.namespace,
@@ -265,7 +256,7 @@ def topic_endpoint_info(endpoint: EndpointInfo) -> TopicEndpointInfo:
 
 
 def actions_among(topics: NamesAndTypes) -> NamesAndTypes:
-    """Return the actions that are known by their feedback topics (rcl_action, graph.c)."""
+    """Return the actions among `topics`, found by their feedback topics as rcl_action does."""
     suffix, type_suffix = "/_action/feedback", "_FeedbackMessage"
     return [
         (topic.removesuffix(suffix), [name.removesuffix(type_suffix) for name in types])

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from aionode.parameter import declare_struct
+from aionode._node.graph import NodeGraphQueries
+from aionode.parameter import Parameter, ParameterStore, declare_struct
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
+    from aionode.context import Context
     from aionode.interfaces.rcl_interfaces.msg import (
         ListParametersResult,
         ParameterDescriptor,
@@ -17,8 +19,6 @@ if TYPE_CHECKING:
     )
     from aionode.parameter import (
         OnSetCallback,
-        Parameter,
-        ParameterStore,
         ParameterType,
         PostSetCallback,
         PreSetCallback,
@@ -29,13 +29,42 @@ __all__ = ["NodeParameters"]
 StructT = TypeVar("StructT")
 
 
-class NodeParameters:
-    """The part of `Node` that has parameters.
+class NodeParameters(NodeGraphQueries):
+    """The part of `aionode.Node` that has parameters.
 
-    What each method does, step by step, and what it raises is said in `ParameterStore`.
+    `ParameterStore` describes each method step by step, and every exception.
     """
 
-    _parameters: ParameterStore
+    def __init__(
+        self,
+        node_name: str,
+        namespace: str | None,
+        context: Context | None,
+        cli_args: Sequence[str] | None,
+        *,
+        use_global_arguments: bool,
+        callback_budget_ms: float,
+        parameter_overrides: Sequence[Parameter],
+        allow_undeclared_parameters: bool,
+    ) -> None:
+        super().__init__(
+            node_name,
+            namespace,
+            context,
+            cli_args,
+            use_global_arguments=use_global_arguments,
+            callback_budget_ms=callback_budget_ms,
+        )
+        full_name = self.get_fully_qualified_name()
+        self._parameters = ParameterStore(
+            full_name,
+            overrides=[  # the last value of a name wins
+                *parameters_from(self._shared_arguments.parameters_for(full_name)),
+                *parameters_from(self._own_arguments.parameters_for(full_name)),
+                *parameter_overrides,
+            ],
+            allow_undeclared=allow_undeclared_parameters,
+        )
 
     # Declaring
 
@@ -46,16 +75,16 @@ class NodeParameters:
         descriptor: ParameterDescriptor | None = None,
         ignore_override: bool = False,  # rclpy's signature
     ) -> Parameter:
-        """Declare a parameter and return it, with the value of an override if there is one.
+        """Declare a parameter and return it; an override of its name gives the value.
 
         Args:
             name: Its name.
-            value: Its value to begin with, or its type (`Parameter.Type`) if it is to have none.
-            descriptor: Description, limits, and whether it is read-only.
-            ignore_override: Whether overrides are left aside.
+            value: Its initial value, or its type (`Parameter.Type`) to declare it without a value.
+            descriptor: Description, range, and whether it is read-only.
+            ignore_override: Whether to ignore overrides.
 
         Raises:
-            ParameterAlreadyDeclaredException: it was declared before.
+            ParameterAlreadyDeclaredException: the parameter is already declared.
             InvalidParameterException: the name is empty.
             InvalidParameterTypeException: the override is of another type than `value`.
             InvalidParameterValueException: the descriptor or a callback rejects the value.
@@ -68,7 +97,7 @@ class NodeParameters:
         parameters: Iterable[tuple[Any, ...]],
         ignore_override: bool = False,  # rclpy's signature
     ) -> list[Parameter]:
-        """Declare parameters given as ``(name, value or type, descriptor)``, in order."""
+        """Declare parameters, each given as ``(name, value or type, descriptor)``, in order."""
         return self._parameters.declare_parameters(namespace, parameters, ignore_override)
 
     def declare_struct(
@@ -78,24 +107,24 @@ class NodeParameters:
         *,
         on_change: Callable[[StructT], None] | None = None,
     ) -> StructT:
-        """Declare the fields of a class as parameters; return an instance that is kept current.
+        """Declare the fields of a class as parameters; return an instance that follows them.
 
         Args:
-            struct_type: A `msgspec.Struct` or a dataclass, not frozen; `msgspec.Meta` gives limits
-                and descriptions.
-            prefix: Put in front of all names, with a dot, unless it is empty.
-            on_change: Called with the instance after a change.
+            struct_type: A `msgspec.Struct` or dataclass that is not frozen; `msgspec.Meta` gives
+                ranges and descriptions.
+            prefix: Prepended to all names, with a dot, unless it is empty.
+            on_change: Called with the instance after each change.
 
         Raises:
-            TypeError: a field's type is none that parameters have, or the class is frozen.
+            TypeError: a field has a type that parameters do not have, or the class is frozen.
             ParameterUninitializedException: a field has neither a default nor an override.
-            InvalidParameterValueException: a default or an override is out of its limits.
-            ParameterAlreadyDeclaredException: the node has a parameter of one of the names.
+            InvalidParameterValueException: a default or an override is out of range.
+            ParameterAlreadyDeclaredException: one of the names is already declared.
         """
         return declare_struct(self, struct_type, prefix, on_change=on_change)
 
     def undeclare_parameter(self, name: str) -> None:
-        """Forget a parameter. Neither callbacks nor an event tell of it."""
+        """Remove a parameter. No callback is called and no event is published."""
         self._parameters.undeclare_parameter(name)
 
     # Reading
@@ -108,17 +137,18 @@ class NodeParameters:
         """Return a parameter.
 
         Raises:
-            ParameterNotDeclaredException: it is undeclared, and that is not allowed.
+            ParameterNotDeclaredException: it is undeclared, and undeclared parameters are not
+                allowed.
             ParameterUninitializedException: it was declared without a value and never set.
         """
         return self._parameters.get_parameter(name)
 
     def get_parameters(self, names: Sequence[str]) -> list[Parameter]:
-        """Return parameters, as `get_parameter` does each."""
+        """Return several parameters; see `get_parameter`."""
         return self._parameters.get_parameters(names)
 
     def get_parameter_or(self, name: str, alternative_value: Parameter | None = None) -> Parameter:
-        """Return a parameter, or `alternative_value` if it is not set."""
+        """Return a parameter, or `alternative_value` if it is undeclared or not set."""
         return self._parameters.get_parameter_or(name, alternative_value)
 
     def get_parameter_type(self, name: str) -> ParameterType:
@@ -126,11 +156,11 @@ class NodeParameters:
         return self._parameters.get_parameter_type(name)
 
     def get_parameter_types(self, names: Sequence[str]) -> list[ParameterType]:
-        """Return the types of parameters."""
+        """Return the types of several parameters."""
         return self._parameters.get_parameter_types(names)
 
     def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter]:
-        """Return the parameters below `prefix`, by the rest of their names."""
+        """Return the parameters below `prefix`, keyed by the rest of their names."""
         return self._parameters.get_parameters_by_prefix(prefix)
 
     def list_parameters(self, prefixes: list[str], depth: int) -> ListParametersResult:
@@ -142,25 +172,26 @@ class NodeParameters:
         return self._parameters.describe_parameter(name)
 
     def describe_parameters(self, names: Sequence[str]) -> list[ParameterDescriptor]:
-        """Return descriptors, as `describe_parameter` does each."""
+        """Return the descriptors of several parameters."""
         return self._parameters.describe_parameters(names)
 
     # Changing
 
     def set_parameters(self, parameter_list: Sequence[Parameter]) -> list[SetParametersResult]:
-        """Set parameters one by one, and return what became of each.
+        """Set parameters one by one, and return a result for each.
 
         Raises:
-            ParameterNotDeclaredException: one is undeclared, and that is not allowed; those before
-                it are set.
+            ParameterNotDeclaredException: one is undeclared, and undeclared parameters are not
+                allowed; those before it are set.
         """
         return self._parameters.set_parameters(parameter_list)
 
     def set_parameters_atomically(self, parameter_list: Sequence[Parameter]) -> SetParametersResult:
-        """Set all parameters or, if one is rejected, none.
+        """Set all parameters, or none if one is rejected.
 
         Raises:
-            ParameterNotDeclaredException: one is undeclared, and that is not allowed.
+            ParameterNotDeclaredException: one is undeclared, and undeclared parameters are not
+                allowed.
         """
         return self._parameters.set_parameters_atomically(parameter_list)
 
@@ -170,17 +201,17 @@ class NodeParameters:
         descriptor: ParameterDescriptor,
         alternative_value: ParameterValue | None = None,
     ) -> ParameterValue:
-        """Give a parameter another descriptor, and return its value then."""
+        """Replace the descriptor of a parameter, and return its resulting value."""
         return self._parameters.set_descriptor(name, descriptor, alternative_value)
 
     # Callbacks
 
     def add_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
-        """Call `callback` before a change is checked: it returns the list to go on with."""
+        """Call `callback` before a change is checked; it returns the parameters to set instead."""
         self._parameters.add_pre_set_parameters_callback(callback)
 
     def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
-        """Call `callback` to check a change: the first that rejects it wins."""
+        """Call `callback` to check a change; the first that rejects it decides."""
         self._parameters.add_on_set_parameters_callback(callback)
 
     def add_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
@@ -188,13 +219,18 @@ class NodeParameters:
         self._parameters.add_post_set_parameters_callback(callback)
 
     def remove_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
-        """Call it no more; a ValueError if it was not added."""
+        """Remove a callback; a ValueError if it was not added."""
         self._parameters.remove_pre_set_parameters_callback(callback)
 
     def remove_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
-        """Call it no more; a ValueError if it was not added."""
+        """Remove a callback; a ValueError if it was not added."""
         self._parameters.remove_on_set_parameters_callback(callback)
 
     def remove_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
-        """Call it no more; a ValueError if it was not added."""
+        """Remove a callback; a ValueError if it was not added."""
         self._parameters.remove_post_set_parameters_callback(callback)
+
+
+def parameters_from(values: Mapping[str, object]) -> list[Parameter]:
+    """Return plain values as parameters."""
+    return [Parameter(name, value=value) for name, value in values.items()]

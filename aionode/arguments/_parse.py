@@ -1,10 +1,10 @@
-"""The arguments of a ROS program: what stands between ``--ros-args`` and ``--``.
+"""The arguments of a ROS program: those between ``--ros-args`` and ``--``.
 
 ::
 
     robot.py data.csv --ros-args -r chatter:=/talk -p rate:=10.0 --log-level debug -- --verbose
 
-Each such block is read by rcl's grammar; everything else is left to the program.
+Each such block follows rcl's grammar; all other arguments belong to the program.
 """
 
 from __future__ import annotations
@@ -35,30 +35,30 @@ from aionode.names import RemapRule
 __all__ = ["Arguments", "parse_arguments", "remove_ros_args"]
 
 START, END = "--ros-args", "--"
-VALUE = "value"  # what a value on the command line is called where a file has its path
+VALUE = "value"  # the source of a value on the command line, in errors
 
 ParameterFileReader = Callable[[str], Iterable[ParameterRule]]
 
 
 @dataclass(frozen=True)
 class Arguments:
-    """What the arguments say.
+    """The parsed arguments.
 
     Attributes:
-        remap_rules: In order; of those that match, the first wins.
-        parameter_rules: Those of files and of ``-p``, in order; the last wins.
+        remap_rules: In order; the first match wins.
+        parameter_rules: From files and ``-p``, in order; the last match wins.
         params_files: Paths of the files that were read.
         log_level: The level of loggers without one of their own.
-        log_levels: Levels of single loggers.
+        log_levels: Levels of individual loggers.
         log_config_file: A file to configure logging with.
-        log_file_name: How the name of a log file is to begin.
+        log_file_name: Prefix of the name of the log file.
         enclave: The security enclave.
         stdout_logs: Whether to log to the console.
         rosout_logs: Whether to log to `/rosout`.
-        external_lib_logs: Whether to log to a file; None if nothing was said.
-        unparsed_ros_args: Words between ``--ros-args`` and ``--`` that are no flags of ROS.
-        non_ros_args: All words outside; the program's own.
-        warnings: What the user should be told.
+        external_lib_logs: Whether to log to a file; None if not given.
+        unparsed_ros_args: Unknown arguments between ``--ros-args`` and ``--``.
+        non_ros_args: All other arguments, which belong to the program.
+        warnings: Warnings for the user.
     """
 
     remap_rules: tuple[RemapRule, ...] = ()
@@ -77,13 +77,13 @@ class Arguments:
     warnings: tuple[str, ...] = ()
 
     def parameters_for(self, node_name: str) -> dict[str, ParameterValueType]:
-        """Return the parameters for the node with this full name, remapping done."""
+        """Return the parameters for the node with this full name, after remapping."""
         return matching_parameters(self.parameter_rules, node_name)
 
     def log_file_prefix(self) -> str | None:
-        """Return how the name of the log file is to begin, or None if there is to be none.
+        """Return the prefix of the name of the log file, or None to write none.
 
-        A file is written only when asked for: by ``--log-file-name``, or by
+        A file is written only on request: by ``--log-file-name``, or by
         ``--enable-external-lib-logs``, which gives it the name of the program.
         """
         if self.external_lib_logs is None:
@@ -94,10 +94,10 @@ class Arguments:
         return self.log_file_name or program
 
     def refuse_unknown(self) -> None:
-        """Raise if a word between ``--ros-args`` and ``--`` is no flag of ROS.
+        """Raise if an argument between ``--ros-args`` and ``--`` is unknown.
 
         Raises:
-            UnknownROSArgsError: There is one; the error says which flags are like it.
+            UnknownROSArgsError: One is unknown; the text names similar flags.
         """
         if not self.unparsed_ros_args:
             return
@@ -114,14 +114,14 @@ class Arguments:
 def parse_arguments(
     args: Sequence[str], *, read_file: ParameterFileReader = read_parameter_file
 ) -> Arguments:
-    """Return what `args` say.
+    """Parse a command line.
 
     Args:
-        args: The words of a command line, such as `sys.argv`.
+        args: The command line, such as `sys.argv`.
         read_file: Reads a parameter file.
 
     Raises:
-        InvalidROSArgsError: A flag has no value, or one that cannot be read.
+        InvalidROSArgsError: A flag lacks its value, or the value is invalid.
     """
     parser = Parser(read_file)
     remaining = list(args)
@@ -140,7 +140,7 @@ def parse_arguments(
 
 
 def remove_ros_args(args: Sequence[str]) -> list[str]:
-    """Return the words that are the program's own, in order."""
+    """Return the arguments that belong to the program, in order."""
     own: list[str] = []
     inside = False
     for word in args:
@@ -155,7 +155,7 @@ def remove_ros_args(args: Sequence[str]) -> list[str]:
 
 
 class Parser:
-    """Collects what the words say."""
+    """Collects the arguments of one command line."""
 
     def __init__(self, read_file: ParameterFileReader) -> None:
         self.read_file = read_file
@@ -171,7 +171,7 @@ class Parser:
         self.warnings: list[str] = []
 
     def outside(self, word: str) -> None:
-        """Take a word outside of all blocks."""
+        """Take an argument outside of ``--ros-args`` blocks."""
         rule = deprecated_rule(word)
         if rule is None:
             self.own.append(word)
@@ -183,7 +183,7 @@ class Parser:
         )
 
     def inside(self, word: str, rest: list[str]) -> None:
-        """Take a word inside a block, and from `rest` its value if it has one."""
+        """Take an argument inside a block, and its value, if any, from `rest`."""
         if word in SWITCHES:
             setting, value = SWITCHES[word]
             self.switches[setting] = value
@@ -205,7 +205,7 @@ class Parser:
             self.unparsed.append(word)
 
     def result(self) -> Arguments:
-        """Return what was collected."""
+        """Return the parsed arguments."""
         return Arguments(
             remap_rules=tuple(self.remap_rules),
             parameter_rules=tuple(self.parameter_rules),
@@ -224,11 +224,11 @@ class Parser:
         )
 
 
-# What each flag does with its value
+# The values of flags
 
 
 class MalformedError(ValueError):
-    """A value is not of its flag's form. Becomes an InvalidROSArgsError with the flag."""
+    """A value does not have the form its flag requires; becomes an InvalidROSArgsError."""
 
 
 PARAMETER = (
@@ -252,7 +252,7 @@ def add_parameter(parser: Parser, text: str) -> None:
     if node is None:
         node = "/**"
     elif "/" not in node:
-        node = f"/**/{node}"  # the node of this name, in whatever namespace
+        node = f"/**/{node}"  # a node of this name in any namespace
     elif not node.startswith("/"):
         node = f"/{node}"
     parser.parameter_rules.append(ParameterRule(node, name, parse_value(value, VALUE), text))
@@ -278,7 +278,7 @@ def set_log_level(parser: Parser, text: str) -> None:
 
 
 def setting(name: str) -> Callable[[Parser, str], None]:
-    """Return what takes the value of a flag as it is; the last one counts."""
+    """Return a function that stores the value of a flag; the last value wins."""
 
     def take(parser: Parser, value: str) -> None:
         parser.settings[name] = value
@@ -320,7 +320,7 @@ SWITCHES = {
 
 
 def deprecated_rule(word: str) -> RemapRule | None:
-    """Return the remap rule that a word outside of all blocks stands for, if it does."""
+    """Return the remap rule that an argument outside of blocks is, or None."""
     if ":=" not in word:
         return None
     try:

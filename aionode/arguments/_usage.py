@@ -1,4 +1,4 @@
-"""Which arguments were of no use to any node: a typo in a name is accepted without a word else."""
+"""Which arguments no node has used, as a typo in a name would otherwise go unnoticed."""
 
 from __future__ import annotations
 
@@ -16,19 +16,20 @@ if TYPE_CHECKING:
 
 __all__ = ["Usage"]
 
-LOOK_AFTER_NS = 1_000_000_000
-"""How long after the first node began to run the arguments are looked at."""
+CHECK_AFTER_NS = 1_000_000_000
+"""How long after the first node started the arguments are checked."""
 
 
 class Usage:
-    """Notes what nodes make of some arguments, and says once what was of no use to any.
+    """Records which arguments nodes use, and logs once those that none has used.
 
     Args:
-        arguments: What is watched: its rules, and the parameters of its ``-p``.
+        arguments: The arguments: their remap rules, and the parameters given by ``-p``.
     """
 
     def __init__(self, arguments: Arguments) -> None:
         self.arguments = arguments
+        # What is still unused; the rest is what nodes had so far.
         self._rules = set(arguments.remap_rules)
         self._parameters = [rule for rule in arguments.parameter_rules if rule.typed]
         self._names: set[str] = set()
@@ -37,16 +38,16 @@ class Usage:
 
     @property
     def is_over(self) -> bool:
-        """Whether nothing is left to note: all was of use, or it was said what was not."""
+        """Whether nothing is left to record: all were used, or the unused ones were logged."""
         return not (self._rules or self._parameters)
 
     def note_node(self, name: str) -> None:
-        """Note a node by the name that its program gives it."""
+        """Record a node, by its name before remapping."""
         for kind in (RemapKind.NODE_NAME, RemapKind.NAMESPACE):
             self._rules -= {rule for rule in self._rules if rule.applies_to(kind, name)}
 
     def note_name(self, name: str, node_name: str, namespace: str, *, is_service: bool) -> None:
-        """Note the absolute name of a topic or service before it is remapped."""
+        """Record the absolute name of a topic or service before remapping."""
         kind = RemapKind.SERVICE if is_service else RemapKind.TOPIC
         self._names.add(name)
         self._rules -= {
@@ -57,21 +58,21 @@ class Usage:
         }
 
     def note_parameters(self, store: ParameterStore) -> None:
-        """Note the parameters of a node, those included that it declares later."""
+        """Record the parameters of a node, including those that it declares later."""
         self._stores.append(store)
 
     def begin(
         self, time_base: TimeBase, is_alive: Callable[[], bool], warn: Callable[[str], Any]
     ) -> None:
-        """Look a second from now, and `warn` of what was of no use; not of a node that has gone.
+        """Check a second from now, and `warn` about unused arguments, if the node is still alive.
 
-        A program that ends sooner has not shown all of its names.
+        A program that ends sooner may not have created all of its names.
         """
         if self._begun or self.is_over:
             return
         self._begun = True
 
-        def look() -> None:
+        def check() -> None:
             if is_alive():
                 for text in self.unused():
                     warn(text)
@@ -80,10 +81,10 @@ class Usage:
             self._stores.clear()
             self._names.clear()
 
-        time_base.call_at(time_base.steady_ns() + LOOK_AFTER_NS, look)
+        time_base.call_at(time_base.steady_ns() + CHECK_AFTER_NS, check)
 
     def unused(self) -> list[str]:
-        """Return what is to be said of each argument that was of no use so far."""
+        """Return a text for each argument that was not used so far."""
         texts = [
             f"-r {rule}: has matched no name of this program's nodes so far, so it changes nothing"
             f"{meant(rule.match, self._names)}"
@@ -104,7 +105,7 @@ class Usage:
 
 
 def meant(word: str, known: Iterable[str]) -> str:
-    """Return a question for the word that was probably meant; nothing if none is like it."""
+    """Return a hint at the known word most like this one; empty if none is similar."""
     plain = {name.strip("/"): name for name in known}
     close = difflib.get_close_matches(word.strip("/"), plain, n=1)
     return f"; did you mean {plain[close[0]]!r}?" if close else ""

@@ -1,6 +1,6 @@
-"""The main program: which nouns there are, and what becomes of their errors.
+"""The main program: its nouns, and how their errors are reported.
 
-Nothing large but click is imported here; the noun that was named is, and nothing else.
+Click is the only large import here; of the nouns, only the one that is used is imported.
 """
 
 from __future__ import annotations
@@ -28,23 +28,26 @@ __all__ = ["LateGroup", "main", "report", "root"]
 NOUNS = {
     "action": (
         "aionode.cli._commands.action:action",
-        "Send goals, and see who serves which action.",
+        "Send goals; list and inspect actions.",
     ),
     "completion": (
         "aionode.cli._commands.completion:completion",
-        "Print the completion of a shell.",
+        "Print the completion script of a shell.",
     ),
-    "doctor": ("aionode.cli._commands.doctor:doctor_command", "Say why two endpoints do not talk."),
+    "doctor": (
+        "aionode.cli._commands.doctor:doctor_command",
+        "Find out why endpoints do not communicate.",
+    ),
     "interface": (
         "aionode.cli._commands.interface:interface",
         "Show message, service and action types.",
     ),
     "lifecycle": (
         "aionode.cli._commands.lifecycle:lifecycle",
-        "See and change states of managed nodes.",
+        "Show and change the states of managed nodes.",
     ),
-    "node": ("aionode.cli._commands.node:node", "List nodes, and what they offer and use."),
-    "param": ("aionode.cli._commands.param:param", "Read and set parameters of nodes."),
+    "node": ("aionode.cli._commands.node:node", "List and inspect nodes."),
+    "param": ("aionode.cli._commands.param:param", "Read and set the parameters of nodes."),
     "router": (
         "aionode.cli._commands.router:router_command",
         "Connect machines, as rmw_zenohd does.",
@@ -57,17 +60,17 @@ NOUNS = {
 UNWRITABLE = {
     getattr(errno, name, errno.EIO) for name in ("ENOSPC", "EDQUOT", "EFBIG", "EIO", "EBADF")
 }
-"""What the system says of a file or terminal that takes nothing more."""
+"""The errors of writing to a file or terminal that accepts no more data."""
 
 INTERRUPTED = 130
-"""The exit status of a program that Ctrl-C ended before it was done, as shells know it."""
+"""The exit status of a program that Ctrl-C interrupted, by the convention of shells."""
 
 
 class LateGroup(click.Group):
     """A group whose commands are imported when they are used.
 
     Args:
-        late: For each command, where it is (``module:attribute``) and one line of help.
+        late: For each command, its location (``module:attribute``) and one line of help.
     """
 
     def __init__(self, *args: Any, late: Mapping[str, tuple[str, str]], **options: Any) -> None:
@@ -89,9 +92,9 @@ class LateGroup(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Return the command that is meant; one that is not there is answered with a similar one.
+        """Return the named command; the error for an unknown one suggests a similar name.
 
-        click itself looks only among the commands that are imported.
+        Click itself searches only the commands that are already imported.
         """
         try:
             return super().resolve_command(ctx, args)
@@ -103,7 +106,7 @@ class LateGroup(click.Group):
             raise
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command; a reader of its output that has enough ends it quietly."""
+        """Run the command; it ends quietly when the reader of its output goes away."""
         try:
             return super().invoke(ctx)
         except BrokenPipeError:
@@ -124,26 +127,26 @@ class LateGroup(click.Group):
 )
 @click.version_option(package_name="aionode", prog_name="aionode")
 def root() -> None:
-    """Look at nodes, topics, services, parameters and actions, and take part.
+    """Inspect and use nodes, topics, services, parameters and actions.
 
-    The words, options and output are those of ros2. Each command that prints data has --json, which
-    prints one record per line. There is no daemon: every answer is of this moment.
+    Commands, options and output are those of ros2. Every command that prints data has --json, which
+    prints one record per line. There is no daemon: every answer is current.
     """
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit status.
 
-    Errors are one line on stderr. A reader that goes away, as ``head`` does, ends a command
-    quietly; a full disk is an error.
+    Errors are one line on stderr. When the reader goes away, as ``head`` does, the command
+    ends quietly; a full disk is an error.
 
     Args:
-        argv: The arguments without the name of the program; those of the process without it.
+        argv: The arguments without the program name; default: those of the process.
     """
     open_missing()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            # What a terminal or a pipe cannot show is shown as its number, and ends nothing.
+            # Characters that the stream cannot encode are printed as escapes, not raised.
             stream.reconfigure(errors="backslashreplace")
     status = run(argv)
     try:
@@ -175,7 +178,7 @@ def run(argv: Sequence[str] | None) -> int:
         if error.errno not in UNWRITABLE:
             raise
         discard(sys.stdout)
-        return report(unwritable(error), 1)  # by click: help, and scripts of completion
+        return report(unwritable(error), 1)  # written by click: help, completion scripts
     return status if isinstance(status, int) else 0
 
 
@@ -190,7 +193,7 @@ def report(text: str, status: int) -> int:
 
 
 def usage_text(error: click.UsageError) -> str:
-    """Return in one line what is wrong with the arguments, and where to read what fits."""
+    """Return in one line what is wrong with the arguments, and which help describes them."""
     where = error.ctx.command_path if error.ctx is not None else "aionode"
     problem = limited(" ".join(error.format_message().split()))
     return f"{where}: {problem} See '{where} --help'."

@@ -1,6 +1,6 @@
-"""Time: points, spans, and the clocks that tell and await them.
+"""Points in time, durations, and the clocks that show and await them.
 
-The only package that reads the clocks of the machine.
+No other package reads the clocks of the machine.
 """
 
 from aionode.clock._clocks import (
@@ -12,7 +12,6 @@ from aionode.clock._clocks import (
     SteadyClock,
     TimeJump,
 )
-from aionode.clock._manual import ManualTime
 from aionode.clock._time_base import Alarm, MachineTime, TimeBase, perf_ns
 from aionode.clock._values import CONST_INFINITE_NS, S_TO_NS, ClockType, Duration, Infinite, Time
 
@@ -28,7 +27,6 @@ __all__ = [
     "JumpHandle",
     "JumpThreshold",
     "MachineTime",
-    "ManualTime",
     "ROSClock",
     "SteadyClock",
     "Time",

@@ -1,9 +1,4 @@
-"""Clocks, and callbacks for their jumps.
-
-Telling those who ask when a clock leaps, or changes where it has its time from.
-
-Clocks: they tell the time, let one await it, and can be driven by a simulation.
-"""
+"""Clocks, which show the time and can be awaited, and callbacks for their jumps."""
 
 from __future__ import annotations
 
@@ -35,7 +30,7 @@ __all__ = [
 
 
 class ClockChange(IntEnum):
-    """What happened to the source of a clock's time; the numbers are rcl's."""
+    """Whether the source of a clock's time changed; the values are rcl's."""
 
     ROS_TIME_NO_CHANGE = 1
     ROS_TIME_ACTIVATED = 2
@@ -47,11 +42,11 @@ SWITCHES = (ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED)
 
 
 class TimeJump:
-    """One leap of a clock.
+    """One jump of a clock.
 
     Attributes:
         clock_change: Whether the source of time changed.
-        delta: How far the time leapt, negative for a leap back; zero when the source changed.
+        delta: How far the time jumped, negative for a jump back; zero if the source changed.
 
     Raises:
         ValueError: `clock_change` is not a `ClockChange`.
@@ -68,15 +63,15 @@ class TimeJump:
 
 
 class JumpThreshold:
-    """Which leaps matter.
+    """Which jumps call the callbacks.
 
     Args:
-        min_forward: The shortest leap forwards that counts, a positive duration, or None for none.
-        min_backward: The shortest leap back that counts, a negative duration, or None for none.
-        on_clock_change: Whether switching ROS time on or off counts.
+        min_forward: The shortest jump forward to report, a positive duration, or None for none.
+        min_backward: The shortest jump back to report, a negative duration, or None for none.
+        on_clock_change: Whether to report that ROS time was switched on or off.
 
     Raises:
-        ValueError: A duration has the wrong sign, or nothing counts.
+        ValueError: A duration has the wrong sign, or no jump would be reported.
     """
 
     __slots__ = ("min_backward", "min_forward", "on_clock_change")
@@ -99,7 +94,7 @@ class JumpThreshold:
         self.on_clock_change = on_clock_change
 
     def is_met_by(self, jump: TimeJump) -> bool:
-        """Whether `jump` counts."""
+        """Whether `jump` is to be reported."""
         if jump.clock_change in SWITCHES:
             return self.on_clock_change
         if jump.delta.nanoseconds > 0:
@@ -108,7 +103,7 @@ class JumpThreshold:
 
 
 class JumpHandle:
-    """A pair of callbacks on a clock; `unregister()`, or leaving it as a context, removes them."""
+    """A pair of jump callbacks of a clock; `unregister()`, or leaving ``with``, removes them."""
 
     __slots__ = ("_jumps", "post_callback", "pre_callback", "threshold")
 
@@ -130,7 +125,7 @@ class JumpHandle:
         self.post_callback = post_callback
 
     def unregister(self) -> None:
-        """Make sure that the callbacks are not called any more; twice does no harm."""
+        """Remove the callbacks; calling it again has no effect."""
         self._jumps.remove(self)
 
     def __enter__(self) -> Self:
@@ -146,7 +141,7 @@ class JumpHandle:
 
 
 class Jumps:
-    """The jump callbacks of one clock, called in the order in which they came."""
+    """The jump callbacks of one clock, called in order of registration."""
 
     __slots__ = ("_handles",)
 
@@ -165,13 +160,13 @@ class Jumps:
         return handle
 
     def remove(self, handle: JumpHandle) -> None:
-        """Forget a pair of callbacks."""
+        """Remove a pair of callbacks."""
         self._handles.pop(handle, None)
 
     def make(self, change: ClockChange, delta_ns: int, move: Callable[[], None]) -> None:
-        """Leap: call those who care before, `move` the clock, call them after.
+        """Jump: call the pre callbacks concerned, `move` the clock, call the post callbacks.
 
-        An exception of a callback comes out, and the callbacks after it are not called.
+        An exception in a callback propagates, and the callbacks after it are not called.
         """
         if not self._handles:
             move()
@@ -191,28 +186,28 @@ MACHINE_TIME = MachineTime()
 
 
 class Clock:
-    """Tells the time and lets one await it.
+    """Shows the time, and can be awaited.
 
-    A clock of type ROS_TIME follows the system clock until ROS time is switched on; from then on it
-    stands still except when it is set, which a node with `use_sim_time` does on each `/clock`
+    A clock of type ROS_TIME follows the system clock until ROS time is switched on. From then on it
+    stands still except when it is set, which a node with `use_sim_time` does for each `/clock`
     message.
 
     Args:
-        clock_type: Which time it tells. With ROS_TIME a `ROSClock` is made.
-        time_base: Where the time comes from; the machine's clocks unless a test brings its own.
+        clock_type: Which time it shows. With ROS_TIME a `ROSClock` is created.
+        time_base: Where the time comes from; by default the machine's clocks.
 
     Raises:
         TypeError: `clock_type` is not a `ClockType`.
         ValueError: It is UNINITIALIZED.
     """
 
-    def __new__(  # noqa: PYI034  # what it makes need not be a Self
+    def __new__(  # noqa: PYI034  # may return a ROSClock
         cls,
         clock_type: ClockType = ClockType.SYSTEM_TIME,
         *,
         time_base: TimeBase | None = None,  # noqa: ARG004  # for __init__
     ) -> Clock:
-        """Make a `ROSClock` where ROS time is asked for, as rclpy does."""
+        """Create a `ROSClock` for ROS time, as rclpy does."""
         return super().__new__(ROSClock if clock_type is ClockType.ROS_TIME else cls)
 
     def __init__(
@@ -221,7 +216,7 @@ class Clock:
         expect_clock_type(clock_type, "Clock")
         if clock_type is ClockType.UNINITIALIZED:
             raise ValueError(
-                "Clock: clock_type is UNINITIALIZED; choose ROS, SYSTEM or STEADY time"
+                "Clock: clock_type is UNINITIALIZED; use ROS_TIME, SYSTEM_TIME or STEADY_TIME"
             )
         self._clock_type = clock_type
         self._base = MACHINE_TIME if time_base is None else time_base
@@ -231,19 +226,19 @@ class Clock:
         self._active = False
         self._destroyed = False
         self._override_ns = 0
-        self._timer_heap = TimerHeap()  # what waits for ROS time while that is set from outside
+        self._timer_heap = TimerHeap()  # alarms while ROS time is switched on
         self._jumps = Jumps()
-        self._sleepers: dict[asyncio.Future[None], None] = {}  # in the order they came
+        self._sleepers: dict[asyncio.Future[None], None] = {}  # in order of arrival
 
     @property
     def clock_type(self) -> ClockType:
-        """Which time this clock tells."""
+        """Which time this clock shows."""
         return self._clock_type
 
     def __repr__(self) -> str:
         return f"Clock(clock_type={self._clock_type.name})"
 
-    # Telling and awaiting the time.
+    # Reading and awaiting the time
 
     def now(self) -> Time:
         """Return the current time of this clock."""
@@ -254,13 +249,13 @@ class Clock:
         return self._read()
 
     async def sleep(self, duration_sec: float) -> None:
-        """Return when `duration_sec` seconds have passed on this clock, never earlier.
+        """Wait until `duration_sec` seconds have passed on this clock, never less.
 
-        Zero and less let everything else that is ready run once. With ROS time switched on, only
-        setting the clock lets time pass. Setting the machine's clock makes no difference.
+        Zero or less waits for one turn of the event loop. While ROS time is switched on, time
+        passes only when the clock is set. Setting the machine's clock has no effect.
 
         Raises:
-            EntityDestroyedError: The clock, or its node, was destroyed before (a RuntimeError).
+            EntityDestroyedError: The clock, or its node, is destroyed (a RuntimeError).
             asyncio.CancelledError: It was destroyed meanwhile.
             TimeSourceChangedError: ROS time was switched on or off meanwhile.
             OverflowError: `duration_sec` is infinite.
@@ -269,18 +264,18 @@ class Clock:
         if duration_sec <= 0:
             await checkpoint()
             return
-        duration_ns = round(duration_sec * S_TO_NS)  # cut off, it would be too short
+        duration_ns = round(duration_sec * S_TO_NS)  # truncating would make it too short
         if self._active:
             await self._sleep(self._override_ns + duration_ns, self._timer_heap.add)
         else:
             await self._sleep(self._base.steady_ns() + duration_ns, self._base.call_at)
 
     async def sleep_until(self, until: Time) -> None:
-        """Return when this clock shows `until` or later; if it does already, after one turn.
+        """Wait until this clock shows `until` or later; at least one turn of the event loop.
 
         Raises:
             ValueError: `until` belongs to another type of clock.
-            EntityDestroyedError: The clock, or its node, was destroyed before (a RuntimeError).
+            EntityDestroyedError: The clock, or its node, is destroyed (a RuntimeError).
             asyncio.CancelledError: It was destroyed meanwhile.
             TimeSourceChangedError: ROS time was switched on or off meanwhile.
         """
@@ -292,7 +287,7 @@ class Clock:
             )
         if self._read() >= until.nanoseconds:
             await checkpoint()
-        while self._read() < until.nanoseconds:  # again when the machine's clock was set back
+        while self._read() < until.nanoseconds:  # again if the machine's clock was set back
             await self._sleep(until.nanoseconds, self.call_at)
 
     async def _sleep(
@@ -314,15 +309,15 @@ class Clock:
 
     @property
     def follows_machine(self) -> bool:
-        """Whether alarms ring by themselves, and not because somebody sets the time."""
+        """Whether alarms fire by themselves, and not because the time is set."""
         return not self._active and isinstance(self._base, MachineTime)
 
     def call_at(self, when_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Have `callback` called when this clock shows `when_ns`.
+        """Call `callback` when this clock shows `when_ns`.
 
-        For timers, which look at the clock again then: it may show less if the machine's clock was
-        set back meanwhile. The alarm stays with the source of time it was set on, so it has to be
-        set anew when ROS time is switched on or off.
+        For timers, which then read the clock again, as it shows less if the machine's clock was set
+        back meanwhile. An alarm stays with its source of time, so it must be set again when ROS
+        time is switched on or off.
         """
         if self._active:
             return self._timer_heap.add(when_ns, callback)
@@ -331,18 +326,18 @@ class Clock:
         left_ns = when_ns - self._base.system_ns()
         return self._base.call_at(self._base.steady_ns() + left_ns, callback)
 
-    # ROS time.
+    # ROS time
 
     @property
     def ros_time_is_active(self) -> bool:
-        """Whether the time is set from outside, as in a simulation."""
+        """Whether ROS time is switched on: the time is set from outside, as in a simulation."""
         return self._active
 
     def set_ros_time_active(self, enabled: bool) -> None:
-        """Switch ROS time on or off: called by the node, for `use_sim_time`.
+        """Switch ROS time on or off; the node calls it for `use_sim_time`.
 
-        Switched on, the clock shows the time it was last set to, 0 if it never was. Who sleeps on
-        the clock gets a `TimeSourceChangedError`. Switching to what is already so does nothing.
+        While on, the clock shows the time it was last set to, or 0 if it never was. A switch raises
+        TimeSourceChangedError in pending sleeps. Without a change it does nothing.
 
         Raises:
             TypeError: This clock is not of type ROS_TIME.
@@ -361,20 +356,20 @@ class Clock:
             if not sleeper.done():
                 sleeper.set_exception(TimeSourceChangedError(active=enabled))
 
-    # rclpy's name, which code that drives a clock without a node uses.
+    # rclpy's name, for code that drives a clock without a node
     _set_ros_time_is_active = set_ros_time_active
 
     def set_ros_time_override(self, time: Time) -> None:
         """Set the time that this clock shows while ROS time is switched on.
 
-        Sleepers and timers whose time has come then are woken.
+        Wakes sleeps and timers that are due then.
 
         Raises:
             TypeError: `time` is not a `Time`, or this clock is not of type ROS_TIME.
         """
         self._expect_ros_time()
         if not isinstance(time, Time):
-            raise TypeError(f"set_ros_time_override: got {brief(time)}; a Time is needed")
+            raise TypeError(f"set_ros_time_override: got {brief(time)}; pass a Time")
         if not self._active:
             self._override_ns = time.nanoseconds
             return
@@ -393,12 +388,12 @@ class Clock:
         pre_callback: Callable[[], None] | None = None,
         post_callback: Callable[[TimeJump], None] | None = None,
     ) -> JumpHandle:
-        """Have callbacks called before and after each leap of ROS time that meets `threshold`.
+        """Call callbacks before and after each jump of ROS time that meets `threshold`.
 
         They must not block. If one raises, those registered after it are not called.
 
         Raises:
-            ValueError: Neither callback is given, or one cannot be called.
+            ValueError: Neither callback is given, or one is not callable.
         """
         return self._jumps.add(threshold, pre_callback, post_callback)
 
@@ -408,24 +403,24 @@ class Clock:
     def _expect_ros_time(self) -> None:
         if self._clock_type is not ClockType.ROS_TIME:
             raise TypeError(
-                f"{self!r}: only a clock of type ROS_TIME can be set; make one with ROSClock()"
+                f"{self!r}: only a clock of type ROS_TIME can be set; create one with ROSClock()"
             )
 
-    # The end.
+    # End
 
     def destroy(self) -> None:
-        """Cancel all sleeps; later ones are refused. The time can still be told."""
+        """Cancel all sleeps and refuse later ones. The time can still be read."""
         self._destroyed = True
         for sleeper in self._sleepers:
             sleeper.cancel()
 
     def _refuse_if_destroyed(self) -> None:
         if self._destroyed:
-            raise EntityDestroyedError(repr(self), "slept on")
+            raise EntityDestroyedError(repr(self), "sleep")
 
 
 class ROSClock(Clock):
-    """A clock that tells ROS time: the system's until it is driven from outside."""
+    """A clock that shows ROS time: the system's until ROS time is switched on."""
 
     def __init__(
         self, clock_type: ClockType = ClockType.ROS_TIME, *, time_base: TimeBase | None = None
@@ -434,7 +429,7 @@ class ROSClock(Clock):
 
 
 class SteadyClock(Clock):
-    """A clock that never goes back and whose zero means nothing: for spans, not for stamps."""
+    """A clock that never goes back, with an arbitrary zero: for durations, not for stamps."""
 
     def __init__(
         self, clock_type: ClockType = ClockType.STEADY_TIME, *, time_base: TimeBase | None = None

@@ -1,7 +1,7 @@
-"""Where time comes from: the machine, or a test that moves it by hand.
+"""Where time comes from: the machine, or a test that advances it by hand.
 
-Everything in aionode that asks for the time or waits for it does so through a `TimeBase`, so a
-test can put its own in place of the machine's.
+Everything in aionode that reads the time or waits for it does so through a `TimeBase`, so that a
+test can replace the machine's.
 """
 
 from __future__ import annotations
@@ -20,24 +20,24 @@ if TYPE_CHECKING:
 
 __all__ = ["Alarm", "MachineTime", "TimeBase", "perf_ns"]
 
-perf_ns = time.perf_counter_ns  # for statistics only: it does not follow a manual clock
+perf_ns = time.perf_counter_ns  # for statistics only: a manual clock does not drive it
 
 # uvloop rounds a wait to the nearest millisecond, so half of them end early; selector loops are
-# early by at most the 1 ns they add for rounding. What is left is waited for in turns of the loop
-# if that is shorter than one more sleep, and in a sleep that uvloop cannot round to nothing if not.
+# early by at most the 1 ns they add for rounding. The rest is spent in turns of the loop if it is
+# shorter than SPIN_S, and otherwise in a sleep that is too long for uvloop to round to zero.
 SPIN_S = 50e-6
 SHORTEST_SLEEP_S = 1e-3
 
 
 class Alarm(Protocol):
-    """A callback that waits for its time."""
+    """A callback that is called at a certain time."""
 
     def cancel(self) -> None:
-        """Make sure that the callback is not called; doing it twice does no harm."""
+        """Cancel the callback; calling it again has no effect."""
 
 
 class TimeBase(ABC):
-    """A source of time, and of callbacks at a time."""
+    """A source of time, and of callbacks at a certain time."""
 
     @abstractmethod
     def system_ns(self) -> int:
@@ -51,14 +51,14 @@ class TimeBase(ABC):
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
         """Have the running loop call `callback` at `steady_ns` of the steady clock, never earlier.
 
-        A time in the past means: in one of the next turns of the loop, never at once.
+        For a time in the past it is called in one of the next turns of the loop, never at once.
         """
 
 
 class MachineTime(TimeBase):
-    """The clocks of the machine: UTC, and the time since some moment before this process began."""
+    """The clocks of the machine: UTC, and a monotonic clock with an arbitrary zero."""
 
-    # Python's own functions: each message is stamped with one, and a method would double its cost.
+    # Python's functions themselves: every message is stamped, and a method would double the cost.
     system_ns = staticmethod(time.time_ns)
     steady_ns = staticmethod(time.monotonic_ns)
 
@@ -70,7 +70,7 @@ class MachineTime(TimeBase):
         loop = asyncio.get_running_loop()
         alarms = kernel_alarms(loop)
         if alarms is not None:
-            with suppress(OSError):  # no file to spare just now
+            with suppress(OSError):  # too many open files just now
                 return alarms.add(steady_ns, callback)
         return LoopAlarm(loop, steady_ns, callback)
 
@@ -81,7 +81,7 @@ KERNEL_ALARMS: WeakKeyDictionary[asyncio.AbstractEventLoop, KernelAlarms | None]
 
 
 def kernel_alarms(loop: asyncio.AbstractEventLoop) -> KernelAlarms | None:
-    """Return the kernel's alarms for `loop`, or None where there are none."""
+    """Return the kernel's alarms for `loop`, or None if they are not available."""
     try:
         return KERNEL_ALARMS[loop]
     except KeyError:
@@ -95,7 +95,7 @@ def kernel_alarms(loop: asyncio.AbstractEventLoop) -> KernelAlarms | None:
 
 
 class LoopAlarm:
-    """A timer of the event loop that goes back to sleep when the loop is early."""
+    """A timer of the event loop that sleeps again if the loop wakes it early."""
 
     __slots__ = ("_callback", "_handle", "_loop", "_when_ns")
 
@@ -118,5 +118,5 @@ class LoopAlarm:
         self._handle = self._loop.call_later(delay_s, self._check)
 
     def cancel(self) -> None:
-        """Make sure that the callback is not called; doing it twice does no harm."""
+        """Cancel the callback; calling it again has no effect."""
         self._handle.cancel()

@@ -1,4 +1,4 @@
-"""Callbacks in the order of their times: a heap that forgets what was cancelled."""
+"""Pending callbacks, earliest first: a heap that drops cancelled entries."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ if TYPE_CHECKING:
 
 __all__ = ["Entry", "TimerHeap"]
 
-SMALL = 64  # up to this many cancelled entries are not worth a clean-up
+SMALL = 64  # up to this many cancelled entries are not worth removing
 
 
 class Entry:
-    """One callback waiting for its time; `cancel()` takes it off the agenda."""
+    """One pending callback."""
 
     __slots__ = ("callback", "heap")
 
     def __init__(self, heap: TimerHeap, callback: Callable[[], None]) -> None:
-        self.heap: TimerHeap | None = heap  # None once it is off the heap
+        self.heap: TimerHeap | None = heap  # None once it has left the heap
         self.callback: Callable[[], None] | None = callback
 
     def cancel(self) -> None:
-        """Make sure that the callback is not called; doing it twice does no harm."""
+        """Cancel the callback; calling it again has no effect."""
         if self.callback is not None:
             self.callback = None
             if self.heap is not None:
@@ -33,7 +33,7 @@ class Entry:
 
 
 class TimerHeap:
-    """What is to be called when: earliest first, and first come first served at one time."""
+    """Pending callbacks: earliest first, and in order of arrival at the same time."""
 
     __slots__ = ("_cancelled", "_heap", "_order")
 
@@ -46,13 +46,13 @@ class TimerHeap:
         return len(self._heap) - self._cancelled
 
     def add(self, when_ns: int, callback: Callable[[], None]) -> Entry:
-        """Have `callback` called by the first `fire()` at or after `when_ns`."""
+        """Have the first `fire()` at or after `when_ns` call `callback`."""
         entry = Entry(self, callback)
         heappush(self._heap, (when_ns, next(self._order), entry))
         return entry
 
     def first_ns(self) -> int | None:
-        """Return the time of the earliest callback, or None when there is none."""
+        """Return the time of the earliest callback, or None if there is none."""
         heap = self._heap
         while heap:
             if heap[0][2].callback is not None:
@@ -62,9 +62,9 @@ class TimerHeap:
         return None
 
     def fire(self, now_ns: int) -> None:
-        """Call everything due at `now_ns`; what these callbacks add has to wait for the next.
+        """Call everything due at `now_ns`; entries added meanwhile wait for the next call.
 
-        An exception of a callback comes out; the others are called the next time.
+        An exception in a callback propagates; the remaining ones are called the next time.
         """
         heap = self._heap
         due: deque[Entry] = deque()
@@ -79,7 +79,7 @@ class TimerHeap:
             while due:
                 entry = due.popleft()
                 callback = entry.callback
-                if callback is not None:  # an earlier one of this round may have cancelled it
+                if callback is not None:  # an earlier callback may have cancelled it
                     entry.callback = None
                     callback()
         finally:
@@ -88,7 +88,7 @@ class TimerHeap:
                 heappush(self._heap, (now_ns, next(self._order), entry))
 
     def note_cancelled(self) -> None:
-        """Count one more dead entry, and sweep when most are dead."""
+        """Count a cancelled entry; remove all of them when they are the majority."""
         self._cancelled += 1
         if self._cancelled > SMALL and self._cancelled * 2 > len(self._heap):
             self._heap = [item for item in self._heap if item[2].callback is not None]

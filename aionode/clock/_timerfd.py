@@ -1,7 +1,7 @@
-"""Alarms that ring within 0.1 ms, from a timer of the kernel (Linux).
+"""Alarms that are at most 0.1 ms late, from a timer of the kernel (Linux).
 
-Event loops count in milliseconds: uvloop is up to 1 ms late, and asyncio up to 2, because it rounds
-up before `epoll` rounds up again. A timer of 1 kHz loses ticks by that. A `timerfd` is a file that
+Event loops count in milliseconds: uvloop is up to 1 ms late, and asyncio up to 2 ms, as it rounds
+up before `epoll` rounds up again, so a timer of 1 kHz would lose ticks. A `timerfd` is a file that
 becomes readable at a time given in nanoseconds, and loops wait for files without rounding.
 """
 
@@ -33,10 +33,10 @@ TFD_TIMER_ABSTIME = 1
 class KernelAlarms(TimerHeap):
     """The alarms of one event loop, all on one `timerfd`.
 
-    The file is open only while an alarm is waiting, so nothing is left behind in the process.
+    The file is open only while an alarm is pending, so the process is left with no open file.
 
     Raises:
-        OSError: The system has no `timerfd`, or no file to spare.
+        OSError: The system has no `timerfd`, or the process has too many open files.
         NotImplementedError: The loop cannot wait for files.
     """
 
@@ -44,14 +44,14 @@ class KernelAlarms(TimerHeap):
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         super().__init__()
-        self._loop = weakref.ref(loop)  # whose registry holds this object
+        self._loop = weakref.ref(loop)  # weak: the registry of loops holds this object
         self._fd = -1
-        self._set_ns = 0  # when the file will become readable; 0 when it will not
+        self._set_ns = 0  # when the file becomes readable; 0 if never
         self._spec = itimerspec()
         self._open(loop)
 
     def add(self, when_ns: int, callback: Callable[[], None]) -> Entry:
-        """Have `callback` called when the steady clock is at `when_ns`."""
+        """Call `callback` when the steady clock reaches `when_ns`."""
         loop = self._loop()
         if self._fd < 0 and loop is not None:
             self._open(loop)
@@ -60,7 +60,7 @@ class KernelAlarms(TimerHeap):
         return entry
 
     def note_cancelled(self) -> None:
-        """Let the file go with the last alarm."""
+        """Close the file after the last alarm was cancelled."""
         super().note_cancelled()
         if not len(self):
             self._close_soon()
@@ -68,7 +68,7 @@ class KernelAlarms(TimerHeap):
     def _open(self, loop: asyncio.AbstractEventLoop) -> None:
         fd = open_timer()
         try:
-            loop.add_reader(fd, self._ring)
+            loop.add_reader(fd, self._expired)
         except BaseException:
             os.close(fd)
             raise
@@ -77,15 +77,15 @@ class KernelAlarms(TimerHeap):
 
     def _set_for(self, when_ns: int) -> None:
         if not 0 < self._set_ns <= when_ns:
-            self._set_ns = max(when_ns, 1)  # 0 would switch it off
+            self._set_ns = max(when_ns, 1)  # 0 would disarm it
             set_timer(self._fd, self._set_ns, self._spec)
 
-    def _ring(self) -> None:
-        """Call what is due: the file became readable."""
+    def _expired(self) -> None:
+        """Call what is due, as the file became readable."""
         try:
-            os.read(self._fd, 8)  # a count, which has to be read to make it wait again
+            os.read(self._fd, 8)  # a count, which must be read before it can wait again
         except BlockingIOError:
-            return  # it was set to an earlier time just when it rang, and will ring again
+            return  # it was set to an earlier time just as it expired, and expires again
         self._set_ns = 0
         try:
             self.fire(time.monotonic_ns())
@@ -97,7 +97,7 @@ class KernelAlarms(TimerHeap):
                 self._set_for(next_ns)
 
     def _close_soon(self) -> None:
-        """Close the file unless an alarm comes from those who were woken just now."""
+        """Close the file in the next turn, unless a callback of this one sets an alarm."""
         loop = self._loop()
         if loop is None or loop.is_closed():
             self._close()
@@ -114,14 +114,14 @@ class KernelAlarms(TimerHeap):
             os.close(self._fd)
             self._fd = -1
 
-    __del__ = _close  # a loop that was closed over a waiting alarm takes this object with it
+    __del__ = _close  # for a loop that is closed with an alarm pending
 
 
 @cache
 def libc() -> Any:
     """Return the C library; Python has these functions itself from 3.13 on."""
     if sys.platform != "linux" or sys.maxsize < 2**32:
-        raise OSError(errno.ENOSYS, "timerfd: only used on Linux with 64 bits")
+        raise OSError(errno.ENOSYS, "timerfd: only used on 64-bit Linux")
     import ctypes
 
     return ctypes.CDLL(None, use_errno=True)
@@ -145,6 +145,6 @@ def itimerspec() -> Any:
 
 
 def set_timer(fd: int, when_ns: int, spec: Any) -> None:
-    """Let `fd` become readable when the monotonic clock is at `when_ns`; `spec` is written to."""
+    """Make `fd` readable when the monotonic clock reaches `when_ns`; `spec` is overwritten."""
     spec[2], spec[3] = divmod(when_ns, 1_000_000_000)
     libc().timerfd_settime(fd, TFD_TIMER_ABSTIME, spec, None)

@@ -1,4 +1,4 @@
-"""Points in time and spans of time, counted in whole nanoseconds."""
+"""Points in time and durations, in whole nanoseconds."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 __all__ = ["CONST_INFINITE_NS", "S_TO_NS", "ClockType", "Duration", "Infinite", "Time"]
 
 S_TO_NS = 1_000_000_000
-CONST_INFINITE_NS = 2**63 - 1  # what ROS counts as "for ever": the largest int64
+CONST_INFINITE_NS = 2**63 - 1  # what ROS treats as infinite: the largest int64
 
 
 def expect_clock_type(value: object, subject: str) -> None:
@@ -24,12 +24,12 @@ def expect_clock_type(value: object, subject: str) -> None:
 
 
 def total_ns(seconds: float, nanoseconds: float) -> int:
-    """Return the sum in nanoseconds; fractions of a nanosecond are cut off, as in rclpy."""
+    """Return the sum in nanoseconds; fractions are truncated, as in rclpy."""
     return int(seconds * S_TO_NS) + int(nanoseconds)
 
 
 class ClockType(IntEnum):
-    """Which clock a time was read from; the numbers are rcl's."""
+    """Which clock a time was read from; the values are rcl's."""
 
     UNINITIALIZED = 0
     ROS_TIME = 1
@@ -38,10 +38,10 @@ class ClockType(IntEnum):
 
 
 class Duration:
-    """A span of time, which may be negative.
+    """A duration, which may be negative.
 
     Raises:
-        OverflowError: The span does not fit a signed 64 bit number of nanoseconds (292 years).
+        OverflowError: It does not fit a signed 64-bit number of nanoseconds (292 years).
     """
 
     __slots__ = ("_ns",)
@@ -56,7 +56,7 @@ class Duration:
 
     @property
     def nanoseconds(self) -> int:
-        """The whole span in nanoseconds."""
+        """The duration in nanoseconds."""
         return self._ns
 
     def __repr__(self) -> str:
@@ -82,7 +82,7 @@ class Duration:
         return NotImplemented
 
     def __mul__(self, factor: float) -> Duration:
-        """Stretch the span; times infinity is `Infinite`, and whole factors are exact."""
+        """Multiply by a number; infinity gives `Infinite`, and whole numbers are exact."""
         if isinstance(factor, int):
             return Duration(nanoseconds=self._ns * factor)
         if not isinstance(factor, float):
@@ -91,9 +91,7 @@ class Duration:
             return Duration(nanoseconds=int(self._ns * factor))
         if factor == math.inf:
             return Infinite
-        raise ValueError(
-            f"Duration: cannot be multiplied with {factor}; a finite number or +inf fits"
-        )
+        raise ValueError(f"Duration: cannot be multiplied by {factor}; use a finite number or +inf")
 
     __rmul__ = __mul__
 
@@ -123,7 +121,7 @@ class Duration:
         return NotImplemented
 
     def to_msg(self) -> builtin_msg.Duration:
-        """Return the same span as a `builtin_interfaces/msg/Duration`."""
+        """Return the duration as a `builtin_interfaces/msg/Duration`."""
         from aionode.interfaces.builtin_interfaces.msg import Duration as Msg
 
         sec, nanosec = divmod(self._ns, S_TO_NS)
@@ -131,10 +129,10 @@ class Duration:
 
     @classmethod
     def from_msg(cls, msg: builtin_msg.Duration) -> Duration:
-        """Return the span that a `builtin_interfaces/msg/Duration` holds.
+        """Return the duration of a `builtin_interfaces/msg/Duration`.
 
         Raises:
-            TypeError: `msg` is of another type.
+            TypeError: `msg` has another type.
         """
         from aionode.interfaces.builtin_interfaces.msg import Duration as Msg
 
@@ -146,12 +144,12 @@ Infinite = Duration(nanoseconds=CONST_INFINITE_NS)
 
 
 class Time:
-    """A point in time of one type of clock; times of different types do not mix.
+    """A point in time on one type of clock; times of different types cannot be mixed.
 
     Raises:
         TypeError: `clock_type` is not a `ClockType`.
         ValueError: A part is negative.
-        OverflowError: The sum does not fit a signed 64 bit number of nanoseconds.
+        OverflowError: The sum does not fit a signed 64-bit number of nanoseconds.
     """
 
     __slots__ = ("_clock_type", "_ns")
@@ -187,7 +185,7 @@ class Time:
         return self._clock_type
 
     def seconds_nanoseconds(self) -> tuple[int, int]:
-        """Return whole seconds, and the nanoseconds beyond them."""
+        """Return whole seconds, and the remaining nanoseconds."""
         return divmod(self._ns, S_TO_NS)
 
     def __repr__(self) -> str:
@@ -240,7 +238,7 @@ class Time:
         return NotImplemented
 
     def _same(self, other: Time, action: str) -> int:
-        """Return the nanoseconds of `other` if it is of the same type of clock."""
+        """Return the nanoseconds of `other`, if its clock type is the same."""
         if self._clock_type is not other._clock_type:
             mine, theirs = self._clock_type.name, other._clock_type.name
             raise TypeError(
@@ -249,7 +247,7 @@ class Time:
         return other._ns
 
     def to_msg(self) -> builtin_msg.Time:
-        """Return the same point as a `builtin_interfaces/msg/Time`; the clock type is lost."""
+        """Return the time as a `builtin_interfaces/msg/Time`, which has no clock type."""
         from aionode.interfaces.builtin_interfaces.msg import Time as Msg
 
         sec, nanosec = divmod(self._ns, S_TO_NS)
@@ -257,10 +255,10 @@ class Time:
 
     @classmethod
     def from_msg(cls, msg: builtin_msg.Time, clock_type: ClockType = ClockType.ROS_TIME) -> Time:
-        """Return the point that a `builtin_interfaces/msg/Time` holds, on a clock of `clock_type`.
+        """Return the time of a `builtin_interfaces/msg/Time`, on a clock of `clock_type`.
 
         Raises:
-            TypeError: `msg` is of another type.
+            TypeError: `msg` has another type.
             ValueError: It holds a negative time.
         """
         from aionode.interfaces.builtin_interfaces.msg import Time as Msg
@@ -270,10 +268,10 @@ class Time:
 
 
 def time_at(ns: int, clock_type: ClockType) -> Time:
-    """Return a `Time` without looking at its parts: for clocks, which know that they fit."""
+    """Return a `Time` without checking the value, for clocks, whose values always fit."""
     time = Time.__new__(Time)
-    time._ns = ns  # noqa: SLF001 - a second constructor, on the path of every stamp
-    time._clock_type = clock_type  # noqa: SLF001
+    time._ns = ns
+    time._clock_type = clock_type
     return time
 
 
@@ -281,6 +279,4 @@ def expect_message(msg: object, expected: type, name: str) -> None:
     """Raise `TypeError` unless `msg` is of the message class `expected`."""
     if not isinstance(msg, expected):
         given = type(msg).__name__
-        raise TypeError(
-            f"{name}.from_msg: got a {given}; a builtin_interfaces/msg/{name} is needed"
-        )
+        raise TypeError(f"{name}.from_msg: got a {given}; pass a builtin_interfaces/msg/{name}")

@@ -1,4 +1,4 @@
 """The entities of a node: publishers, subscriptions, services, clients, timers.
 
-They hold typed messages and know their transport only through `aionode.transport.base`.
+They handle typed messages, and reach transports only through `aionode.transport.base`.
 """

@@ -61,7 +61,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         self._check = checker(srv_type.Request)
         self._now_ns = time_base.system_ns
         self._answers: set[asyncio.Future[Any]] = set()
-        self._futures = Futures(self.subject)
+        self._futures = Futures(self._subject)
         self._warned = False
 
     def __repr__(self) -> str:
@@ -78,7 +78,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
     service_name = srv_name
 
     def service_is_ready(self) -> bool:
-        """Whether a server is matched now."""
+        """Return whether a server is matched now."""
         return self._graph_entry.count_matched(EndpointKind.SERVER) > 0
 
     @asks
@@ -86,16 +86,16 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         """Wait until a server is matched.
 
         Args:
-            timeout_sec: How long at most, in seconds; None waits for ever.
+            timeout_sec: The longest wait in seconds; None waits for ever.
 
         Returns:
-            True when a server is there, False when `timeout_sec` has passed.
+            True once a server is matched, False if none was within `timeout_sec`.
 
         Raises:
-            EntityDestroyedError: the client was destroyed before.
-            CancelledError: the client was destroyed while it waited.
+            EntityDestroyedError: the client was already destroyed (a RuntimeError).
+            CancelledError: the client was destroyed during the wait.
         """
-        self.refuse_if_destroyed()
+        self._refuse_if_destroyed()
         try:
             async with asyncio.timeout(timeout_sec):
                 await self._graph_entry.until(self.service_is_ready)
@@ -106,26 +106,26 @@ class Client(Entity, Generic[RequestT, ResponseT]):
     async def call(self, request: RequestT, timeout_sec: float | None = None) -> ResponseT:
         """Send `request` and wait for the response.
 
-        Without a server nothing answers, so limit the wait: with `timeout_sec`, or with
+        Without a server no answer comes, so limit the wait with `timeout_sec` or
         `asyncio.timeout`, or wait for the service first. A call that is cancelled or times out is
-        forgotten on both sides: a server that has not begun does not serve it, and a late reply
-        goes nowhere. With several servers the first answer counts.
+        dropped on both sides: a server that has not started it never does, and a late reply is
+        ignored. If there are several servers, the first answer counts.
 
         Args:
-            request: An instance of ``srv_type.Request``; it may be changed after the call began.
-            timeout_sec: How long at most, in seconds; None waits for ever.
+            request: An instance of ``srv_type.Request``; it may be changed once the call has begun.
+            timeout_sec: The longest wait in seconds; None waits for ever.
 
         Raises:
             TypeError: `request` is of another type.
             MessageError: a value does not fit its field.
-            ServiceError: the handler failed; with type and text of its exception.
+            ServiceError: the handler failed; carries the type and text of its exception.
             ServiceUnavailableError: the server went away before it answered (a ServiceError).
             RequestTimeoutError: `timeout_sec` has passed (a TimeoutError).
-            EntityDestroyedError: the client was destroyed before the call.
+            EntityDestroyedError: the client was already destroyed (a RuntimeError).
             CancelledError: the client was destroyed during the call.
         """
         if self.destroyed:
-            self.refuse_if_destroyed("called")
+            self._refuse_if_destroyed("call service")
         if type(request) is not self.srv_type.Request:
             self._check(request)
         began_ns = perf_ns()
@@ -157,38 +157,38 @@ class Client(Entity, Generic[RequestT, ResponseT]):
     def call_async(self, request: RequestT) -> asyncio.Future[ResponseT]:
         """Send `request`, and return a future of the response, as in rclpy.
 
-        The future is asyncio's: it can be awaited, `add_done_callback` tells of its end, `result`
-        gives the response, or raises what `call` raises. Cancelling it forgets the call; so does
-        the end of the client. Before the node runs it waits for that.
+        It is an asyncio future: await it, or use `add_done_callback`; `result` returns the
+        response or raises what `call` raises. Cancelling it cancels the call, and destroying the
+        client cancels both. A call made before the node runs is sent when the node starts.
 
         Args:
             request: An instance of ``srv_type.Request``.
 
         Raises:
             EntityDestroyedError: the client was destroyed (a RuntimeError).
-            RuntimeError: no event loop runs.
+            RuntimeError: no event loop is running.
         """
-        self.refuse_if_destroyed("called")
+        self._refuse_if_destroyed("call service")
         return self._futures.begin(self.call(request))
 
-    def start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:
-        """Begin the calls that were made before the node ran."""
-        task = super().start(tasks)
+    def _start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:
+        """Send the calls that were made before the node ran."""
+        task = super()._start(tasks)
         self._futures.start(tasks)
         return task
 
     async def _exchange(self, request: RequestT) -> Any:
         """Send through every transport and return the first answer."""
-        exchange = self.begin(request)
+        exchange = self._begin(request)
         try:
             return await exchange.answer
         finally:
             exchange.cancel()
 
-    def begin(self, request: RequestT) -> Exchange:
-        """Send `request` to the servers that are there now, and return what takes the answer.
+    def _begin(self, request: RequestT) -> Exchange:
+        """Send `request` to the servers matched now, and return what takes the answer.
 
-        For requests that are to go on when their sender is cancelled.
+        For requests that must outlive the task that sends them.
 
         Raises:
             TypeError: `request` is of another type.
@@ -229,10 +229,11 @@ class Client(Entity, Generic[RequestT, ResponseT]):
             )
 
     def _close(self) -> None:
-        """Withdraw the client, and cancel its waits and calls."""
+        """Withdraw the client; cancel its calls, and the tasks that wait for a server."""
         self._graph_entry.close()
-        for answer in list(self._answers):  # first, or it would look as if the servers had gone
-            answer.cancel(f"{self.subject}: destroyed")
+        # First, so that the calls do not fail as if the servers had gone.
+        for answer in list(self._answers):
+            answer.cancel(f"{self._subject}: destroyed")
         self._futures.close()
         for requester in self._requesters:
             requester.close()
@@ -241,18 +242,18 @@ class Client(Entity, Generic[RequestT, ResponseT]):
 class Exchange:
     """The client's end of one call: the first answer of any transport counts.
 
-    With no server at the beginning there is nobody who could go away, so the call goes on waiting.
+    A call that began without any server stays open, since no server can go away.
 
     Args:
         service: Name of the service.
-        servers: How many servers there are.
-        answers: Those that the client waits for; this one is among them until it is there.
+        servers: How many servers were matched when the call began.
+        answers: The client's open answers; this one is among them until `cancel`.
 
     Attributes:
-        answer: The response, or the error in its place. Awaiting it directly, a cancelled task
-            cancels it, too; `asyncio.shield` keeps it.
-        calls: What was sent, through each transport.
-        open: How many of these may still answer.
+        answer: The response, or the error in its place. Cancelling a task that awaits it directly
+            cancels it too, unless it is shielded by `asyncio.shield`.
+        calls: The request under way in each transport.
+        open: How many of `calls` may still answer.
     """
 
     def __init__(self, service: str, servers: int, answers: set[asyncio.Future[Any]]) -> None:
@@ -275,15 +276,15 @@ class Exchange:
             self.answer.set_exception(error)
 
     def end(self) -> None:
-        """Note that no answer will come any more through one transport."""
+        """Mark one transport as finished: no answer will come through it any more."""
         self.open -= 1
         if self.open == 0 and not self.answer.done():
             self.answer.set_exception(ServiceUnavailableError(self._service))
 
     def cancel(self) -> None:
-        """Forget the call; a server that has not begun need not serve it."""
+        """Drop the call: a server that has not started it need not, and a reply is ignored."""
         self._answers.discard(self.answer)
         if not self.answer.cancel() and not self.answer.cancelled():
-            self.answer.exception()  # looked at, so that asyncio does not report it
+            self.answer.exception()  # retrieved, so that asyncio does not report it
         for call in self.calls:
             call.cancel()

@@ -33,7 +33,7 @@ class Publisher(Entity, Generic[MsgT]):
     Attributes:
         msg_type: The class of its messages.
         qos_profile: Its profile.
-        stats: What it sent, and which way.
+        stats: How much it sent, and by which routes.
     """
 
     def __init__(
@@ -70,22 +70,22 @@ class Publisher(Entity, Generic[MsgT]):
     def publish(self, msg: MsgT | bytes | bytearray | memoryview) -> None:
         """Hand `msg` to every matched subscription; never blocks and never waits.
 
-        The object may be changed and published again at once: readers have a snapshot. A full
+        The object may be changed and published again at once: readers get a snapshot. A full
         KEEP_LAST queue drops its oldest message and counts it. To wait for slow readers instead,
-        subscribe with KEEP_ALL and `await drain()` before publishing on.
+        subscribe with KEEP_ALL and `await drain()` before the next message.
 
-        In place of a message it takes one as CDR bytes, such as a subscription with ``raw=True``
-        received.
+        The message may also be given as CDR bytes, for example as received by a subscription
+        with ``raw=True``.
 
-        It may be called in any thread, such as that of an offloaded callback: outside the thread
-        of the node's event loop it waits until that loop has taken the message.
+        It may be called from any thread, such as that of an offloaded callback. Outside the event
+        loop's thread it blocks until the loop has taken the message.
 
         Raises:
             TypeError: `msg` is not of this publisher's type.
-            MessageError: a value does not fit its field; nobody got the message.
-            DecodeError: the bytes are no message of this publisher's type (a ValueError).
-            QueueFullError: a reliable KEEP_ALL subscription of this process is full; nobody got
-                the message.
+            MessageError: a value does not fit its field; nothing was sent.
+            DecodeError: the bytes are not a message of this publisher's type (a ValueError).
+            QueueFullError: a reliable KEEP_ALL subscription of this process is full;
+                nothing was sent.
             EntityDestroyedError: the publisher or its node was destroyed (a RuntimeError).
         """
         thread = self._affinity.thread
@@ -93,7 +93,7 @@ class Publisher(Entity, Generic[MsgT]):
             self._affinity.wait_for(self.publish, msg)
             return
         if self.destroyed:
-            raise EntityDestroyedError(self.subject)
+            raise EntityDestroyedError(self._subject)
         if type(msg) is not self.msg_type:
             msg = self._fitting(msg)
         for writer in self._writers:
@@ -110,24 +110,24 @@ class Publisher(Entity, Generic[MsgT]):
             if not used:
                 self._check(msg)
         except MessageError as error:
-            error.add_note(f"published by {self.subject}")
+            error.add_note(f"published by {self._subject}")
             raise
         stats.published += 1
 
     def _fitting(self, msg: Any) -> Any:
-        """Return a message of another class, if it fits all the same; TypeError if it does not."""
+        """Return `msg`, decoded if it is bytes; TypeError if it is of an unrelated class."""
         if isinstance(msg, bytes | bytearray | memoryview):
-            from aionode.wire import cdr  # who publishes messages in process needs no codec
+            from aionode.wire import cdr  # most publishers never need the codec
 
             return cdr.decode(self.msg_type, msg)
-        self._check(msg)  # raises the TypeError; a subclass that fits may pass
+        self._check(msg)  # raises the TypeError; subclasses pass
         return msg
 
     async def drain(self) -> None:
         """Wait until every reliable KEEP_ALL reader has room and nothing is left to send.
 
-        What goes to other processes has been handed to the transport then. It does not wait for
-        callbacks. Cancelling is safe.
+        By then, messages to other processes have been handed to the transport. It does not wait
+        for callbacks. Cancelling is safe.
         """
         for writer in self._writers:
             await writer.drain()
@@ -137,7 +137,7 @@ class Publisher(Entity, Generic[MsgT]):
         return self._graph_entry.count_matched(EndpointKind.SUBSCRIPTION)
 
     async def wait_for_subscribers(self, count: int = 1) -> None:
-        """Wait until at least `count` subscriptions are matched; `asyncio.timeout` limits it."""
+        """Wait until at least `count` subscriptions are matched, without a limit of its own."""
         await self._graph_entry.until(lambda: self.get_subscription_count() >= count)
 
     def _close(self) -> None:

@@ -14,7 +14,6 @@ from aionode.endpoints._core.callback_runner import (
     is_unfinished,
 )
 from aionode.endpoints._core.entity import Entity
-from aionode.endpoints._core.inline_runner import InlineRunner
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints.stats import CallbackStats
 from aionode.message import Message, type_name
@@ -34,10 +33,10 @@ RequestT = TypeVar("RequestT", bound=Message)
 ResponseT = TypeVar("ResponseT", bound=Message)
 
 WAITING_REQUESTS = 10_000
-"""How many requests wait for a handler at most; one more is refused with an error at once.
+"""How many requests are queued at most; further ones are refused at once with an error.
 
-Unlike a message, a request has somebody who waits for it, so the depth of the profile does not
-silently throw any away.
+Unlike a message, a request has a client that waits for the answer, so none is silently dropped
+because of the depth of the profile.
 """
 
 ServiceCallback = (
@@ -52,7 +51,8 @@ class Service(Entity, Generic[RequestT, ResponseT]):
     Attributes:
         srv_type: The service class.
         qos_profile: Its profile.
-        stats: What became of the requests.
+        callback: What answers the requests.
+        stats: Counts and durations of its requests.
     """
 
     def __init__(
@@ -71,21 +71,18 @@ class Service(Entity, Generic[RequestT, ResponseT]):
         self.callback = callback
         self.stats = CallbackStats()
         self._graph_entry = graph_entry
-        self._registrations: list[Registration] = []
+        self._registrations: list[Registration] = []  # one for each transport
         self._message_queue: MessageQueue[Request] = MessageQueue(
             WAITING_REQUESTS, self.stats, keep_all=True
         )
-        self._concurrent = checked_concurrency(concurrent, self.subject)
+        self._concurrent = checked_concurrency(concurrent, self._subject)
         wants = accepts(
-            callback, 2, 1, subject=self.subject, wanted="(request, response) or (request)"
+            callback, 2, 1, subject=self._subject, wanted="(request, response) or (request)"
         )
         self._wants_response = wants == 2  # request and response
         self._runner = graph_entry.callbacks.make_runner(
             callback, self, self.stats, on_error=on_error, offload=offload
         )
-        self._inline_runner: InlineRunner[Request] | None = None
-        if self._runner.is_sync and self._concurrent is False:
-            self._inline_runner = InlineRunner(self._message_queue, self._handle)
 
     def __repr__(self) -> str:
         return (
@@ -100,19 +97,15 @@ class Service(Entity, Generic[RequestT, ResponseT]):
 
     service_name = srv_name
 
-    def add_registrations(self, registrations: Sequence[Registration]) -> None:
-        """Take what the transports returned for this server, to be closed with it."""
+    def _add_registrations(self, registrations: Sequence[Registration]) -> None:
+        """Keep what the transports returned for this server, to be closed with it."""
         self._registrations.extend(registrations)
 
-    def serve(self, request: Request, inline_deadline_ns: int = 0) -> None:
+    def _serve(self, request: Request, inline_deadline_ns: int = 0) -> None:
         """Take one request from a transport; see `Serve` for `inline_deadline_ns`."""
         if self.destroyed:
             request.drop()
-        elif (
-            inline_deadline_ns
-            and self._inline_runner is not None
-            and self._inline_runner.take(request, inline_deadline_ns)
-        ):
+        elif inline_deadline_ns and self._message_queue.take_inline(request, inline_deadline_ns):
             pass
         elif self._message_queue.has_room():
             self._message_queue.put(request)
@@ -120,9 +113,11 @@ class Service(Entity, Generic[RequestT, ResponseT]):
             self.stats.dropped += 1
             request.fail("QueueFullError", f"{WAITING_REQUESTS} requests are waiting already")
 
-    def run(self) -> Coroutine[Any, Any, None]:
-        """Return the loop that answers requests."""
-        return consume(self._message_queue, self._handle, self._concurrent, self._inline_runner)
+    def _run(self) -> Coroutine[Any, Any, None]:
+        """Return the coroutine that answers requests."""
+        return consume(
+            self._message_queue, self._handle, self._concurrent, inline=self._runner.is_sync
+        )
 
     def _handle(self, entered_ns: int, request: Request) -> Coroutine[Any, Any, None] | None:
         if request.cancelled:
@@ -156,7 +151,7 @@ class Service(Entity, Generic[RequestT, ResponseT]):
             self._fail(request, error)
 
     def _fail(self, request: Request, error: Exception) -> None:
-        """Tell the client of `error`, then do as `on_error` says."""
+        """Send `error` to the client, then apply `on_error`."""
         request.fail(type(error).__name__, str(error))
         self._runner.fail(error)
 
@@ -164,13 +159,13 @@ class Service(Entity, Generic[RequestT, ResponseT]):
         if not isinstance(response, self.srv_type.Response):
             given = "None" if response is None else f"a {type(response).__name__}"
             raise TypeError(
-                f"{self.subject}: the handler returned {given} in place of "
+                f"{self._subject}: the handler returned {given} in place of "
                 f"{type_name(self.srv_type.Response)}; it must end with `return response`"
             )
         request.reply(response)
 
     def _close(self) -> None:
-        """Withdraw the service; requests that wait are given up."""
+        """Withdraw the service, and drop the queued requests."""
         self._graph_entry.close()
         for registration in self._registrations:
             registration.close()

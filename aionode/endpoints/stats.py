@@ -1,7 +1,7 @@
 """What each entity counts and measures.
 
-All times are real time in nanoseconds, also where a test steps the clock: they tell what the
-machine spent, not what the program believes the time to be.
+All durations are real time in nanoseconds, even where a test steps the clock: they are what the
+machine spent, not what passed on the program's clock.
 """
 
 from __future__ import annotations
@@ -17,12 +17,11 @@ if TYPE_CHECKING:
 __all__ = ["CallbackStats", "ClientStats", "Distribution", "PublisherStats"]
 
 ID_DIGITS: Final = 8
-"""So much of an id tells the endpoints of a system apart."""
+"""How many hexadecimal digits of an id are shown: enough to tell endpoints apart."""
 
 NOTED_CALLS: Final = 64
-"""Calls are recorded so many at a time: code that has just run takes a third of the time.
-
-Between two messages of a robot the processor forgets it.
+"""How many calls are recorded at once, which takes a third of the time of recording one by one:
+between two messages of a robot, code drops out of the processor's caches.
 """
 
 # A bucket is one sixteenth of a power of two, so a percentile is off by 3 % at most. The offset
@@ -32,10 +31,10 @@ _OFFSET = 1 << _SUB_BUCKETS_LOG2
 
 
 class Distribution:
-    """How often which duration was seen, in constant memory.
+    """A histogram of durations, in constant memory.
 
     Args:
-        before_reading: Called before anything is read, to record what was only noted so far.
+        before_reading: Called before anything is read, to record what is still buffered.
     """
 
     __slots__ = ("_before_reading", "_buckets", "_max_ns")
@@ -63,20 +62,20 @@ class Distribution:
         except KeyError:
             self._buckets[bucket] = 1
 
-    def record_all(self, durations_ns: Sequence[int], *others: Distribution) -> None:
-        """Do `record` for each duration, in this and in `others`, in a third of the time."""
+    def _record_all(self, durations_ns: Sequence[int], *others: Distribution) -> None:
+        """Record each duration, in this and in `others`, in a third of the time of `record`."""
         found: dict[int, int] = {}
-        for duration_ns in durations_ns:  # `record`, with everything in reach
+        for duration_ns in durations_ns:  # `record`, with local names only
             shifted = duration_ns + _OFFSET
             octave = shifted.bit_length() - _SUB_BUCKETS_LOG2 - 1
             bucket = (octave << _SUB_BUCKETS_LOG2) + (shifted >> octave)
             found[bucket] = found.get(bucket, 0) + 1
         longest_ns = max(durations_ns, default=0)
         for one in (self, *others):
-            one.merge(found, longest_ns)
+            one._merge(found, longest_ns)
 
-    def merge(self, buckets: dict[int, int], longest_ns: int) -> None:
-        """Add what was counted elsewhere."""
+    def _merge(self, buckets: dict[int, int], longest_ns: int) -> None:
+        """Add buckets that were counted elsewhere."""
         self._max_ns = max(self._max_ns, longest_ns)
         for bucket, count in buckets.items():
             self._buckets[bucket] = self._buckets.get(bucket, 0) + count
@@ -94,7 +93,7 @@ class Distribution:
 
     @property
     def count(self) -> int:
-        """How many durations were recorded."""
+        """How many durations have been recorded."""
         return sum(self._read().values())
 
     @property
@@ -104,11 +103,11 @@ class Distribution:
 
     @property
     def p99_ns(self) -> int:
-        """What 99 of 100 durations do not exceed, within 3 %; 0 before the first."""
+        """The 99th percentile, within 3 %; 0 before the first."""
         return self.percentile_ns(99)
 
     def percentile_ns(self, percent: float) -> int:
-        """Return what `percent` of 100 durations do not exceed, within 3 %."""
+        """Return the duration that `percent` % of all do not exceed, within 3 %."""
         wanted = self.count * percent / 100
         seen = 0
         for bucket in sorted(self._buckets):
@@ -128,16 +127,16 @@ def _middle_ns(bucket: int) -> int:
 class CallbackStats:
     """What became of the messages, requests or ticks of one entity.
 
-    ``received + dropped + still queued`` is what arrived.
+    Everything that arrived is in ``received``, in ``dropped``, or still queued.
 
     Attributes:
-        received: Handed to a callback or a reader.
-        dropped: Discarded by a full queue, or unread when the entity was destroyed.
-        errors: Callbacks that raised.
-        lost: Gaps in the sequence numbers of publishers in other processes.
+        received: How many were handed to a callback or a reader.
+        dropped: How many a full queue discarded, or were unread when the entity was destroyed.
+        errors: How many callbacks raised.
+        lost: How many are missing in the sequence numbers of publishers in other processes.
         queue_wait: From arrival to the start of the callback.
-        run_time: From the start of the callback to its end, waits included.
-        blocking: The longest stretch of each callback without an await: what others waited for.
+        run_time: From the start of the callback to its end, including its awaits.
+        blocking: The longest stretch of each callback without an await, which blocks the loop.
     """
 
     __slots__ = (
@@ -163,21 +162,21 @@ class CallbackStats:
         self._waited_ns: list[int] = []
         self._took_ns: list[int] = []
 
-    def record_call(self, waited_ns: int, took_ns: int) -> None:
-        """Add a callback without an await: what it waited, and how long it ran and blocked."""
+    def _record_call(self, waited_ns: int, took_ns: int) -> None:
+        """Add a callback that did not await: how long its item was queued, and how long it ran."""
         self._waited_ns.append(waited_ns)
-        self.record_took(took_ns)
+        self._record_took(took_ns)
 
-    def record_took(self, took_ns: int) -> None:
-        """Add a callback without an await, which waited for nothing: how long it ran."""
+    def _record_took(self, took_ns: int) -> None:
+        """Add a callback that did not await and had no queued item: how long it ran."""
         took = self._took_ns
         took.append(took_ns)
         if len(took) >= NOTED_CALLS:
             self._record_noted()
 
     def _record_noted(self) -> None:
-        self.queue_wait.record_all(self._waited_ns)
-        self.run_time.record_all(self._took_ns, self.blocking)
+        self.queue_wait._record_all(self._waited_ns)
+        self.run_time._record_all(self._took_ns, self.blocking)
         self._waited_ns.clear()
         self._took_ns.clear()
 
@@ -190,10 +189,10 @@ class CallbackStats:
 
 
 class PublisherStats:
-    """What one publisher sent, and which way.
+    """How much one publisher sent, and by which routes.
 
     Attributes:
-        published: Messages that `publish` took.
+        published: How many messages were published.
     """
 
     __slots__ = ("_matched", "_writers", "published")
@@ -213,26 +212,26 @@ class PublisherStats:
 
     @property
     def dropped(self) -> int:
-        """Messages dropped on their way to other processes, because a link or Zenoh was slow.
+        """How many messages were dropped on the way to other processes: a link or Zenoh was slow.
 
-        What a full subscription drops, that subscription counts.
+        What a full subscription drops is counted by the subscription.
         """
         return sum(writer.dropped for writer in self._writers)
 
     @property
     def routes(self) -> dict[str, str]:
-        """Which way each matched subscription gets its messages now.
+        """The route by which each matched subscription gets its messages now.
 
-        The key is the full name of its node with the beginning of its id, as in
-        ``/listener 6f00a1c2``. The value is ``local`` within the context, ``link`` or ``zenoh`` to
-        another one, and ``link and zenoh`` as long as somebody keeps the publisher from leaving
-        Zenoh: a subscription without a link, or one that has just got it.
+        The key is the full name of its node and the first digits of its id, as in
+        ``/listener 6f00a1c2``. The value is ``local`` within the context, and ``link`` or ``zenoh``
+        to another one. It is ``link and zenoh`` while the publisher has to send both ways: another
+        subscription has no link, or this one has only just got its link.
         """
         return {
-            f"{reader.node.fully_qualified_name} {reader.gid.hex()[:ID_DIGITS]}": way
+            f"{reader.node.fully_qualified_name} {reader.gid.hex()[:ID_DIGITS]}": route
             for reader in self._matched()
             for writer in self._writers
-            if (way := writer.route_of(reader)) is not None
+            if (route := writer.route_of(reader)) is not None
         }
 
 
@@ -240,9 +239,9 @@ class ClientStats:
     """What became of the calls of one client.
 
     Attributes:
-        calls: Calls that were sent.
-        errors: Calls that ended with a `ServiceError` or without a reply.
-        run_time: From the call to its response.
+        calls: How many calls were sent.
+        errors: How many ended with a `ServiceError` or without a reply.
+        run_time: From a call to its response.
     """
 
     __slots__ = ("calls", "errors", "run_time")

@@ -1,8 +1,8 @@
-"""Every exception of aionode.
+"""All exceptions that aionode raises on purpose.
 
-All derive from `AionodeError` and from the builtin that a caller would expect, so both
-`except AionodeError` and `except TimeoutError` work. An exception that rclpy has keeps rclpy's
-name; new ones end in `Error`. They carry plain values, never live objects.
+Each derives from `AionodeError` and from the builtin exception that a caller would expect, so
+`except AionodeError` and `except TimeoutError` both work. Exceptions that also exist in rclpy keep
+rclpy's name; new ones end in `Error`. They carry plain values, never live objects.
 
 ::
 
@@ -138,7 +138,7 @@ __all__ = [
     "UnknownROSArgsError",
 ]
 
-# For the texts of errors raised elsewhere in aionode; not public.
+# Used by other modules of aionode to write error texts; not public.
 brief = _values.brief
 shortened = _values.shortened
 
@@ -150,16 +150,17 @@ class EntityDestroyedError(AionodeError, RuntimeError):
         subject: What was destroyed, such as ``publisher of /chatter``.
     """
 
-    def __init__(self, subject: str, action: str = "used") -> None:
+    def __init__(self, subject: str, action: str = "") -> None:
         self.subject = subject
-        super().__init__(f"{subject}: destroyed, and cannot be {action} any more; make a new one")
+        state = f"{subject} is destroyed; create a new one"
+        super().__init__(f"cannot {action}: {state}" if action else state)
 
 
 class EntityInactiveError(AionodeError, RuntimeError):
-    """Something of a managed node was used that works only while the node is active.
+    """An entity of a managed node was used while the node was not active.
 
     Attributes:
-        subject: What was used.
+        subject: The entity that was used.
     """
 
     def __init__(self, subject: str) -> None:
@@ -173,7 +174,7 @@ class TransitionError(AionodeError, RuntimeError):
     Attributes:
         node: Full name of the node.
         transition: Label of the transition.
-        state: Label of the state in which the node is now.
+        state: Label of the state that the node is in now.
         reason: What went wrong.
     """
 
@@ -183,30 +184,30 @@ class TransitionError(AionodeError, RuntimeError):
 
 
 class ForkedProcessError(AionodeError, RuntimeError):
-    """A forked process wants to use what belongs to the process that it was forked from.
+    """A forked child process used a node or context of its parent.
 
-    The threads of the network are not in the child, and its sockets and shared memory are the
-    parent's: using them would stop or kill the parent.
+    The network threads do not exist in the child, and its sockets and shared memory are still
+    those of the parent: using them could block or crash the parent.
 
     Attributes:
-        subject: What was to be used.
+        subject: The node or context that was used.
     """
 
     def __init__(self, subject: str) -> None:
         self.subject = subject
         super().__init__(
-            f"{subject}: this process was forked from one whose context is open, and cannot use "
-            'it; start processes with multiprocessing.get_context("spawn"), or fork before the '
-            "first node runs"
+            f"{subject}: this process was forked while the context was open and cannot use it; "
+            'start processes with multiprocessing.get_context("spawn"), or fork before the first '
+            "node runs"
         )
 
 
 class QueueFullError(AionodeError, RuntimeError):
-    """A KEEP_ALL reader has no room; nothing was delivered to anybody.
+    """The queue of a KEEP_ALL subscription is full; the message was not published at all.
 
     Attributes:
         topic: The topic.
-        depth: How many messages the full queue holds.
+        depth: Number of messages that the full queue holds.
     """
 
     def __init__(self, topic: str, depth: int) -> None:
@@ -214,17 +215,18 @@ class QueueFullError(AionodeError, RuntimeError):
         self.depth = depth
         super().__init__(
             f"{topic}: a KEEP_ALL subscription is full, with {depth} unread messages or more; "
-            "nothing was published. `await publisher.drain()` before the next, or use KEEP_LAST"
+            "the message was not published. Call `await publisher.drain()` before the next one, "
+            "or use KEEP_LAST"
         )
 
 
 class ServiceError(AionodeError, RuntimeError):
-    """The server could not serve a request.
+    """A service call failed at the server.
 
     Attributes:
         service: Name of the service.
-        error_type: Name of the exception that its handler raised, where there was one.
-        error_text: Text of that exception, or what else went wrong.
+        error_type: Name of the exception that the handler raised; empty if it raised none.
+        error_text: Text of that exception, or another description of the failure.
     """
 
     def __init__(self, service: str, error_text: str, error_type: str = "") -> None:
@@ -236,15 +238,16 @@ class ServiceError(AionodeError, RuntimeError):
 
 
 class ServiceUnavailableError(ServiceError, TimeoutError):
-    """Every server that had the request went away before it answered.
+    """Every server that received the request went away before it replied.
 
-    It is a TimeoutError too, because no reply will come: a caller that is prepared for silence, as
-    callers of ROS have to be, is prepared for this, and learns it without waiting.
+    It is also a TimeoutError, since no reply will come: code that handles a missing reply handles
+    this too, without having to wait for the timeout.
     """
 
     def __init__(self, service: str) -> None:
         super().__init__(
-            service, "the server went away before it answered; wait_for_service() and call again"
+            service,
+            "the server went away before it replied; await wait_for_service() and call again",
         )
 
 
@@ -254,7 +257,7 @@ class RequestTimeoutError(AionodeError, TimeoutError):
     Attributes:
         service: Name of the service.
         timeout_sec: How long the call waited, in seconds.
-        servers: How many servers were matched when it gave up.
+        servers: Number of servers that were matched when the call timed out.
     """
 
     def __init__(self, service: str, timeout_sec: float, servers: int) -> None:
@@ -265,7 +268,7 @@ class RequestTimeoutError(AionodeError, TimeoutError):
 
 
 class GoalError(AionodeError, RuntimeError):
-    """A goal of an action did not come to a good end.
+    """An action goal did not succeed.
 
     Attributes:
         action: Name of the action.
@@ -279,21 +282,21 @@ class GoalError(AionodeError, RuntimeError):
 
 
 class GoalRejectedError(GoalError):
-    """The action server did not accept a goal."""
+    """The action server rejected a goal."""
 
     def __init__(self, action: str, goal_id: str) -> None:
         super().__init__(
-            action, goal_id, "was rejected; the server's goal_callback decides, and knows why"
+            action, goal_id, "was rejected by the server's goal_callback; see the server's log"
         )
 
 
 class GoalAbortedError(GoalError):
-    """The action server gave a goal up.
+    """The action server aborted a goal.
 
     Attributes:
-        result: The result message, as far as the server got.
-        error_text: Type and text of the exception that ended it; empty if there was none, or if
-            the server cannot tell.
+        result: The result message, as far as the server filled it in.
+        error_text: Type and text of the exception that ended the goal; empty if there was none, or
+            if the server does not send it.
     """
 
     def __init__(self, action: str, goal_id: str, result: object, error_text: str = "") -> None:
@@ -304,10 +307,10 @@ class GoalAbortedError(GoalError):
 
 
 class GoalCanceledError(GoalError):
-    """A goal was canceled, by a request from here or from elsewhere.
+    """A goal was canceled, by this client or by another.
 
     Attributes:
-        result: The result message, as far as the server got.
+        result: The result message, as far as the server filled it in.
     """
 
     def __init__(self, action: str, goal_id: str, result: object) -> None:
@@ -316,7 +319,7 @@ class GoalCanceledError(GoalError):
 
 
 class GoalLostError(GoalError):
-    """How a goal ended cannot be known: its server went away, or does not know it any more.
+    """The outcome of a goal cannot be known: its server went away, or no longer knows the goal.
 
     Attributes:
         problem: What happened.
@@ -325,18 +328,18 @@ class GoalLostError(GoalError):
     def __init__(self, action: str, goal_id: str, problem: str) -> None:
         self.problem = problem
         super().__init__(
-            action, goal_id, f"was lost: {problem}; wait_for_server() and send it again"
+            action, goal_id, f"was lost: {problem}; await wait_for_server() and send it again"
         )
 
 
 class GoalTransitionError(AionodeError, RuntimeError):
-    """A goal cannot do in its state what it was told to.
+    """The state of a goal does not allow the requested transition.
 
     Attributes:
         goal_id: Id of the goal, in 32 hexadecimal digits.
-        status: Its state.
-        event: What should have happened to it.
-        fits: What can happen in that state.
+        status: The state of the goal.
+        event: The event that was requested.
+        fits: The events that are allowed in that state.
     """
 
     def __init__(self, goal_id: str, status: str, event: str, fits: list[str]) -> None:
@@ -344,19 +347,19 @@ class GoalTransitionError(AionodeError, RuntimeError):
         self.status = status
         self.event = event
         self.fits = fits
-        possible = f"only {', '.join(fits)} can follow" if fits else "nothing can follow that"
-        super().__init__(f"goal {goal_id}: {event} while {status}; {possible}")
+        allowed = f"only {', '.join(fits)} is allowed" if fits else "no event is allowed"
+        super().__init__(f"goal {goal_id}: cannot {event} while {status}; {allowed}")
 
 
 class CallbackSignatureError(AionodeError, TypeError, RuntimeError):
-    """A callback takes other arguments than it would be given.
+    """A callback does not accept the arguments that it would be called with.
 
-    A TypeError, and a RuntimeError as in rclpy.
+    It is a TypeError, and a RuntimeError as in rclpy.
 
     Attributes:
-        subject: The entity that was to be made.
-        signature: Name and arguments of the callback.
-        wanted: What fits.
+        subject: The entity that was to be created.
+        signature: Name and parameters of the callback.
+        wanted: The parameters that it must accept.
     """
 
     def __init__(self, subject: str, signature: str, wanted: str) -> None:
@@ -367,43 +370,43 @@ class CallbackSignatureError(AionodeError, TypeError, RuntimeError):
 
 
 class CallbackCancelledError(AionodeError, RuntimeError):
-    """Something that a callback waited for was cancelled, and the callback did not handle it.
+    """An awaitable inside a callback was cancelled, and the callback did not handle it.
 
     Attributes:
-        subject: The callback.
+        subject: Name of the callback.
     """
 
     def __init__(self, subject: str) -> None:
         self.subject = subject
         super().__init__(
-            f"{subject}: what it awaited was cancelled (its client or clock destroyed?); "
-            "handle asyncio.CancelledError there if that is expected"
+            f"{subject}: an awaitable inside it was cancelled (was its client or clock "
+            "destroyed?); catch asyncio.CancelledError in the callback if that is expected"
         )
 
 
 class TimeSourceChangedError(AionodeError, RuntimeError):
-    """ROS time was switched on or off during a sleep, so its end has lost its meaning.
+    """ROS time was switched on or off during a sleep, so the wake-up time is meaningless.
 
     Attributes:
-        active: Whether ROS time comes from `/clock` now.
+        active: Whether ROS time now comes from `/clock`.
     """
 
     def __init__(self, *, active: bool) -> None:
         self.active = active
         source = "/clock" if active else "the system clock"
         super().__init__(
-            f"sleep: ROS time was switched to {source} meanwhile; decide what is left to wait for "
-            "and sleep again"
+            f"sleep: ROS time was switched to {source} during the sleep; compute the remaining "
+            "time and sleep again"
         )
 
 
 class ConfigurationError(AionodeError, ValueError):
-    """An environment variable or an argument of `Context` says something that does not fit.
+    """An environment variable or an argument of `Context` has an invalid value.
 
     Attributes:
         source: The variable or argument, such as ``ROS_DOMAIN_ID``.
-        given: What it said.
-        fits: What fits.
+        given: Its value.
+        fits: Which values are valid.
     """
 
     def __init__(self, source: str, given: str, fits: str) -> None:
@@ -414,11 +417,11 @@ class ConfigurationError(AionodeError, ValueError):
 
 
 class ContentFilterError(AionodeError, ValueError):
-    """A content filter cannot be used.
+    """A content filter expression is not valid.
 
     Attributes:
-        expression: The filter.
-        position: Where in it the problem is, counted in characters from 0.
+        expression: The filter expression.
+        position: Index of the character where the problem is, from 0.
         problem: What is wrong.
     """
 
@@ -431,7 +434,7 @@ class NodeNameNonExistentError(AionodeError, LookupError, RuntimeError):
     """No node of this name is known; a RuntimeError as in rclpy.
 
     Attributes:
-        node: Full name that was asked for.
+        node: Full name that was looked up.
     """
 
     def __init__(self, node: str) -> None:
@@ -440,11 +443,11 @@ class NodeNameNonExistentError(AionodeError, LookupError, RuntimeError):
 
 
 class NodeNotRunningError(AionodeError, RuntimeError):
-    """A supervised node was asked for while none runs.
+    """A supervised node was requested while it is not running.
 
     Attributes:
-        node: Its full name.
-        problem: Why it does not run, and what becomes of it.
+        node: Full name of the node.
+        problem: Why it is not running, and whether it will be restarted.
     """
 
     def __init__(self, node: str, problem: str) -> None:
@@ -454,16 +457,16 @@ class NodeNotRunningError(AionodeError, RuntimeError):
 
 
 class TransportError(AionodeError, ConnectionError):
-    """A transport cannot do what was asked; the text says what to change."""
+    """A transport cannot perform an operation; the text says what to change."""
 
 
 class FrameError(TransportError):
-    """A link between two processes carries, or should carry, what is no frame.
+    """A malformed frame was received on, or passed to, the link between two processes.
 
-    The link ends with it, and what it carried goes over Zenoh.
+    The link is closed, and its messages go over Zenoh from then on.
 
     Attributes:
-        problem: What came, or was to be sent.
+        problem: What was received, or was to be sent.
     """
 
     def __init__(self, problem: str) -> None:
@@ -472,20 +475,20 @@ class FrameError(TransportError):
 
 
 def silence(servers: int) -> str:
-    """Return why a request has no reply, as far as the number of matched servers tells."""
+    """Return a likely reason for a missing reply, given the number of matched servers."""
     if servers == 0:
         return "no server is matched: is it running, with this name and type?"
-    return f"{servers} matched server(s) stayed silent"
+    return f"{servers} matched server(s) did not reply"
 
 
 class IdlError(AionodeError, ValueError):
     """An interface definition cannot be read.
 
     Attributes:
-        file: Path of the file, or the name of the type where the text came from elsewhere.
-        line: Number of the line, from 1; 0 if the whole file is meant.
-        column: Number of the character in it, from 1; 0 if the whole line is meant.
-        problem: What is wrong and what fits.
+        file: Path of the file, or the name of the type if the text did not come from a file.
+        line: Line number, from 1; 0 if the problem is about the whole file.
+        column: Column number, from 1; 0 if the problem is about the whole line.
+        problem: What is wrong and what would be valid.
     """
 
     def __init__(self, file: str, line: int, column: int, problem: str) -> None:
@@ -501,8 +504,8 @@ class InterfaceNotFoundError(AionodeError, LookupError):
     """There is no message, service or action type of this name.
 
     Attributes:
-        name: The name that was asked for.
-        suggestions: Names like it that there are, the closest first.
+        name: The name that was looked up.
+        suggestions: Existing names that are similar, the closest first.
     """
 
     def __init__(self, name: str, suggestions: tuple[str, ...] = (), problem: str = "") -> None:
@@ -513,13 +516,13 @@ class InterfaceNotFoundError(AionodeError, LookupError):
 
 
 HOW_TO_FIND = (
-    "names look like std_msgs/msg/String or std_srvs/srv/Trigger, `aionode interface list` shows "
-    "those there are, and aionode.idl.load_interfaces() adds your own"
+    "names look like std_msgs/msg/String or std_srvs/srv/Trigger; `aionode interface list` shows "
+    "all known interfaces, and aionode.idl.load_interfaces() adds your own"
 )
 
 
 class CommandError(AionodeError, RuntimeError):
-    """A command of the command line cannot do what was asked.
+    """A command of the command line failed.
 
     Attributes:
         status: The exit status of the command.
@@ -531,4 +534,4 @@ class CommandError(AionodeError, RuntimeError):
 
 
 for _name in __all__:
-    globals()[_name].__module__ = __name__  # users see aionode.errors.X, wherever X is written
+    globals()[_name].__module__ = __name__  # users see aionode.errors.X, not the private module

@@ -1,4 +1,4 @@
-"""The base of all errors, and those about names, arguments, parameters and messages."""
+"""The base class of all errors, and errors about names, arguments, parameters and messages."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ __all__ = [
 ]
 
 MAX_TEXT = 2_000
-"""How long the text of an error becomes, in characters; values are given that are far longer."""
+"""Longest error text, in characters; the values that it quotes can be far longer."""
 
 MAX_NAME = 160
-"""How much is shown of a name that breaks the rules, in characters."""
+"""How many characters of an invalid name are shown."""
 
 
 def shortened(text: str, limit: int = MAX_TEXT) -> str:
-    """Return `text` without its middle if it is longer than `limit` characters."""
+    """Return `text`, with its middle cut out if it is longer than `limit` characters."""
     if len(text) <= limit:
         return text
     half = limit // 2
@@ -44,9 +44,9 @@ def shortened(text: str, limit: int = MAX_TEXT) -> str:
 
 
 def brief(value: object) -> str:
-    """Return how `value` is shown in the text of an error: as Python writes it, but not at length.
+    """Return the shortened repr of `value`, for the text of an error.
 
-    Of numbers with thousands of digits Python writes only how many there are.
+    Python refuses to write integers of thousands of digits; the reason is returned for those.
     """
     try:
         text = repr(value)
@@ -58,8 +58,8 @@ def brief(value: object) -> str:
 class AionodeError(Exception):
     """Base of all errors that aionode raises on purpose.
 
-    A text of more than 2000 characters is shortened in its middle, since beginning and end say what
-    happened and what to do. The attributes hold what was given as it was.
+    Texts of more than 2000 characters are shortened in the middle, as the beginning and the end say
+    what happened and what to do. The attributes hold the complete values.
     """
 
     def __init__(self, *args: object) -> None:
@@ -67,14 +67,14 @@ class AionodeError(Exception):
 
 
 class DecodeError(AionodeError, ValueError):
-    """Bytes do not hold a message of the type that they should.
+    """Bytes do not hold a message of the expected type.
 
     Attributes:
-        type_name: The type that was to be read.
-        path: The field that could not be read, such as ``name[3]``; empty for the message as a
+        type_name: The expected type.
+        path: The field that could not be decoded, such as ``name[3]``; empty for the message as a
             whole.
-        offset: Where it is in the data, in bytes.
-        problem: What is there and what was needed.
+        offset: Position of the problem in the data, in bytes.
+        problem: What was found and what was expected.
     """
 
     def __init__(self, type_name: str, path: str, offset: int, problem: str) -> None:
@@ -84,8 +84,8 @@ class DecodeError(AionodeError, ValueError):
         self.problem = problem
         subject = f"{type_name}.{path}" if path else type_name
         super().__init__(
-            f"{subject}: not readable at byte {offset}: {problem}; is the sender's definition of "
-            "the type the same?"
+            f"{subject}: cannot decode at byte {offset}: {problem}; does the sender use the same "
+            "definition of the type?"
         )
 
 
@@ -94,7 +94,7 @@ class MessageError(AionodeError, ValueError):
 
     Attributes:
         path: Type and path of the field, such as ``sensor_msgs/msg/JointState.name[3]``.
-        problem: What was given and what fits.
+        problem: What was given and what is valid.
     """
 
     def __init__(self, path: str, problem: str) -> None:
@@ -108,8 +108,8 @@ class NameValidationException(AionodeError, ValueError):
 
     Attributes:
         name: The name as given.
-        error_msg: Which rule it breaks.
-        invalid_index: Where it breaks it: an index into `name`.
+        error_msg: The rule that it breaks.
+        invalid_index: Index into `name` of the first invalid character.
     """
 
     def __init__(self, name_type: str, name: str, error_msg: str, invalid_index: int) -> None:
@@ -117,7 +117,7 @@ class NameValidationException(AionodeError, ValueError):
         self.name = name
         self.error_msg = error_msg
         self.invalid_index = invalid_index
-        # Of a long name what is around the mistake.
+        # Show only the surroundings of the mistake in a long name.
         begin = max(0, min(invalid_index, len(name)) - MAX_NAME // 2)
         before = "…" if begin else ""
         after = "…" if begin + MAX_NAME < len(name) else ""
@@ -159,7 +159,7 @@ class InvalidRemapRuleError(AionodeError, ValueError):
 
     Attributes:
         rule: The rule as given.
-        problem: What is wrong with it.
+        problem: What is wrong.
     """
 
     def __init__(self, rule: str, problem: str) -> None:
@@ -169,24 +169,24 @@ class InvalidRemapRuleError(AionodeError, ValueError):
 
 
 class InvalidLogLevelError(AionodeError, ValueError, RuntimeError):
-    """A word is no level of logging; a RuntimeError as in rclpy.
+    """A log level does not exist; a RuntimeError as in rclpy.
 
     Attributes:
-        level: The word.
-        fits: The words that fit.
+        level: The name that was given.
+        fits: The names of all log levels.
     """
 
     def __init__(self, level: str, fits: list[str]) -> None:
         self.level = level
         self.fits = fits
-        super().__init__(f"log level '{level}' is unknown; it may be {', '.join(fits)}")
+        super().__init__(f"unknown log level '{level}'; valid levels are {', '.join(fits)}")
 
 
 class InvalidQoSProfileException(AionodeError, ValueError):
-    """A QoS profile was made from values that do not fit.
+    """A QoS profile was given invalid values.
 
     Attributes:
-        problem: What was given and what fits.
+        problem: What was given and what is valid.
     """
 
     def __init__(self, problem: str) -> None:
@@ -195,7 +195,7 @@ class InvalidQoSProfileException(AionodeError, ValueError):
 
 
 class InvalidQosOverridesError(AionodeError, ValueError, RuntimeError):
-    """Parameters ask for a QoS that an endpoint cannot have; a RuntimeError as in rclpy.
+    """QoS override parameters are not valid for an endpoint; a RuntimeError as in rclpy.
 
     Attributes:
         subject: The endpoint, or the parameter at fault.
@@ -212,8 +212,8 @@ class InvalidROSArgsError(AionodeError, ValueError):
     """A known ``--ros-args`` flag has a value that cannot be read.
 
     Attributes:
-        argument: The word or words at fault, as given.
-        problem: What is wrong with it and what fits.
+        argument: The argument or arguments at fault, as given.
+        problem: What is wrong and what would be valid.
     """
 
     def __init__(self, argument: str, problem: str) -> None:
@@ -223,10 +223,10 @@ class InvalidROSArgsError(AionodeError, ValueError):
 
 
 class UnknownROSArgsError(InvalidROSArgsError):
-    """Between ``--ros-args`` and ``--`` stands a word that is no flag of ROS.
+    """There is an unknown argument between ``--ros-args`` and ``--``.
 
     Attributes:
-        unknown_ros_args: All such words.
+        unknown_ros_args: All unknown arguments.
     """
 
     def __init__(self, unknown_ros_args: list[str], problem: str) -> None:
@@ -238,9 +238,9 @@ class ParameterFileError(AionodeError, ValueError, RuntimeError):
     """A parameter file or a parameter value in YAML cannot be read.
 
     Attributes:
-        source: Path of the file, or what else was read.
-        line: Line number, counted from 1; 0 where there is none.
-        problem: What is wrong there.
+        source: Path of the file, or another description of what was read.
+        line: Line number, from 1; 0 if it is not known.
+        problem: What is wrong.
     """
 
     def __init__(self, source: str, line: int, problem: str) -> None:
@@ -264,7 +264,7 @@ class ParameterException(AionodeError):
         super().__init__(f"{error_msg}: {parameters}")
 
     def __str__(self) -> str:
-        # KeyError, a base of one subclass, would print the text in quotes.
+        # KeyError, a base of one of the subclasses, would put the text in quotes.
         return str(self.args[0])
 
 
@@ -283,7 +283,7 @@ class ParameterAlreadyDeclaredException(ParameterException, ValueError):
 
 
 class InvalidParameterException(ParameterException, ValueError):
-    """A parameter was to be declared under a name that is no name."""
+    """A parameter was declared with an invalid name."""
 
     def __init__(self, parameter_name: str) -> None:
         super().__init__("Invalid parameter name", parameter_name)
@@ -296,7 +296,7 @@ class InvalidParameterTypeException(ParameterException, TypeError):
         name: Name of the parameter.
         value: The rejected value.
         type_name: Name of the value's type.
-        expected_type: Name of the type that fits.
+        expected_type: Name of the declared type.
     """
 
     def __init__(self, name: str, value: object, type_name: str, expected_type: str) -> None:
@@ -329,7 +329,7 @@ class InvalidParameterValueException(ParameterException, ValueError):
 
 
 class ParameterImmutableException(ParameterException, RuntimeError):
-    """A read-only parameter was to be undeclared."""
+    """A read-only parameter cannot be undeclared."""
 
     def __init__(self, parameter_name: str) -> None:
         super().__init__("Attempted to modify read-only parameter", parameter_name)

@@ -1,6 +1,7 @@
-"""Programs of one file that show one thing each; they use public names only.
+"""Programs of one file that show one feature each, using public names only.
 
-Run one with ``python -m aionode.examples.pubsub``: also `service`, `timers` and `overload`.
+Run one with ``python -m aionode.examples.pubsub``; the others are `service`, `timers`, `fibonacci`,
+`lifecycle` and `overload`.
 """
 
 __all__: list[str] = []

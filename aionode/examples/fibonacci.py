@@ -1,4 +1,4 @@
-"""An action takes its time, tells how far it is, and can be cancelled.
+"""An action: a goal that takes time, sends feedback, and can be canceled.
 
 Run it with ``python -m aionode.examples.fibonacci``.
 """
@@ -14,11 +14,11 @@ __all__ = ["FibonacciServer", "application", "main"]
 STEP_SEC = 0.2
 
 Handle = ServerGoalHandle[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
-Asker = ActionClient[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
+FibonacciClient = ActionClient[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
 
 
 class FibonacciServer(Node):
-    """Serves /fibonacci: as many numbers as the goal asks for, one after the other."""
+    """Serves /fibonacci: computes the sequence up to the order in the goal, step by step."""
 
     def __init__(self) -> None:
         super().__init__("fibonacci_server")
@@ -30,7 +30,7 @@ class FibonacciServer(Node):
         )
 
     async def execute(self, handle: Handle) -> Fibonacci.Result:
-        """Work on one goal; an accepted cancel request cancels this coroutine."""
+        """Execute one goal; an accepted cancel request cancels this coroutine."""
         sequence = [0, 1]
         for _ in range(handle.request.order - 1):
             await self.get_clock().sleep(STEP_SEC)
@@ -41,7 +41,7 @@ class FibonacciServer(Node):
 
 
 async def application() -> None:
-    """Send one goal and await it, watch a second one, and cancel a third."""
+    """Await the result of one goal, the feedback of a second, and cancel a third."""
     async with FibonacciServer(), Node("application") as node:
         client = node.create_action_client(Fibonacci, "/fibonacci")
         await client.wait_for_server()
@@ -50,14 +50,14 @@ async def application() -> None:
         await cancel(client)
 
 
-async def call(client: Asker) -> None:
-    """Send a goal and await its result, in one."""
+async def call(client: FibonacciClient) -> None:
+    """Send a goal and await its result in one call."""
     result = await client.call(Fibonacci.Goal(order=5))
     print(f"called:    {result.sequence.tolist()}", flush=True)
 
 
-async def watch(client: Asker) -> None:
-    """Look at the feedback while the goal is worked on."""
+async def watch(client: FibonacciClient) -> None:
+    """Print the feedback while the goal is executed."""
     goal = await client.send_goal(Fibonacci.Goal(order=5))
     async for feedback in goal:
         print(f"feedback:  {feedback.sequence.tolist()}", flush=True)
@@ -65,8 +65,8 @@ async def watch(client: Asker) -> None:
     print(f"result:    {outcome.result.sequence.tolist()}, {outcome.status.name}", flush=True)
 
 
-async def cancel(client: Asker) -> None:
-    """Change one's mind after the second feedback."""
+async def cancel(client: FibonacciClient) -> None:
+    """Cancel a goal after its second feedback."""
     goal = await client.send_goal(Fibonacci.Goal(order=40))
     await anext(goal)
     await anext(goal)
@@ -76,7 +76,7 @@ async def cancel(client: Asker) -> None:
 
 
 def main() -> None:
-    """Run server and application until the last goal has ended, or until Ctrl-C."""
+    """Run the application until the last goal has ended, or until Ctrl-C."""
     aionode.run(application)
 
 

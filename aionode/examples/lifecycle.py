@@ -1,6 +1,7 @@
-"""A managed talker is configured, activated and brought down again by a program beside it.
+"""A program configures, activates and shuts down a managed talker.
 
-It is ROS 2's lifecycle demo, awaited. Run it with ``python -m aionode.examples.lifecycle``.
+It is ROS 2's lifecycle demo with async and await. Run it with
+``python -m aionode.examples.lifecycle``.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ __all__ = ["Talker", "application", "main"]
 
 
 class Talker(LifecycleNode):
-    """Says hello while it is active; its device takes a moment to open."""
+    """Publishes greetings while it is active; its device takes a moment to open."""
 
     def __init__(self) -> None:
         super().__init__("lifecycle_talker")
@@ -27,7 +28,7 @@ class Talker(LifecycleNode):
         self.create_lifecycle_timer(0.1, self.say)
 
     async def on_configure(self, state: State) -> TransitionCallbackReturn:
-        """Open the device: whatever takes its time is awaited, and can be canceled."""
+        """Open the device; the time it takes is awaited, and can be canceled."""
         if self.broken:
             raise OSError("no device at /dev/voice")
         for done in (0.5, 1.0):
@@ -36,7 +37,7 @@ class Talker(LifecycleNode):
         return TransitionCallbackReturn.SUCCESS
 
     def on_error(self, state: State, error: Exception | None = None) -> TransitionCallbackReturn:
-        """Be ready for another try; rclpy's callback does not get the error."""
+        """Prepare for another try. Unlike rclpy's, this callback gets the error."""
         print(f"on_error:   after {state.label}: {error}", flush=True)
         self.broken = False
         return TransitionCallbackReturn.SUCCESS
@@ -48,7 +49,7 @@ class Talker(LifecycleNode):
 
 
 async def application() -> None:
-    """Fail once, then bring the talker up, hear three messages, and bring it down."""
+    """Fail, be canceled, then activate the talker, receive three messages, and shut it down."""
     talker = Talker()
     async with talker, Node("manager") as node:
         greetings = node.create_subscription(String, "/lifecycle_chatter")
@@ -73,7 +74,7 @@ async def application() -> None:
 
 
 def main() -> None:
-    """Run talker and manager."""
+    """Run the application until it is done, or until Ctrl-C."""
     aionode.run(application)
 
 

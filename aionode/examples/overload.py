@@ -1,6 +1,6 @@
-"""A reader that is too slow: what it misses is counted, and everything else goes on.
+"""A subscription that is too slow: dropped messages are counted, and nothing else is delayed.
 
-A publisher sends far more than the callback of its one subscription can take. The subscription
+A publisher sends far more than the callback of the only subscription can process. The subscription
 keeps the newest ten messages and counts the others, and a timer of 10 ms keeps firing.
 
 Run it with ``python -m aionode.examples.overload``, or with ``--seconds 60`` for longer.
@@ -26,7 +26,7 @@ REPORT_SEC = 1.0
 
 
 class Overload(Node):
-    """Publishes up to 10 000 messages a second to a callback that can take 500."""
+    """Publishes up to 10 000 messages a second to a callback that can process 500."""
 
     def __init__(self, seconds: float) -> None:
         super().__init__("overload")
@@ -41,7 +41,7 @@ class Overload(Node):
         self.create_timer(seconds, self.context.shutdown)
 
     def burst(self) -> None:
-        """Publish faster than anybody reads; publishing never waits."""
+        """Publish faster than the subscription can process; publishing never waits."""
         for _ in range(BURST):
             self.publisher.publish(Int64(data=self.sent))
             self.sent += 1
@@ -51,11 +51,11 @@ class Overload(Node):
         time.sleep(WORK_SEC)
 
     def tick(self) -> None:
-        """Be on time all the same."""
+        """Count a tick; this timer stays on time."""
         self.ticks += 1
 
     def report(self) -> None:
-        """Print what happened so far: nothing is lost without being counted."""
+        """Print the counts so far: every lost message is counted."""
         stats = self.subscription.stats
         elapsed = (self.get_clock().now() - self.begun).nanoseconds / 1e9
         waiting = self.sent - stats.received - stats.dropped
@@ -69,10 +69,10 @@ class Overload(Node):
 
 def main() -> None:
     """Run for the given time, or until Ctrl-C."""
-    parser = argparse.ArgumentParser(description="A slow reader beside a fast publisher.")
+    parser = argparse.ArgumentParser(description="A slow subscription and a fast publisher.")
     parser.add_argument("--seconds", type=float, default=5.0, help="how long to run (default 5)")
     known, rest = parser.parse_known_args()
-    print("A slow reader beside a fast publisher, in one event loop:", flush=True)
+    print("A slow subscription and a fast publisher, in one event loop:", flush=True)
     aionode.run(partial(Overload, known.seconds + TICK_SEC), args=rest)
 
 

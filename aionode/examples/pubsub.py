@@ -1,4 +1,4 @@
-"""Two nodes talk: one publishes five messages, the other hears them, and both end.
+"""Two nodes: one publishes, the other ends the program after five messages.
 
 Run it with ``python -m aionode.examples.pubsub``.
 """
@@ -16,7 +16,7 @@ PERIOD_SEC = 0.5
 
 
 class Talker(Node):
-    """Says hello twice a second."""
+    """Publishes a greeting twice a second."""
 
     def __init__(self) -> None:
         super().__init__("talker")
@@ -33,7 +33,7 @@ class Talker(Node):
 
 
 class Listener(Node):
-    """Hears `MESSAGES` greetings, says how they came, and ends the program."""
+    """Receives `MESSAGES` greetings, prints statistics, and ends the program."""
 
     def __init__(self) -> None:
         super().__init__("listener")
@@ -41,15 +41,15 @@ class Listener(Node):
         self.heard = 0
 
     async def hear(self, msg: String) -> None:
-        """Take one greeting; the subscription calls this. It may await anything."""
+        """Count a greeting; the subscription calls this. It may await anything."""
         self.heard += 1
         self.get_logger().info(f'I heard: "{msg.data}"')
         if self.heard == MESSAGES:
-            self.tell()
+            self.print_statistics()
             self.context.shutdown()
 
-    def tell(self) -> None:
-        """Print what the subscription measured."""
+    def print_statistics(self) -> None:
+        """Print the statistics of the subscription."""
         stats = self.subscription.stats
         print(
             f"\n{self.heard} messages heard, {stats.dropped} dropped. "
@@ -61,7 +61,7 @@ class Listener(Node):
 
 
 def main() -> None:
-    """Run both nodes until the listener has heard enough, or until Ctrl-C."""
+    """Run both nodes until the listener ends the program, or until Ctrl-C."""
     print(
         "Two nodes in this process: /talker publishes on /chatter, /listener subscribes to it.\n",
         flush=True,

@@ -1,4 +1,4 @@
-"""Timers keep their grid, never overlap themselves, and never pile up work.
+"""Timers keep their grid, never overlap themselves, and skip what they miss.
 
 Run it with ``python -m aionode.examples.timers``; it ends after three seconds.
 """
@@ -16,7 +16,7 @@ END_SEC = 3.1
 
 
 class Timers(Node):
-    """A quick timer, one whose callback is slower than its period, a rate, and an alarm."""
+    """A fast timer, one whose callback is slower than its period, a rate, and an alarm."""
 
     def __init__(self) -> None:
         super().__init__("timers")
@@ -27,14 +27,14 @@ class Timers(Node):
         self.alarm = self.create_timer(END_SEC, self.end)
 
     def tick(self, info: TimerInfo) -> None:
-        """Take one tick; `info` tells when it was due and when it came."""
+        """Log one tick; `info` has the time when it was due and when it was called."""
         self.ticks += 1
         late = info.actual_call_time - info.expected_call_time
         self.get_logger().info(f"fast: tick {self.ticks}, {late.nanoseconds / 1e6:.2f} ms late")
 
     async def work(self) -> None:
-        """Take longer than the period: the missed tick is left out, the grid is kept."""
-        self.get_logger().info("slow: 0.7 s of work begin; all other callbacks go on meanwhile")
+        """Take longer than the period: the missed tick is skipped, the grid is kept."""
+        self.get_logger().info("slow: 0.7 s of work begin; all other callbacks continue")
         await self.get_clock().sleep(0.7)
         self.get_logger().info("slow: done")
 

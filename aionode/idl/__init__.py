@@ -1,4 +1,4 @@
-"""Interface definitions: ``.msg``, ``.srv`` and ``.action`` text to classes, modules and back."""
+"""Converts interface definitions (``.msg``, ``.srv``, ``.action``) to Python classes and back."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Making message, service and action classes of what definitions say."""
+"""Creates message, service and action classes from parsed definitions."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ BASES: dict[str, type[Interface]] = {"msg": Message, "srv": ServiceType, "action
 def define(
     typename: str, text: str, *, types: Mapping[str, type[Interface]] | None = None
 ) -> type[Any]:
-    r"""Return the class that the text of a definition makes.
+    r"""Return the class that a definition describes.
 
     ::
 
@@ -43,12 +43,12 @@ def define(
 
     Args:
         typename: Its ROS name, such as ``tutorial/msg/Words``.
-        text: The text of a ``.msg``, ``.srv`` or ``.action`` file, as the name says.
-        types: Message classes that it may use besides those of aionode.interfaces, by name.
+        text: The text of a ``.msg``, ``.srv`` or ``.action`` file, according to the name.
+        types: Message classes that it may use besides those of aionode.interfaces, by ROS name.
 
     Raises:
-        IdlError: The text cannot be read, or uses a type that is not there.
-        TypeError: `typename` is not the name of a ROS type.
+        IdlError: The text is not valid, or uses an unknown type.
+        TypeError: `typename` is not a valid name of a ROS type.
     """
     builder = Builder({typename: parse(typename, text)}, reuse=False)
     builder.built.update(types or {})
@@ -56,20 +56,20 @@ def define(
 
 
 class Builder:
-    """Makes the classes of several definitions that may use each other."""
+    """Creates the classes of several definitions that may use each other."""
 
     def __init__(self, texts: Mapping[str, InterfaceText], *, reuse: bool) -> None:
         self.texts = texts
         self.reuse = reuse
         self.built: dict[str, type[Interface]] = {}
         self.open: list[str] = []
-        """What is being built: each uses the next."""
+        """Names of the types that are being built; each uses the next."""
 
     def build(self, typename: str) -> type[Interface]:
-        """Return the class of one of the definitions, made on the first call.
+        """Return the class of one of the definitions, created on the first call.
 
         Raises:
-            IdlError: A field's type is not there, or contains itself.
+            IdlError: The type of a field is unknown, or contains itself.
         """
         if typename not in self.built:
             self.open.append(typename)
@@ -112,7 +112,7 @@ class Builder:
         return new_class(name, (Message,), options, lambda space: space.update(body))
 
     def field_type(self, text: InterfaceText, member: MemberText) -> FieldType:
-        """Return the type of a field, with the class of the message that it names."""
+        """Return the type of a field, with the class of a nested message."""
         type_ = member.type
         if type_.name in PRIMITIVES:
             return type_.primitive()
@@ -128,11 +128,13 @@ class Builder:
             raise IdlError(text.file, member.line, 1, problem) from None
         except RecursionError:
             chain = " uses ".join((*self.open, full_name(type_, package)))
-            raise IdlError(text.file, member.line, 1, f"{chain}: it would never end") from None
+            raise IdlError(
+                text.file, member.line, 1, f"{chain}: a message cannot contain itself"
+            ) from None
         return FieldType("message", nested, None, type_.container, type_.size)
 
     def used(self, typename: str) -> type[Message]:
-        """Return the message class of this name: of these definitions, or shipped."""
+        """Return a message class of these definitions or of aionode.interfaces."""
         if typename in self.open:
             raise RecursionError
         if typename in self.texts:
@@ -144,20 +146,20 @@ class Builder:
 
 
 def full_name(type_: TypeText, package: str) -> str:
-    """Return the ROS name of a message type as `package` writes it."""
+    """Return the ROS name of a message type that is written in a definition of `package`."""
     parts = type_.name.split("/")
     return f"{parts[0] if len(parts) > 1 else package}/msg/{parts[-1]}"
 
 
 def doc(text: InterfaceText, name: str) -> dict[str, str]:
-    """Return the docstring of a class: the comment at the top of its file, if there is one."""
+    """Return the docstring of a class: the comment at the top of its file, if any."""
     return {"__doc__": text.parts[0].comment or f"{name}, as in {text.typename}."}
 
 
 def existing(typename: str, made: type[Interface]) -> type[Interface] | None:
-    """Return the class that aionode.interfaces has of this name, if it is defined the same.
+    """Return the class of this name in aionode.interfaces, if its definition is the same.
 
-    So a workspace that brings its own std_msgs can be used together with the shipped one.
+    So a workspace with its own std_msgs can be used together with the shipped one.
     """
     try:
         found = get_interface(typename)

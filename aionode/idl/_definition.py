@@ -1,4 +1,4 @@
-"""What a definition says, before the types it names are known."""
+"""Parsed definitions, before the names of types in them are resolved."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ HALVES: dict[str, tuple[str, ...]] = {
     "srv": ("Request", "Response"),
     "action": ("Goal", "Result", "Feedback"),
 }
-"""The messages of each kind of interface; that of a ``.msg`` has no name of its own."""
+"""The nested messages of each kind of interface; the message of a ``.msg`` has no own name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,8 +24,8 @@ class TypeText:
 
     Attributes:
         name: ``int32``, ``string``, ``Point`` or ``geometry_msgs/Point``.
-        string_bound: As in `aionode.message.FieldType`, like the others.
-        container: One value, an array or a sequence.
+        string_bound: As in `aionode.message.FieldType`, like the next two.
+        container: Single value, array or sequence.
         size: Size or bound of the container.
     """
 
@@ -35,21 +35,21 @@ class TypeText:
     size: int = 0
 
     def primitive(self) -> FieldType:
-        """Return the type, if it is not a message."""
+        """Return the type of a field that is not a message."""
         return FieldType(self.name, None, self.string_bound, self.container, self.size)
 
 
 @dataclass(frozen=True, slots=True)
 class MemberText:
-    """A field, or a constant: its type, name, value and place in the file.
+    """A field or constant, with its position in the file.
 
     Attributes:
         type: Its type.
         name: Its name.
         value: The default of a field, or None; the value of a constant.
         constant: Whether it is a constant.
-        line: Number of its line, from 1.
-        column: Number of its first character, from 1.
+        line: Line number, from 1.
+        column: Column of its name, from 1.
     """
 
     type: TypeText
@@ -70,7 +70,7 @@ class MessageText:
 
 @dataclass(frozen=True, slots=True)
 class InterfaceText:
-    """A whole definition: its ROS name, where it is from, and its one, two or three messages."""
+    """A whole definition: its ROS name, its file, and its one, two or three messages."""
 
     typename: str
     file: str
@@ -81,7 +81,7 @@ def split_type_name(typename: str) -> tuple[str, str, str]:
     """Return package, kind (``msg``, ``srv`` or ``action``) and name of an interface.
 
     Raises:
-        TypeError: It is not the name of one.
+        TypeError: It is not a valid name of an interface.
     """
     package, kind, name = checked_type_name(typename).split("/")
     return package, kind, name

@@ -1,4 +1,4 @@
-"""The text of a definition that makes a given class again."""
+"""Writes the definition of a class as text."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]")
 
 
 def definition_text(cls: type[Message | ServiceType | ActionType], *, nested: bool = False) -> str:
-    """Return the text of a ``.msg``, ``.srv`` or ``.action`` file that makes `cls` again.
+    """Return the text of a ``.msg``, ``.srv`` or ``.action`` file that defines `cls`.
 
     Args:
         cls: A message, service or action class.
-        nested: Show below each field of a message type what that consists of, indented by tabs,
-            as ``ros2 interface show`` does. Such text is for reading, it cannot be parsed.
+        nested: Show the fields of nested messages below each field, indented by tabs, as
+            ``ros2 interface show`` does. Such text is for reading only and cannot be parsed.
 
     Raises:
-        TypeError: `cls` is no such class, or has no ROS name.
+        TypeError: `cls` is not such a class, or has no ROS name.
     """
     package, kind, _ = split_type_name(type_name(cls))
     messages = [cls] if issubclass(cls, Message) else [getattr(cls, half) for half in HALVES[kind]]
@@ -53,7 +53,7 @@ def lines(cls: type[Message], package: str, *, nested: bool) -> Iterator[str]:
 
 
 def type_text(type_: FieldType, package: str) -> str:
-    """Return a type as a definition of `package` writes it."""
+    """Return a type as written in a definition of `package`."""
     return str(type_).removeprefix(f"{package}/") if type_.nested else str(type_)
 
 

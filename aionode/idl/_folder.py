@@ -1,4 +1,4 @@
-"""Loading the interfaces of a folder of ROS packages at run time."""
+"""Loads the interfaces of a folder of ROS packages at run time."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Interfaces(Mapping[str, type[Any]]):
         except KeyError:
             known = ", ".join(self._packages) or "none"
             raise AttributeError(
-                f"{package}: no such package was loaded; there are {known}"
+                f"package {package!r} was not loaded; loaded packages: {known}"
             ) from None
 
     def __repr__(self) -> str:
@@ -61,19 +61,19 @@ class Interfaces(Mapping[str, type[Any]]):
 def load_interfaces(path: str | Path, *, reuse: bool = True) -> Interfaces:
     """Return the interfaces of a folder as classes, without a build step.
 
-    The folder is a package with ``msg``, ``srv`` or ``action`` folders, or holds packages at any
-    depth, as a workspace or ``share`` does. Types they use are taken from the folder, then from
-    aionode.interfaces. New packages can be imported from then on, as
-    ``aionode.interfaces.my_msgs.msg``, and are found by `aionode.interfaces.get_interface`.
+    The folder is a package with ``msg``, ``srv`` or ``action`` folders, or contains packages at any
+    depth, like a workspace or ``share``. Types that they use are taken from the folder first, then
+    from aionode.interfaces. Afterwards new packages can be imported as
+    ``aionode.interfaces.my_msgs.msg``, and `aionode.interfaces.get_interface` finds them.
 
     Args:
         path: The folder.
-        reuse: Return the class that is there already for a type with the same definition, so that
-            its messages fit both; otherwise every class is new.
+        reuse: Return the existing class for a type with the same definition, so that its messages
+            are accepted wherever either is; otherwise every class is new.
 
     Raises:
-        IdlError: A definition cannot be read; the error names file, line and column.
-        FileNotFoundError: There is no such folder.
+        IdlError: A definition is not valid; the error names file, line and column.
+        FileNotFoundError: The folder does not exist.
     """
     texts = read_folder(path)
     builder = Builder(texts, reuse=reuse)
@@ -84,11 +84,11 @@ def load_interfaces(path: str | Path, *, reuse: bool = True) -> Interfaces:
 
 
 def read_folder(path: str | Path) -> dict[str, InterfaceText]:
-    """Return what the definitions of a folder say, by type name.
+    """Return the parsed definitions of a folder, by type name.
 
     Raises:
-        IdlError: One cannot be read, or two of the same type differ.
-        FileNotFoundError: There is no such folder.
+        IdlError: A definition is not valid, or two definitions of the same type differ.
+        FileNotFoundError: The folder does not exist.
     """
     root = Path(path).resolve()
     if not root.is_dir():
@@ -101,7 +101,9 @@ def read_folder(path: str | Path) -> dict[str, InterfaceText]:
                 continue
             typename = f"{package_of(file)}/{kind}/{checked_stem(file)}"
             source = read(file)
-            if sources.get(typename, source) != source:  # a workspace has source and install
+            if (
+                sources.get(typename, source) != source
+            ):  # a workspace may have source and installed copies
                 problem = f"{typename} is defined differently in {texts[typename].file}"
                 raise IdlError(str(file), 0, 0, problem)
             if typename not in texts:
@@ -121,7 +123,7 @@ def read(file: Path) -> str:
 
 
 def package_of(file: Path) -> str:
-    """Return the name of the package that a file is in, as its package.xml says if there is one."""
+    """Return the package that a file belongs to: from package.xml if it exists, else its folder."""
     folder = file.parent.parent
     manifest = folder / "package.xml"
     name = folder.name
@@ -129,21 +131,21 @@ def package_of(file: Path) -> str:
         found = re.search(r"<name>\s*([^<\s]+)\s*</name>", manifest.read_text(errors="replace"))
         name = found[1] if found else name
     if not PACKAGE_NAME.fullmatch(name):
-        problem = f"{name!r} is no package name; lower-case letters, digits and _ fit"
+        problem = f"{name!r} is not a valid package name; use lower-case letters, digits and _"
         raise IdlError(str(file), 0, 0, problem)
     return name
 
 
 def checked_stem(file: Path) -> str:
-    """Return the name of the type in a file."""
+    """Return the type name that a file name stands for."""
     if not TYPE_NAME.fullmatch(file.stem):
-        problem = f"{file.stem!r} is no type name; letters and digits fit, a capital first"
+        problem = f"{file.stem!r} is not a valid type name; use letters and digits, a capital first"
         raise IdlError(str(file), 0, 0, problem)
     return file.stem
 
 
 def make_importable(package: str, loaded: Interfaces) -> None:
-    """Let Python import a loaded package, unless aionode ships one of that name."""
+    """Make a loaded package importable, unless aionode ships one of that name."""
     name = f"aionode.interfaces.{package}"
     if package in aionode.interfaces.shipped_packages():
         return

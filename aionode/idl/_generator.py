@@ -1,8 +1,8 @@
-"""Writing interfaces as typed Python modules.
+"""Generates typed Python modules from interfaces.
 
-Each package becomes a folder with ``msg.py``, ``srv.py`` and ``action.py``, laid out as the ruff
-formatter leaves it. Docstrings are the comments at the top of the definitions; where there are
-none, those of the modules that are there already are kept, so they can be edited.
+Each package becomes a folder with ``msg.py``, ``srv.py`` and ``action.py``, formatted as ruff does.
+Docstrings are the comments at the top of the definitions; where there are none, the docstrings of
+existing modules are kept, so they can be edited.
 """
 
 from __future__ import annotations
@@ -51,17 +51,18 @@ Generated from its definitions by `aionode interface generate`, which keeps the 
 def generate(path: str | Path, out_dir: str | Path) -> list[Path]:
     """Write the interfaces of a folder as Python modules and return the files written.
 
-    A package ``my_msgs`` becomes ``my_msgs/msg.py`` and so on in `out_dir`. If that is a Python
-    package itself (it has an ``__init__.py``), the modules import each other from there, otherwise
-    from the top, with `out_dir` on the path. Types of other packages come from aionode.interfaces.
+    A package ``my_msgs`` becomes ``my_msgs/msg.py`` and so on in `out_dir`. If that folder is a
+    Python package (has an ``__init__.py``), the modules import each other as parts of it; otherwise
+    as top-level packages, with `out_dir` on the path. Types of other packages are imported from
+    aionode.interfaces.
 
     Args:
         path: A package with ``msg``, ``srv`` or ``action`` folders, or a folder of packages.
-        out_dir: Where to write to; folders are made as needed.
+        out_dir: Folder to write to; missing folders are created.
 
     Raises:
-        IdlError: A definition cannot be read; nothing is written then.
-        FileNotFoundError: There is no folder `path`.
+        IdlError: A definition is not valid; nothing is written then.
+        FileNotFoundError: The folder `path` does not exist.
     """
     texts = read_folder(path)
     builder = Builder(texts, reuse=False)
@@ -89,7 +90,7 @@ def generate(path: str | Path, out_dir: str | Path) -> list[Path]:
 
 
 def python_package(folder: Path) -> tuple[str, ...]:
-    """Return the dotted name, in parts, that a folder has as a Python package; empty if none."""
+    """Return the parts of a folder's dotted name as a Python package; empty if it is not one."""
     parts: list[str] = []
     while (folder / "__init__.py").is_file():
         parts.insert(0, folder.name)
@@ -98,7 +99,7 @@ def python_package(folder: Path) -> tuple[str, ...]:
 
 
 def docstrings(file: Path) -> dict[tuple[str, ...], str]:
-    """Return the docstrings of a module and its classes, by their names from the outside in."""
+    """Return the docstrings of a module and its classes, by qualified name in parts."""
     if not file.is_file():
         return {}
     found: dict[tuple[str, ...], str] = {}
@@ -116,7 +117,7 @@ def docstrings(file: Path) -> dict[tuple[str, ...], str]:
 
 
 class Module:
-    """Writes the module of one kind of interface of one package."""
+    """Generates the module of one kind of interface of one package."""
 
     def __init__(
         self,
@@ -130,11 +131,11 @@ class Module:
         self.module_of_interfaces = module_of_interfaces
         self.docs = docs
         self.imports: dict[str, set[str]] = {}
-        """What to import, by module; ``Name as Other`` where the name is taken."""
+        """Names to import, by module; ``Name as Other`` where the name is taken."""
         self.taken: set[str] = set()
         """Names of classes, fields and constants of this module."""
         self.classes: dict[str, str] = {}
-        """What other packages' messages are called here, by their ROS name."""
+        """Local names of messages of other packages, by ROS name."""
 
     def source(self, members: list[tuple[InterfaceText, type[Interface]]]) -> str:
         """Return the text of the module."""
@@ -170,7 +171,7 @@ class Module:
             yield from self.body(getattr(cls, half), "        ")
 
     def doc(self, *names: str, fallback: str) -> str:
-        """Return the docstring that a class had in the module that is there, or `fallback`."""
+        """Return the docstring of a class in the existing module, or `fallback`."""
         return self.docs.get(names, fallback)
 
     def body(self, cls: type[Message], indent: str) -> Iterator[str]:
@@ -214,7 +215,7 @@ class Module:
         return self.helper("DEFAULT")
 
     def annotation(self, type_: FieldType, *, plain: bool) -> str:
-        """Return the annotation of a field; without what type checkers need if `plain`."""
+        """Return the annotation of a field; `plain` omits the part for type checkers."""
         one = self.one(type_)
         if type_.container == "single":
             return one
@@ -244,7 +245,7 @@ class Module:
         return f"{self.helper('Bounded')}[{name}, {type_.string_bound}]"
 
     def message_name(self, typename: str) -> str:
-        """Return what a message class is called in this module."""
+        """Return the name of a message class in this module."""
         package, kind, name = split_type_name(typename)
         if (package, kind) == (self.package, self.kind):
             return name
@@ -259,21 +260,21 @@ class Module:
         return self.classes[typename]
 
     def helper(self, name: str) -> str:
-        """Return what a name of aionode.message is called in this module."""
+        """Return the local name of a name of aionode.message."""
         return self.outside("aionode.message", name)
 
     def builtin(self, name: str) -> str:
-        """Return what a builtin is called in this module."""
+        """Return the local name of a builtin."""
         return self.outside("builtins", name) if name in self.taken else name
 
     def outside(self, module: str, name: str) -> str:
-        """Return what an imported name is called: with a final ``_`` if the name is taken."""
+        """Return the local name of an imported name, which ends in ``_`` if the name is taken."""
         here = f"{name}_" if name in self.taken else name
         self.need(module, name, here)
         return here
 
     def need(self, module: str, name: str, here: str) -> None:
-        """Note an import."""
+        """Add an import."""
         self.imports.setdefault(module, set()).add(name if name == here else f"{name} as {here}")
 
     def import_lines(self) -> Iterator[str]:
@@ -288,7 +289,7 @@ class Module:
 
 
 def is_aionode(module: str) -> bool:
-    """Return whether a module is of this library."""
+    """Return whether a module belongs to this library."""
     return module.partition(".")[0] == "aionode"
 
 

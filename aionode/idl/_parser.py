@@ -1,6 +1,6 @@
-"""Reading the text of ``.msg``, ``.srv`` and ``.action`` files.
+"""Parses the text of ``.msg``, ``.srv`` and ``.action`` files.
 
-One member stands on each line: ``type name``, ``type name default`` or ``type NAME=value``.
+Each line has one member: ``type name``, ``type name default`` or ``type NAME=value``.
 ``#`` begins a comment, ``---`` separates the messages of services and actions.
 """
 
@@ -54,14 +54,14 @@ ESCAPED = {
 
 
 MOST_ELEMENTS = 2**32 - 1
-"""How long a sequence or string can be at all: its length has 32 bits on the wire."""
+"""Largest bound of a sequence or string, as its length is encoded in 32 bits."""
 
 LARGEST_ARRAY = 2**26
-"""How many elements an array of fixed size may have, since each new message has all of them."""
+"""Largest number of elements of a fixed-size array, as each new message has all of them."""
 
 
 class LineError(Exception):
-    """A line cannot be read: what is wrong, and at which character of the line."""
+    """A line cannot be parsed: what is wrong, and at which offset in the line."""
 
     def __init__(self, offset: int, problem: str) -> None:
         self.offset = offset
@@ -70,15 +70,15 @@ class LineError(Exception):
 
 
 def parse(typename: str, text: str, file: str = "") -> InterfaceText:
-    """Return what the text of a definition says.
+    """Return a parsed definition.
 
     Args:
         typename: The type that it defines, such as ``std_msgs/msg/String``.
-        text: The text of a ``.msg``, ``.srv`` or ``.action`` file, as the name says.
-        file: Where it is from, for errors; the name if not given.
+        text: The text of a ``.msg``, ``.srv`` or ``.action`` file, according to the name.
+        file: The file that it comes from, for errors; by default the name of the type.
 
     Raises:
-        IdlError: It cannot be read; the error names file, line and column.
+        IdlError: The text is not valid; the error names file, line and column.
     """
     file = file or typename
     names = HALVES[split_type_name(typename)[1]]
@@ -115,17 +115,17 @@ def add(members: list[MemberText], new: MemberText) -> None:
     """Add a member to those of its message."""
     for old in members:
         if old.name == new.name:
-            raise LineError(new.column - 1, f"{new.name!r} is there already, on line {old.line}")
+            raise LineError(new.column - 1, f"{new.name!r} is already defined on line {old.line}")
     members.append(new)
 
 
 def member(line: str, number: int) -> MemberText:
-    """Return what one line says, or raise `LineError`."""
+    """Return the member on one line, or raise `LineError`."""
     start = len(line) - len(line.lstrip())
     match = TYPE.match(line, start)
     if match is None:
         raise LineError(
-            start, f"{line[start:].split(maxsplit=1)[0]!r} is no type; a line begins with one"
+            start, f"{line[start:].split(maxsplit=1)[0]!r} is not a type; a line begins with a type"
         )
     end = match.end()
     if end < len(line) and not line[end].isspace():
@@ -134,7 +134,7 @@ def member(line: str, number: int) -> MemberText:
         )
     type_ = type_text(match)
     name_match = re.compile(r"\s*([^\s=#]*)\s*").match(line, end)
-    assert name_match is not None  # noqa: S101 (it matches nothing at all, too)
+    assert name_match is not None  # noqa: S101 (it also matches an empty text)
     name, at, rest = name_match[1], name_match.start(1), name_match.end()
     if not name:
         raise LineError(at, f"the name is missing; '{line[start:end]} some_name' would fit")
@@ -147,14 +147,14 @@ def member(line: str, number: int) -> MemberText:
 
 
 def type_text(match: re.Match[str]) -> TypeText:
-    """Return the type that a line begins with."""
+    """Return the type at the beginning of a line."""
     name, at = match["name"], match.start()
     if name not in PRIMITIVES and not MESSAGE_NAME.fullmatch(name):
         close = difflib.get_close_matches(name, PRIMITIVES, 1)
         hint = (
-            f"did you mean {close[0]}?" if close else "there are " + ", ".join(sorted(PRIMITIVES))
+            f"did you mean {close[0]}?" if close else "use one of " + ", ".join(sorted(PRIMITIVES))
         )
-        raise LineError(at, f"{name!r} is no type; {hint}, and names of messages such as pkg/Name")
+        raise LineError(at, f"{name!r} is not a type; {hint}; message types look like pkg/Name")
     bound = None
     if match["string_bound"] is not None:
         at = match.start("string_bound")
@@ -172,7 +172,7 @@ def type_text(match: re.Match[str]) -> TypeText:
 
 
 def limit(text: str, at: int, what: str, most: int) -> int:
-    """Return the size or bound that `text` says, or raise `LineError`."""
+    """Return the size or bound in `text`, or raise `LineError`."""
     text = text.lstrip("0")
     if not text:
         number = "" if what == "a bound" else "a number of "
@@ -183,20 +183,20 @@ def limit(text: str, at: int, what: str, most: int) -> int:
 
 
 def check_name(name: str, at: int, *, constant: bool) -> None:
-    """Raise `LineError` if a field or constant cannot have this name."""
+    """Raise `LineError` if this is not a valid name of a field or constant."""
     if constant and not CONSTANT_NAME.fullmatch(name):
         raise LineError(
-            at, f"{name!r} is no name for a constant; upper-case letters, digits and _ fit"
+            at, f"{name!r} is not a valid constant name; use upper-case letters, digits and _"
         )
     if not constant and not FIELD_NAME.fullmatch(name):
-        fits = "lower-case letters, digits and single underscores fit, beginning with a letter"
-        raise LineError(at, f"{name!r} is no name for a field; {fits}")
+        valid = "use lower-case letters, digits and single underscores, starting with a letter"
+        raise LineError(at, f"{name!r} is not a valid field name; {valid}")
     if iskeyword(name):
-        raise LineError(at, f"{name!r} is a keyword of Python, which no attribute can be called")
+        raise LineError(at, f"{name!r} is a Python keyword, which no field can be called")
 
 
 def written_value(type_: TypeText, line: str, at: int, name: str, *, constant: bool) -> object:
-    """Return the default or the value of the constant that stands at `at`, or None."""
+    """Return the default or the value of the constant at offset `at`, or None."""
     if (
         type_.name in STRINGS
         and type_.container == "single"
@@ -213,15 +213,15 @@ def written_value(type_: TypeText, line: str, at: int, name: str, *, constant: b
                 raise LineError(at, f"the value of {name} is missing")
             return None
         if type_.name not in PRIMITIVES:
-            raise LineError(at, f"a message has no default here; {text!r} has to go")
+            raise LineError(at, f"a nested message cannot have a default; remove {text!r}")
         found = literal(type_, text, at)
     if constant and type_.container != "single":
-        raise LineError(at, "a constant is a single value, no array")
+        raise LineError(at, "a constant must be a single value, not an array")
     return checked(type_, found, at)
 
 
 def checked(type_: TypeText, found: object, at: int) -> object:
-    """Return the value in the form of the field's type; raise `LineError` if it does not fit."""
+    """Return the value converted to the field's type; raise `LineError` if it does not fit."""
     primitive = type_.primitive()
     unit = FieldType("uint8") if type_.name == "byte" else primitive
     try:
@@ -236,7 +236,7 @@ def checked(type_: TypeText, found: object, at: int) -> object:
 
 
 def without_comment(text: str) -> str:
-    """Return text up to a ``#`` that is not in quotes."""
+    """Return text up to the first ``#`` outside quotes."""
     position = 0
     while position < len(text) and text[position] != "#":
         quoted = QUOTED.match(text, position)
@@ -245,16 +245,16 @@ def without_comment(text: str) -> str:
 
 
 def literal(type_: TypeText, text: str, at: int) -> object:
-    """Return the value of text: a single one, or a list for an array or sequence."""
+    """Return the value of a literal: a single value, or a list for an array or sequence."""
     if type_.container == "single":
         return single(type_.name, text, at)
     if not text.startswith("[") or not text.endswith("]"):
-        raise LineError(at, f"{text!r} is no list; the default of an array looks like [1, 2, 3]")
+        raise LineError(at, f"{text!r} is not a list; write the default of an array like [1, 2, 3]")
     return [single(type_.name, item, at + offset) for offset, item in items(text, at)]
 
 
 def items(text: str, at: int) -> Iterator[tuple[int, str]]:
-    """Yield offset and text of each element of a list."""
+    """Yield the offset and the text of each element of a list."""
     position = start = 1
     while position < len(text):
         quoted = QUOTED.match(text, position)
@@ -277,7 +277,7 @@ def single(kind: str, text: str, at: int) -> object:
         quoted = QUOTED.fullmatch(text)
         if quoted is None and text[0] in "\"'":
             raise LineError(
-                at, f"the quote {text[0]} is not closed, or stands within; \\{text[0]} fits"
+                at, f"the quote {text[0]} is not closed; inside a string write \\{text[0]}"
             )
         return unescaped(quoted[2] if quoted else text)
     if kind == "bool":
@@ -285,7 +285,7 @@ def single(kind: str, text: str, at: int) -> object:
             return True
         if text.lower() in {"false", "0"}:
             return False
-        raise LineError(at, f"{text!r} is no bool; true and false are")
+        raise LineError(at, f"{text!r} is not a bool; write true or false")
     try:
         return float(text) if kind in {"float32", "float64"} else int(text, 0)
     except ValueError:
@@ -293,7 +293,7 @@ def single(kind: str, text: str, at: int) -> object:
     try:
         return int(text)  # 007 is decimal
     except ValueError:
-        raise LineError(at, f"{text!r} is no {kind}") from None
+        raise LineError(at, f"{text!r} is not a valid {kind}") from None
 
 
 def unescaped(text: str) -> str:

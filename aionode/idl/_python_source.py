@@ -1,4 +1,4 @@
-"""Pieces of Python source, laid out as the ruff formatter leaves them."""
+"""Pieces of Python source, formatted as ruff does."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ __all__ = [
 ]
 
 WIDTH = 100
-"""Longer lines are broken where that is possible."""
+"""Largest line length; longer lines are wrapped where possible."""
 
 
 def import_lines(module: str, names: Iterable[str]) -> Iterator[str]:
-    """Yield one import, and one for each renamed name, as isort has it."""
+    """Yield one import, and one for each renamed name, in the order of isort."""
     renamed = sorted(name for name in names if " as " in name)
     usual = sorted(set(names) - set(renamed), key=import_order)
     if usual:
@@ -39,7 +39,7 @@ def import_order(name: str) -> tuple[int, list[str | int]]:
 
 
 def wrapped(start: str, items: list[str], end: str, indent: str = "") -> list[str]:
-    """Return the lines of a list of items: one line if they fit, else a line for each."""
+    """Return a list of items as one line if it fits, else as one line for each item."""
     line = f"{start}{', '.join(items)}{end}"
     if len(line) <= WIDTH:
         return [line]
@@ -47,7 +47,7 @@ def wrapped(start: str, items: list[str], end: str, indent: str = "") -> list[st
 
 
 def class_line(name: str, bases: list[str], indent: str) -> list[str]:
-    """Return the line that begins a class, on three lines if it is long."""
+    """Return the head of a class, as three lines if it is long."""
     line = f"{indent}class {name}({', '.join(bases)}):"
     if len(line) <= WIDTH:
         return [line]
@@ -64,7 +64,7 @@ def doc_lines(text: str, indent: str) -> list[str]:
 
 
 def literal(value: object) -> str:
-    """Return a Python literal as the ruff formatter leaves it."""
+    """Return a Python literal as ruff formats it."""
     if isinstance(value, tuple):
         items = ", ".join(map(literal, value))
         return f"({items},)" if len(value) == 1 else f"({items})"

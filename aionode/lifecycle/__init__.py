@@ -1,4 +1,4 @@
-"""Managed nodes: their states, the transitions between them, and who brings them up and down.
+"""Managed nodes: their states, the transitions between them, and a manager for several nodes.
 
 ::
 
@@ -12,8 +12,8 @@
             return TransitionCallbackReturn.SUCCESS
 
 `LifecycleNode` has rclpy's names and behaviour, with callbacks that may be coroutines and that can
-be canceled. ``aionode lifecycle`` and ``ros2 lifecycle`` manage it from a terminal, and
-`LifecycleManager` from a program.
+be canceled. ``aionode lifecycle`` and ``ros2 lifecycle`` manage it from a terminal,
+and `LifecycleManager` from a program.
 """
 
 from __future__ import annotations

@@ -27,7 +27,7 @@ class ManagedEntity:
     """Takes part in the transitions of a node; see `LifecycleNode.add_managed_entity`.
 
     Each method gets the state in which the transition started, and returns its result. They are
-    plain functions, called in the order in which the entities were added.
+    not coroutines, and are called in the order in which the entities were added.
     """
 
     def on_configure(self, state: State) -> TransitionCallbackReturn:  # noqa: ARG002  # for subclasses
@@ -56,7 +56,7 @@ class ManagedEntity:
 
 
 class SimpleManagedEntity(ManagedEntity):
-    """A managed entity that is enabled while its node is active, and has nothing else to do."""
+    """A managed entity that is enabled while its node is active, and does nothing else."""
 
     def __init__(self) -> None:
         self._activated = False
@@ -86,8 +86,8 @@ class SimpleManagedEntity(ManagedEntity):
 
         Args:
             wrapped: The method.
-            when_not_enabled: Called in its place with the same arguments, without the entity; the
-                call returns None without it.
+            when_not_enabled: Called instead, with the same arguments except the entity; by default
+                the call returns None.
         """
 
         def decorate(method: Callable[..., Any]) -> Callable[..., Any]:
@@ -106,7 +106,7 @@ class LifecyclePublisher(SimpleManagedEntity, Generic[MsgT]):
     """A publisher that sends only while its node is active; made by `create_lifecycle_publisher`.
 
     Attributes:
-        discarded: How many messages were published while it was disabled, and went nowhere.
+        discarded: How many messages were published while it was disabled, and discarded.
     """
 
     def __init__(self, publisher: Publisher[MsgT]) -> None:
@@ -132,19 +132,19 @@ class LifecyclePublisher(SimpleManagedEntity, Generic[MsgT]):
 
     @property
     def qos_profile(self) -> QoSProfile:
-        """Its profile."""
+        """Its QoS."""
         return self._publisher.qos_profile
 
     @property
     def stats(self) -> PublisherStats:
-        """What it sent."""
+        """Its statistics."""
         return self._publisher.stats
 
     def publish(self, msg: MsgT | bytes | bytearray | memoryview) -> None:
-        """Do what `Publisher.publish` does while enabled; else count the message as discarded.
+        """Publish a message while enabled, as `Publisher.publish` does; otherwise discard it.
 
         Raises:
-            Exception: what `Publisher.publish` raises, while enabled.
+            Exception: while enabled, the exceptions of `Publisher.publish`.
         """
         if self.is_activated:
             self._publisher.publish(msg)
@@ -152,7 +152,7 @@ class LifecyclePublisher(SimpleManagedEntity, Generic[MsgT]):
             self.discarded += 1
 
     async def drain(self) -> None:
-        """Do what `Publisher.drain` does."""
+        """Wait until messages were sent; see `Publisher.drain`."""
         await self._publisher.drain()
 
     def get_subscription_count(self) -> int:
@@ -164,7 +164,7 @@ class LifecyclePublisher(SimpleManagedEntity, Generic[MsgT]):
         await self._publisher.wait_for_subscribers(count)
 
     def destroy(self) -> None:
-        """Destroy the publisher; twice is allowed."""
+        """Destroy the publisher; calling it again has no effect."""
         self._publisher.destroy()
 
 
@@ -193,10 +193,10 @@ class LifecycleTimer(SimpleManagedEntity):
 
 
 class Gate(SimpleManagedEntity):
-    """Lets calls of a callback through while its node is active.
+    """Passes calls to a callback while its node is active.
 
     Attributes:
-        discarded: How many messages came while it was disabled.
+        discarded: How many messages arrived while it was disabled.
     """
 
     def __init__(self) -> None:
@@ -204,7 +204,7 @@ class Gate(SimpleManagedEntity):
         self.discarded = 0
 
     def dropping(self, callback: Callable[..., Any]) -> Callable[..., Any]:
-        """Return `callback` as it is called for messages: what comes meanwhile is discarded."""
+        """Return a callback for messages, which discards them while disabled."""
 
         @functools.wraps(callback)
         def gated(*args: Any) -> Any:
@@ -216,7 +216,7 @@ class Gate(SimpleManagedEntity):
         return gated
 
     def refusing(self, callback: Callable[..., Any], subject: str) -> Callable[..., Any]:
-        """Return `callback` as it is called for requests: who asks meanwhile is told."""
+        """Return a callback for requests, which raises EntityInactiveError while disabled."""
 
         @functools.wraps(callback)
         def gated(*args: Any) -> Any:

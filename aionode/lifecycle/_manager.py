@@ -1,4 +1,4 @@
-"""Bringing managed nodes up in order, and down in the reverse order, over their services."""
+"""Bringing managed nodes up in order, and down in reverse order, through their services."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ DOWN = {
 
 
 class LifecycleManager:
-    """Manages nodes of this process, of others, or of ROS 2.
+    """Manages nodes in this process, in other processes, or in ROS 2.
 
     ::
 
@@ -33,9 +33,9 @@ class LifecycleManager:
             ...  # both are active; at the end /planner goes down first, then /camera
 
     Args:
-        node: The node whose clients ask the managed ones; it has to run.
+        node: The node whose clients call the managed ones; it must be running.
         node_names: Full names of the managed nodes, in the order in which they are brought up.
-        timeout_sec: How long one node may take to appear, and to answer one request.
+        timeout_sec: How long a node may take to appear, and to answer each request, in seconds.
     """
 
     def __init__(self, node: Node, node_names: Sequence[str], *, timeout_sec: float = 10.0) -> None:
@@ -64,11 +64,11 @@ class LifecycleManager:
     async def startup(self) -> None:
         """Configure the nodes in order, then activate them in order.
 
-        If one cannot, or this is cancelled, those that had begun are brought down again, the last
-        one first.
+        If one fails, or this is cancelled, the nodes already configured are brought down again, the
+        last one first.
 
         Raises:
-            TransitionError: a node refused or failed, or is not there.
+            TransitionError: a node refused, failed, or did not appear.
             RequestTimeoutError: a node did not answer in time.
         """
         try:
@@ -82,10 +82,10 @@ class LifecycleManager:
     async def reset(self) -> None:
         """Bring the nodes down to unconfigured, the last one first, whatever states they are in.
 
-        Every node is asked, also if another one fails.
+        Every node is brought down, even if another one fails.
 
         Raises:
-            ExceptionGroup: of what the nodes failed with.
+            ExceptionGroup: the failures of the nodes.
         """
         await self._down(self.node_names, strict=True)
 
@@ -93,7 +93,7 @@ class LifecycleManager:
         """Finalize the nodes, the last one first.
 
         Raises:
-            TransitionError: a node refused or failed, or is not there.
+            TransitionError: a node refused, failed, or did not appear.
             RequestTimeoutError: a node did not answer in time.
         """
         for name in reversed(self.node_names):
@@ -104,7 +104,7 @@ class LifecycleManager:
         """Have one node make a transition.
 
         Raises:
-            TransitionError: it refused or failed, or is not there.
+            TransitionError: it refused, failed, or did not appear.
             RequestTimeoutError: it did not answer in time.
         """
         client = self._changes[node_name]
@@ -133,7 +133,7 @@ class LifecycleManager:
         errors: list[Exception] = []
         for name in reversed(list(names)):
             if not self._states[name].service_is_ready():
-                continue  # it has gone, or never came
+                continue  # it is gone, or never appeared
             try:
                 for label in DOWN.get(await self.get_state(name), ()):
                     await self.change_state(name, label)

@@ -1,4 +1,4 @@
-"""A node whose life others manage: configured, activated, deactivated, cleaned up, shut down."""
+"""A managed node, which is configured, activated, deactivated, cleaned up and shut down."""
 
 from __future__ import annotations
 
@@ -51,23 +51,23 @@ EVENT_QOS = QoSProfile(depth=10)
 
 
 class LifecycleNode(Node):
-    """A managed node: it does its work only when it was configured and activated.
+    """A managed node: it works only after it has been configured and activated.
 
     Override `on_configure`, `on_activate` and the others. They get the state in which the
-    transition started, and return a `TransitionCallbackReturn`; they may be coroutines, which may
-    await anything, services of this node included. An exception is logged with its traceback,
-    raised by the `trigger_*` method that asked, and given to `on_error`.
+    transition started, and return a `TransitionCallbackReturn`. They may be coroutines, which may
+    await anything, including services of this node. An exception is logged with its traceback,
+    raised by the `trigger_*` method that was called, and passed to `on_error`.
 
-    Other processes manage the node by the standard services (``aionode lifecycle``, ``ros2
-    lifecycle``); `get_state` answers during a transition as well. Another request during a
-    transition is refused, with three exceptions. ``transition_failure`` and ``transition_error``,
-    which the table has for this state, cancel the callback, with that result. ``shutdown`` cancels
+    Other processes manage the node through the standard services (``aionode lifecycle``, ``ros2
+    lifecycle``); `get_state` also answers during a transition. Other requests during a transition
+    are refused, with three exceptions. ``transition_failure`` and ``transition_error``, which
+    `rcl_lifecycle` allows in this state, cancel the callback with that result. ``shutdown`` cancels
     it as a failure, and then shuts down.
 
     Args:
         node_name: As for `Node`.
-        enable_communication_interface: Whether others can manage the node by services.
-        options: What `Node` takes besides.
+        enable_communication_interface: Whether other processes can manage the node.
+        options: The other arguments of `Node`.
 
     Raises:
         CallbackSignatureError: one of its callbacks takes other arguments.
@@ -104,39 +104,39 @@ class LifecycleNode(Node):
             return callback  # type: ignore[no-any-return]  # found by name
         return lambda state, _: callback(state)
 
-    # To be overridden
+    # To override
 
     def on_configure(self, state: State) -> Result:
-        """Read parameters, load what is needed; without an override, configure all entities."""
+        """Read parameters and allocate resources; by default, configure all entities."""
         return self._all("on_configure", self._transitions.entities, state)
 
     def on_cleanup(self, state: State) -> Result:
-        """Undo `on_configure`; without an override, clean up all entities, the last one first."""
+        """Undo `on_configure`; by default, clean up all entities, the last one first."""
         return self._all("on_cleanup", reversed(self._transitions.entities), state)
 
     def on_activate(self, state: State) -> Result:
-        """Begin to work; without an override, enable all entities.
+        """Start working; by default, enable all entities.
 
-        An override calls this as well: ``return super().on_activate(state)``.
+        An override also calls this: ``return super().on_activate(state)``.
         """
         return self._all("on_activate", self._transitions.entities, state)
 
     def on_deactivate(self, state: State) -> Result:
-        """Stop working; without an override, disable all entities, the last one first."""
+        """Stop working; by default, disable all entities, the last one first."""
         return self._all("on_deactivate", reversed(self._transitions.entities), state)
 
     def on_shutdown(self, state: State) -> Result:
-        """End for good; without an override, shut down all entities, the last one first."""
+        """End permanently; by default, shut down all entities, the last one first."""
         return self._all("on_shutdown", reversed(self._transitions.entities), state)
 
     def on_error(self, state: State, error: Exception | None = None) -> Result:  # noqa: ARG002  # for overrides
-        """Put things right after an error; SUCCESS leads to unconfigured, all else to finalized.
+        """Recover from an error; SUCCESS leads to unconfigured, other results to finalized.
 
         An override takes ``(state)``, as in rclpy, or ``(state, error)``.
 
         Args:
             state: The state in which the failed transition started.
-            error: The exception, or None where the callback returned ERROR.
+            error: The exception, or None if the callback returned ERROR.
         """
         return FAILURE
 
@@ -150,10 +150,10 @@ class LifecycleNode(Node):
         return SUCCESS
 
     def report_progress(self, text: str, fraction: float | None = None) -> None:
-        """Say within a transition how far it is: to the log, and to readers of `lifecycle_events`.
+        """Report the progress of a transition to the log and to readers of `lifecycle_events`.
 
         Args:
-            text: What is being done.
+            text: The current step.
             fraction: How much is done, from 0 to 1.
         """
         share = "" if fraction is None else f" ({fraction:.0%})"
@@ -168,21 +168,21 @@ class LifecycleNode(Node):
         return self._transitions.machine.state
 
     def lifecycle_events(self) -> AsyncIterator[LifecycleEvent]:
-        """Iterate over changes of state and progress; a slow reader gets the newest 100.
+        """Iterate over state changes and progress reports; a slow reader gets the newest 100.
 
-        It begins with the first step of the iteration.
+        Events are collected from the first step of the iteration.
         """
         return self._transitions.events()
 
     async def trigger_configure(self) -> TransitionCallbackReturn:
         """Configure the node, and return the result of `on_configure`.
 
-        Cancelling, by `asyncio.timeout` for example, cancels the callback, and the node is in the
-        state to which a failure leads. So do the other `trigger_*` methods.
+        Cancelling, for example by `asyncio.timeout`, cancels the callback, and the node enters the
+        state to which a failure leads. The other `trigger_*` methods do the same.
 
         Raises:
-            TransitionError: the node is in another state, or the callback raised; its exception is
-                the cause.
+            TransitionError: the node is in another state, or the callback raised an exception,
+                which is the cause.
         """
         return await self._transitions.trigger("configure")
 
@@ -199,14 +199,14 @@ class LifecycleNode(Node):
         return await self._transitions.trigger("deactivate")
 
     async def trigger_shutdown(self) -> TransitionCallbackReturn:
-        """Shut the node down, after cancelling a transition under way; see `trigger_configure`."""
+        """Shut the node down, cancelling a transition in progress; see `trigger_configure`."""
         await self._cancel_transition()
         return await self._transitions.trigger("shutdown")
 
     # Entities
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
-        """Let `entity` take part in the transitions from now on, after those added before."""
+        """Have `entity` take part in transitions from now on, after those added earlier."""
         self._transitions.entities.append(entity)
 
     def create_lifecycle_publisher(
@@ -220,7 +220,7 @@ class LifecycleNode(Node):
         return publisher
 
     def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher[Any]) -> bool:
-        """Destroy a publisher of this node; return whether it was one."""
+        """Destroy a publisher; False if it is not one of this node's."""
         if publisher not in self._transitions.entities:
             return False
         self._transitions.entities.remove(publisher)
@@ -237,7 +237,7 @@ class LifecycleNode(Node):
     ) -> Subscription[MsgT]:
         """Return a subscription whose callback is called only while the node is active.
 
-        What comes in other states is discarded; see `create_subscription` for the arguments.
+        Messages that arrive in other states are discarded; see `create_subscription`.
         """
         gate = Gate()
         self.add_managed_entity(gate)
@@ -254,7 +254,7 @@ class LifecycleNode(Node):
     ) -> Service[RequestT, ResponseT]:
         """Return a service that answers only while the node is active.
 
-        In other states the client gets a `ServiceError` that says so; see `create_service`.
+        In other states the client gets a `ServiceError`; see `create_service`.
         """
         gate = Gate()
         self.add_managed_entity(gate)
@@ -275,7 +275,7 @@ class LifecycleNode(Node):
         self.add_managed_entity(timer)
         return timer
 
-    # From other processes
+    # Services for other processes
 
     def _serve(self) -> None:
         self.create_service(ChangeState, "~/change_state", self._change_state, concurrent=True)
@@ -293,7 +293,7 @@ class LifecycleNode(Node):
         return response
 
     async def _change(self, label: str, transition_id: int) -> bool:
-        """Do what a request says; return whether it succeeded."""
+        """Carry out a request; return whether it succeeded."""
         machine = self._transitions.machine
         if machine.in_transition and is_shutdown(label, transition_id):
             await self._cancel_transition()
@@ -304,7 +304,7 @@ class LifecycleNode(Node):
             return False
         if not machine.in_transition:
             return await self._transitions.run(transition) is SUCCESS
-        # The result of the callback that runs, as another process wants it to be.
+        # The requester ends the running callback with a result of its choice.
         if transition.label == SUCCESS.to_label() or transition.start == ERROR_PROCESSING:
             return False
         wanted = next(one for one in TransitionCallbackReturn if one.to_label() == transition.label)
@@ -346,7 +346,7 @@ class LifecycleNode(Node):
 
 
 def is_shutdown(label: str, transition_id: int) -> bool:
-    """Whether a request asks for the end of the node, in whatever state it is."""
+    """Whether a request is for a shutdown, which has a number for each state."""
     if label:
         return label == "shutdown"
     return any(
@@ -355,12 +355,12 @@ def is_shutdown(label: str, transition_id: int) -> bool:
 
 
 def state_msg(state: State) -> StateMsg:
-    """Return a state as it goes over the wire."""
+    """Return a state as a message."""
     return StateMsg(id=state.state_id, label=state.label)
 
 
 def description_of(transition: Transition) -> TransitionDescription:
-    """Return a transition as it goes over the wire."""
+    """Return a transition as a message."""
     return TransitionDescription(
         transition=TransitionMsg(id=transition.transition_id, label=transition.label),
         start_state=state_msg(transition.start),

@@ -1,14 +1,14 @@
-"""Runs the transitions of one managed node: one at a time, awaited, and always to a defined state.
+"""Runs the transitions of one managed node, one at a time, and always to a defined state.
 
 However a transition ends, the node is in a primary state afterwards::
 
-    the callback returns SUCCESS, FAILURE or ERROR    as the table of `states` says
-    it returns anything else, or raises               as ERROR, with the exception
-    it is canceled: its task, `cancel`, a timeout     as FAILURE, at once
+    the callback returns SUCCESS, FAILURE or ERROR    according to the table in `_states`
+    it returns anything else, or raises               as for ERROR, with the exception
+    it is canceled: its task, `cancel`, a timeout     as for FAILURE, at once
 
-ERROR leads through `errorprocessing`, in which `on_error` runs; whatever ends that early counts as
-its failure, and the node is finalized. Between the end of a callback and the next state nothing is
-awaited, so that no cancellation can come in between.
+ERROR leads through `errorprocessing`, in which `on_error` runs; if that is canceled or raises, the
+node is finalized. Nothing is awaited between the end of a callback and the next state, so no
+cancellation can intervene.
 """
 
 from __future__ import annotations
@@ -43,19 +43,19 @@ FAILURE = TransitionCallbackReturn.FAILURE
 ERROR = TransitionCallbackReturn.ERROR
 
 KEPT_EVENTS = 100
-"""How many events wait for a slow reader; one more pushes out the oldest."""
+"""How many events are kept for a slow reader; after that the oldest are dropped."""
 
 
 @dataclass(frozen=True, slots=True)
 class LifecycleEvent:
-    """Something that happened to a managed node.
+    """A state change or progress report of a managed node.
 
     Attributes:
         state: The state of the node now.
         start: The state it was in before; the same as `state` for progress.
         transition: Label of the transition that was requested.
-        progress: What the callback reported; empty for a change of state.
-        fraction: How much of the transition is done, from 0 to 1, if the callback said so.
+        progress: The text the callback reported; empty for a state change.
+        fraction: How much of the transition is done, from 0 to 1, if the callback reported it.
         error: The exception that made the transition fail.
     """
 
@@ -68,17 +68,17 @@ class LifecycleEvent:
 
 
 class TransitionRunner:
-    """The state of one node, and the transition under way.
+    """The state of one node, and the transition in progress.
 
     Args:
         node: Full name of the node, for errors.
         logger: Where exceptions of callbacks go, with their traceback.
-        callback: Returns what to call for a transition, given its label, or ``"error"``; it takes
+        callback: Returns the callback for the label of a transition, or for ``"error"``. That takes
             the state and the exception, and may return an awaitable.
         publish: Called with the old and the new state at each change.
 
     Attributes:
-        machine: The state.
+        machine: The current state.
         entities: The managed entities, in the order in which they were added.
     """
 
@@ -95,12 +95,11 @@ class TransitionRunner:
         self._logger = logger
         self._callback = callback
         self._publish = publish
-        self._label = ""
-        self._error: Exception | None = None
-        # The callback that runs, and the result that whoever cancels it wants.
-        self._scope: asyncio.Timeout | None = None
-        self._wanted = FAILURE
-        self._idle = asyncio.Event()
+        self._label = ""  # of the current transition, or of the last one
+        self._error: Exception | None = None  # why that failed
+        self._scope: asyncio.Timeout | None = None  # expires to cancel the running callback
+        self._wanted = FAILURE  # the result of a callback that `cancel` cancels
+        self._idle = asyncio.Event()  # set while no transition is in progress
         self._idle.set()
         self._readers: set[EventQueue] = set()
 
@@ -129,7 +128,7 @@ class TransitionRunner:
     async def run(self, transition: Transition) -> TransitionCallbackReturn:
         """Make an available transition, and return the result of its callback.
 
-        Cancelling ends the callback, and the node is where a failure leads.
+        Cancelling cancels the callback, and the node enters the state to which a failure leads.
         """
         start = self.machine.state
         enabled = self._enabled()
@@ -147,7 +146,7 @@ class TransitionRunner:
         return result
 
     async def _call(self, name: str, start: State) -> TransitionCallbackReturn:
-        """Run a callback, and leave the transition state as its result says."""
+        """Run a callback, and leave the transition state according to its result."""
         result = FAILURE
         self._wanted = FAILURE
         try:
@@ -159,7 +158,7 @@ class TransitionRunner:
         except asyncio.CancelledError:
             self._logger.warning(f"on_{name} was canceled")
             raise
-        except Exception as error:  # noqa: BLE001  # goes to the log, to on_error and to the caller
+        except Exception as error:  # noqa: BLE001  # passed to the log, on_error and the caller
             if self._scope is not None and self._scope.expired():
                 self._logger.warning(f"on_{name} was canceled by a request")
                 result = self._wanted
@@ -172,7 +171,7 @@ class TransitionRunner:
         return result
 
     def _checked(self, name: str, returned: object) -> TransitionCallbackReturn:
-        """Return what a callback returned, if it is a result."""
+        """Return the result of a callback; raise TypeError if it is something else."""
         if isinstance(returned, TransitionCallbackReturn):
             return returned
         raise TypeError(
@@ -187,16 +186,16 @@ class TransitionRunner:
         self._error = error
 
     def cancel(self, result: TransitionCallbackReturn) -> None:
-        """Cancel the callback that runs, with a result in place of its own; else do nothing.
+        """Cancel the running callback, if any, and use `result` as its result.
 
-        A callback that catches the cancellation and returns has its own result.
+        A callback that catches the cancellation and returns keeps its own result.
         """
         if self._scope is not None and not self._scope.expired():
             self._wanted = result
-            self._scope.reschedule(0.0)  # the past: at the next turn of the loop
+            self._scope.reschedule(0.0)  # in the past: at the next turn of the loop
 
     async def wait_idle(self) -> None:
-        """Wait until no transition is under way."""
+        """Wait until no transition is in progress."""
         await self._idle.wait()
 
     # Entities
@@ -209,7 +208,7 @@ class TransitionRunner:
         ]
 
     def _settle_entities(self, start: State, enabled: list[SimpleManagedEntity]) -> None:
-        """Let entities be enabled in the active state only, however the transition ended."""
+        """Enable entities in the active state only, however the transition ended."""
         if self.machine.state != ACTIVE:
             for entity in reversed(self._enabled()):
                 entity.on_deactivate(start)
@@ -225,19 +224,19 @@ class TransitionRunner:
         move()
         state = self.machine.state
         self._publish(start, state)
-        self._tell(LifecycleEvent(state, start, self._label, error=self._error))
+        self._emit(LifecycleEvent(state, start, self._label, error=self._error))
 
     def report(self, progress: str, fraction: float | None) -> None:
-        """Tell readers of events how far a transition is."""
+        """Report the progress of a transition to readers of events."""
         state = self.machine.state
-        self._tell(LifecycleEvent(state, state, self._label, progress, fraction))
+        self._emit(LifecycleEvent(state, state, self._label, progress, fraction))
 
-    def _tell(self, event: LifecycleEvent) -> None:
+    def _emit(self, event: LifecycleEvent) -> None:
         for reader in self._readers:
             reader.put(event)
 
     async def events(self) -> AsyncIterator[LifecycleEvent]:
-        """Iterate over what happens from the first step of the iteration on."""
+        """Iterate over the events from the first step of the iteration on."""
         reader = EventQueue()
         self._readers.add(reader)
         try:
@@ -248,7 +247,7 @@ class TransitionRunner:
 
 
 class EventQueue:
-    """Events for one reader; a full queue drops its oldest."""
+    """The events for one reader; a full queue drops the oldest."""
 
     def __init__(self) -> None:
         self._events: deque[LifecycleEvent] = deque(maxlen=KEPT_EVENTS)

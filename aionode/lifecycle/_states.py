@@ -1,9 +1,8 @@
-"""The states and transitions of a managed node, as a table and a machine that follows it.
+"""The states and transitions of a managed node: a table, and a state machine over it.
 
-The numbers, names and their order are those of `rcl_lifecycle`. A transition that is requested,
-such as `configure`, leads to a transition state (`configuring`) in which the node's callback runs;
-what that returns is a transition as well, such as `transition_success`, and leads to the next
-primary state.
+Numbers, names and order are those of `rcl_lifecycle`. A requested transition, such as `configure`,
+leads to a transition state (`configuring`) in which the node's callback runs. The callback's result
+is a transition too, such as `transition_success`, and leads to the next primary state.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ __all__ = [
 
 
 class State(NamedTuple):
-    """A state of a managed node, with rclpy's names."""
+    """A state of a managed node, with rclpy's attribute names."""
 
     label: str
     state_id: int
@@ -37,7 +36,7 @@ class State(NamedTuple):
 
 
 class Transition(NamedTuple):
-    """A move from one state to another."""
+    """A transition from one state to another."""
 
     transition_id: int
     label: str
@@ -56,7 +55,7 @@ class TransitionCallbackReturn(Enum):
     ERROR = 99
 
     def to_label(self) -> str:
-        """Return the label of the transition that this result stands for."""
+        """Return the label of the transition that this result causes."""
         return f"transition_{self.name.lower()}"
 
 
@@ -117,7 +116,7 @@ TRANSITIONS: Final = (
 
 
 class StateMachine:
-    """Follows the table: pure state, without callbacks, messages or time.
+    """The current state, and the rules of the table; no callbacks, messages or time.
 
     Attributes:
         state: The current state.
@@ -128,7 +127,7 @@ class StateMachine:
 
     @property
     def in_transition(self) -> bool:
-        """Whether a callback's result is awaited."""
+        """Whether a transition is in progress, and its callback has not returned."""
         return self.state.state_id >= CONFIGURING.state_id
 
     def available(self) -> list[Transition]:
@@ -136,7 +135,7 @@ class StateMachine:
         return [one for one in TRANSITIONS if one.start == self.state]
 
     def find(self, label: str = "", transition_id: int = 0) -> Transition | None:
-        """Return an available transition; a label that is not empty wins over the number.
+        """Return an available transition, by its label or, if that is empty, by its number.
 
         That is how `rcl_lifecycle` reads a `ChangeState` request.
         """
@@ -156,12 +155,12 @@ class StateMachine:
         self.state = transition.goal
 
     def finish(self, result: TransitionCallbackReturn) -> None:
-        """Leave a transition state as the result of its callback says.
+        """Leave a transition state according to the result of its callback.
 
         Raises:
-            ValueError: no transition is under way.
+            ValueError: no transition is in progress.
         """
         outcome = self.find(result.to_label())
         if outcome is None:
-            raise ValueError(f"no transition is under way in {self.state}")
+            raise ValueError(f"no transition is in progress in {self.state}")
         self.state = outcome.goal

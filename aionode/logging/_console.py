@@ -1,4 +1,4 @@
-"""How a line looks, and where it goes: the console, a file, a sink.
+"""The format of log lines, and the handlers for the console and for sinks.
 
 The format, the colours and the environment variables are those of rcutils.
 """
@@ -36,10 +36,10 @@ ESCAPES = {"\\a": "\a", "\\b": "\b", "\\n": "\n", "\\r": "\r", "\\t": "\t"}
 
 
 class RosRecord(logging.LogRecord):
-    """A record of the standard library with what ROS adds.
+    """A record of the standard library, extended for ROS.
 
     Attributes:
-        ros_name: Name of the logger as ROS knows it.
+        ros_name: Name of the logger in ROS.
         stamp_ns: When it was logged, in nanoseconds since the epoch.
     """
 
@@ -48,16 +48,16 @@ class RosRecord(logging.LogRecord):
 
 
 class LogEvent(NamedTuple):
-    """One logged message, as a sink gets it: the fields of `rcl_interfaces/msg/Log`.
+    """One logged message, as passed to a sink: the fields of `rcl_interfaces/msg/Log`.
 
     Attributes:
         level: 10 to 50.
         name: Name of the logger.
         msg: The text.
         file: Path of the file that logged it.
-        function: Function there.
-        line: Line there.
-        stamp_ns: When, in nanoseconds since the epoch.
+        function: The function that logged it.
+        line: The line that logged it.
+        stamp_ns: When it was logged, in nanoseconds since the epoch.
     """
 
     level: int
@@ -73,12 +73,12 @@ class LogEvent(NamedTuple):
 
 
 def severity_of(levelno: int) -> int:
-    """Return ROS's severity for a level of the standard library, which may lie between."""
+    """Return the ROS severity for a level of the standard library, rounded down."""
     return min(max(levelno // 10 * 10, 10), 50)
 
 
 def name_of(record: logging.LogRecord) -> str:
-    """Return the name as ROS knows it."""
+    """Return the name of the logger in ROS."""
     return record.ros_name if isinstance(record, RosRecord) else record.name
 
 
@@ -88,7 +88,7 @@ def stamp_of(record: logging.LogRecord) -> int:
 
 
 def text_of(record: logging.LogRecord) -> str:
-    """Return the message, with the traceback where there is one."""
+    """Return the message, with the traceback if there is one."""
     text = record.getMessage()
     if record.exc_info:
         text = f"{text}\n{logging.Formatter().formatException(record.exc_info)}"
@@ -96,7 +96,7 @@ def text_of(record: logging.LogRecord) -> str:
 
 
 def seconds_text(record: logging.LogRecord) -> str:
-    """Return the time in seconds, ten digits or more and nine decimals."""
+    """Return the time in seconds, with at least ten digits and nine decimals."""
     seconds, rest = divmod(stamp_of(record), S_TO_NS)
     return f"{seconds:010d}.{rest:09d}"
 
@@ -122,9 +122,9 @@ TOKENS: dict[str, Callable[[logging.LogRecord], object]] = {
 
 
 class LineFormatter(logging.Formatter):
-    """Makes lines after a format of rcutils: text with tokens such as ``{severity}`` in it.
+    """Formats lines as rcutils does: the format contains tokens such as ``{severity}``.
 
-    What looks like a token and is none stays as it is.
+    Unknown tokens are left unchanged.
     """
 
     def __init__(self, text: str = DEFAULT_FORMAT) -> None:
@@ -136,20 +136,20 @@ class LineFormatter(logging.Formatter):
         self._values = [TOKENS[token] for token in tokens]
 
     def format(self, record: logging.LogRecord) -> str:
-        """Return the line, without an end of line."""
+        """Return the line, without a newline."""
         return self._template % tuple([value(record) for value in self._values])
 
 
-# Where it goes
+# Handlers
 
 
 class ConsoleSettings(NamedTuple):
-    """What the environment says about the console.
+    """The settings of the console, from the environment.
 
     Attributes:
         line_format: The format of a line.
         use_stdout: Write to stdout, not stderr.
-        flush: Write each line out at once; None leaves it to the stream.
+        flush: Flush each line; None leaves it to the stream.
         colours: Colour lines by severity; None colours them on a terminal.
     """
 
@@ -160,7 +160,7 @@ class ConsoleSettings(NamedTuple):
 
     @classmethod
     def from_environment(cls, environ: Mapping[str, str] = os.environ) -> ConsoleSettings:
-        """Return the settings that the ``RCUTILS_…`` variables ask for.
+        """Return the settings in the ``RCUTILS_…`` variables.
 
         Raises:
             ConfigurationError: One of them is neither 0 nor 1 (a ValueError).
@@ -169,13 +169,13 @@ class ConsoleSettings(NamedTuple):
         return cls(
             environ.get("RCUTILS_CONSOLE_OUTPUT_FORMAT") or DEFAULT_FORMAT,
             flag("RCUTILS_LOGGING_USE_STDOUT", environ) or False,
-            None if buffered is None else True,  # line by line, or at once: a line at a time
+            None if buffered is None else True,  # whether 0 or 1, lines are written one by one
             flag("RCUTILS_COLORIZED_OUTPUT", environ),
         )
 
 
 def flag(variable: str, environ: Mapping[str, str]) -> bool | None:
-    """Return a variable that is 0 or 1, or None if it is not set."""
+    """Return the value of a variable that is 0 or 1; None if it is not set."""
     value = environ.get(variable, "")
     if value not in {"", "0", "1"}:
         raise ConfigurationError(variable, value, "it must be 0 or 1")
@@ -183,10 +183,10 @@ def flag(variable: str, environ: Mapping[str, str]) -> bool | None:
 
 
 def is_shown_elsewhere(record: logging.LogRecord) -> bool:
-    """Return whether the application's own handler writes the record to the console.
+    """Return whether a handler of the application writes the record to the console.
 
-    That is one of the root logger, as `logging.basicConfig` makes it, which gets the record after
-    this package's handlers.
+    Such a handler belongs to the root logger, as after `logging.basicConfig`, and gets the record
+    after the handlers of this package.
     """
     root = logging.getLogger()
     top = logging.getLogger(record.name.partition(".")[0])
@@ -207,9 +207,9 @@ def is_shown_elsewhere(record: logging.LogRecord) -> bool:
 
 
 class ConsoleHandler(logging.Handler):
-    """Writes each record once to the stream that is sys.stderr (or sys.stdout) at that time.
+    """Writes each record once, to whatever sys.stderr (or sys.stdout) is at that time.
 
-    Where the application writes it there itself, with a handler of the root logger, it is left out.
+    Records that a handler of the application writes to the console are skipped.
     """
 
     def __init__(self, settings: ConsoleSettings) -> None:
@@ -219,13 +219,13 @@ class ConsoleHandler(logging.Handler):
 
     @property
     def stream(self) -> TextIO:
-        """Where lines go now."""
+        """The stream to write to now."""
         return sys.stdout if self.settings.use_stdout else sys.stderr
 
     def emit(self, record: logging.LogRecord) -> None:
         """Write one line."""
         if record.__dict__.get("aionode_shown"):
-            return  # it came by two ways: the logger's own handler and the root's
+            return  # already handled: the logger and the root logger both have this handler
         record.aionode_shown = True
         if is_shown_elsewhere(record):
             return
@@ -238,15 +238,15 @@ class ConsoleHandler(logging.Handler):
             stream.write(line + "\n")
             if settings.flush or not settings.use_stdout:
                 stream.flush()
-        except (OSError, ValueError):  # the stream is closed, or whoever read it is gone
+        except (OSError, ValueError):  # the stream is closed, or its reader is gone
             self.handleError(record)
 
 
 class SinkHandler(logging.Handler):
-    """Hands the records of one logger, and of those below it, to a function.
+    """Passes the records of one logger, and of its children, to a function.
 
-    A record goes to the nearest logger with a sink only: with nodes ``/a`` and ``/a/b``, whose
-    loggers are ``a`` and ``a.b``, what ``a.b`` logs is not published as said by ``a`` too.
+    A record is passed to the sink of the nearest logger only: with nodes ``/a`` and ``/a/b``, whose
+    loggers are ``a`` and ``a.b``, a record of ``a.b`` is not published by node ``/a`` as well.
     """
 
     def __init__(self, name: str, sink: Callable[[LogEvent], None]) -> None:
@@ -256,7 +256,7 @@ class SinkHandler(logging.Handler):
         self._inside = threading.local()
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Hand one record on, unless it was logged by the sink itself."""
+        """Pass on one record, unless the sink itself logged it."""
         taken = record.__dict__.setdefault("aionode_taken", self._name)
         if taken != self._name or getattr(self._inside, "yes", False):
             return
@@ -278,9 +278,9 @@ class SinkHandler(logging.Handler):
 
 
 def get_logging_directory() -> Path:
-    """Return where log files go.
+    """Return the directory of log files.
 
-    That is ``ROS_LOG_DIR``, else ``log`` in ``ROS_HOME``, else ``~/.ros/log``.
+    It is ``ROS_LOG_DIR``, else ``log`` in ``ROS_HOME``, else ``~/.ros/log``.
     """
     if directory := os.environ.get("ROS_LOG_DIR"):
         return Path(directory).expanduser()

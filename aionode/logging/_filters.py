@@ -1,7 +1,7 @@
-"""Which of many calls of one line of code get through: once, skip_first, throttle.
+"""Filters for repeated log calls: once, skip_first, throttle.
 
-The state belongs to the call site: the place in the code that calls the logger. Two calls on one
-line are two sites.
+Their state belongs to the call site: the place in the code that calls the logger. Two calls on one
+line are two call sites.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ class LogOptions(TypedDict, total=False):
     """The keyword arguments that every logging method takes.
 
     Attributes:
-        name: Log under this name in place of the logger's.
-        once: Let only the first message of this place in the code through.
-        skip_first: Let all but the first through.
-        throttle_duration_sec: Let one message through per this many seconds.
-        throttle_time_source_type: The clock for it; the system's clock without.
+        name: Log under this name instead of the logger's.
+        once: Log only the first message of this call site.
+        skip_first: Log all messages but the first.
+        throttle_duration_sec: Log at most one message in this many seconds.
+        throttle_time_source_type: The clock for that; the system clock by default.
     """
 
     name: str | None
@@ -43,7 +43,7 @@ class CallSite:
     __slots__ = ("code", "last_ns", "logged", "name", "options", "severity", "skipped")
 
     def __init__(self, code: CodeType, severity: int, name: str, options: LogOptions) -> None:
-        # The code object is kept so that its id, a part of the key, is not given to another.
+        # Keeps the code object alive, as its id is part of the key and must not be reused.
         self.code = code
         self.severity = severity
         self.name = name
@@ -53,7 +53,7 @@ class CallSite:
         self.logged = False
 
     def check(self, severity: int, name: str, options: LogOptions) -> None:
-        """Refuse a call that differs from the first one from here.
+        """Refuse a call that differs from the first one of this call site.
 
         Raises:
             ValueError: Severity, name or filters are not those of the first call.
@@ -75,10 +75,10 @@ class CallSite:
             raise ValueError(message)
 
     def lets_through(self, now_ns: Callable[[], int]) -> bool:
-        """Return whether this message is to be logged, and remember that it came.
+        """Return whether to log this message, and update the state.
 
-        A filter that stops a message leaves those behind it as they were: with throttle and once,
-        the one message is the first that throttle lets through.
+        A filter that drops a message does not update the filters after it: with throttle and once,
+        the one message logged is the first that throttle passes.
         """
         options = self.options
         if "throttle_duration_sec" in options and not self._throttle(now_ns):
@@ -96,7 +96,7 @@ class CallSite:
         clock = self.options.get("throttle_time_source_type")
         now = now_ns() if clock is None else clock.now_ns()
         period_ns = self.options["throttle_duration_sec"] * S_TO_NS
-        # A clock that was set back, as when a simulation starts again, must not silence the site.
+        # A clock that is set back, as when a simulation restarts, must not silence the call site.
         if self.last_ns <= now < self.last_ns + period_ns:
             return False
         self.last_ns = now
@@ -108,7 +108,7 @@ def checked(options: LogOptions) -> LogOptions:
 
     Raises:
         TypeError: An option is unknown, or lacks another one.
-        ValueError: The clock is none.
+        ValueError: `throttle_time_source_type` is not a clock.
     """
     for option in options:
         if option not in FILTERS:
@@ -123,7 +123,7 @@ def checked(options: LogOptions) -> LogOptions:
     if clock is not None and "throttle_duration_sec" not in options:
         message = "required parameter 'throttle_duration_sec' not specified but is required for "
         raise TypeError(message + "throttle_time_source_type")
-    return {option: value for option, value in options.items() if value}  # type: ignore[return-value]  # a part of it
+    return {option: value for option, value in options.items() if value}  # type: ignore[return-value]  # a subset
 
 
 class CallSites:
@@ -135,7 +135,7 @@ class CallSites:
         self._sites: dict[tuple[int, int], CallSite] = {}
 
     def find(self, frame: FrameType, severity: int, name: str, options: LogOptions) -> CallSite:
-        """Return the site that `frame` stands at, made on its first call and checked on others."""
+        """Return the call site of `frame`: created on its first call, checked on later ones."""
         key = (id(frame.f_code), frame.f_lasti)
         site = self._sites.get(key)
         if site is None:

@@ -1,9 +1,9 @@
-"""Loggers by ROS's names over the standard library's `logging`.
+"""Loggers with ROS names, over the standard library's `logging`.
 
-The logger that ROS calls ``ns.talker`` is ``ros.ns.talker`` there, so handlers, filters, pytest's
-caplog and whatever else knows `logging` work with it. Loggers of aionode itself (``aionode.…``)
-have the same name in both. Nothing is installed until the first message or the first setting:
-then ``ros`` and ``aionode`` get a handler that writes to the console as rcutils does.
+The ROS logger ``ns.talker`` is the logger ``ros.ns.talker`` of `logging`, so handlers, filters,
+pytest's caplog and other tools work with it. Loggers of aionode itself (``aionode.…``) have the
+same name in both. Nothing is installed until the first message or setting; then ``ros`` and
+``aionode`` get a handler that writes to the console as rcutils does.
 """
 
 from __future__ import annotations
@@ -42,17 +42,17 @@ __all__ = [
 
 DEFAULT_LEVEL = LoggingSeverity.INFO
 ROOT, OWN = "ros", "aionode"
-EVERYTHING = 1  # in `logging`, 0 at the top would mean the level of its own root
+EVERYTHING = 1  # not 0, which means the level of the root logger in `logging`
 
 machine = MachineTime()
-caller = sys._getframe  # noqa: SLF001  # inspect's way to the same frame takes longer than the line
+caller = sys._getframe  # inspect takes longer for it than the rest of a log call
 
 
 class RcutilsLogger:
-    """Logs under a name of ROS. Made by `get_logger` and `Node.get_logger`.
+    """A logger with a ROS name. Created by `get_logger` and `Node.get_logger`.
 
-    Every method takes the keyword arguments of `LogOptions` and returns whether the message was
-    logged.
+    Every logging method takes the keyword arguments of `LogOptions` and returns whether the message
+    was logged.
     """
 
     def __init__(self, name: str = "", *, now_ns: Callable[[], int] = machine.system_ns) -> None:
@@ -65,7 +65,7 @@ class RcutilsLogger:
         return f"<RcutilsLogger {self.name} {self.get_effective_level().name}>"
 
     def get_child(self, name: str) -> RcutilsLogger:
-        """Return the logger ``<this name>.<name>``, which has this one's level unless set.
+        """Return the logger ``<this name>.<name>``, which inherits this one's level.
 
         Raises:
             ValueError: `name` is empty.
@@ -76,29 +76,33 @@ class RcutilsLogger:
         return RcutilsLogger(f"{self.name}.{name}" if self.name else name, now_ns=self._now_ns)
 
     def set_level(self, level: int | LoggingSeverity) -> None:
-        """Let through what is at least this grave; UNSET means what the parent lets through."""
+        """Log messages of at least this severity; UNSET inherits the level of the parent."""
         set_logger_level(self.name, level)
 
     def get_effective_level(self) -> LoggingSeverity:
-        """Return the level of this logger, or of the nearest one above that has one."""
+        """Return the level of this logger or, if unset, of its nearest ancestor with one."""
         return get_logger_effective_level(self.name)
 
     def is_enabled_for(self, severity: int | LoggingSeverity) -> bool:
-        """Return whether a message this grave would be let through."""
+        """Return whether a message of this severity would be logged."""
         initialize()
         return self._logger.isEnabledFor(LoggingSeverity(severity))
 
     def add_sink(self, sink: Callable[[LogEvent], None]) -> Callable[[], None]:
-        """Call `sink` with each message of this logger and those below; return what ends it.
+        """Call `sink` with each message of this logger and its children.
 
-        It is called at once, in the thread that logs. What it logs itself does not come back.
+        It is called at once, in the thread that logs; messages logged by the sink itself are not
+        passed to it.
+
+        Returns:
+            A function that removes the sink.
         """
         initialize()
         handler = SinkHandler(self.name, sink)
         self._logger.addHandler(handler)
         return lambda: self._logger.removeHandler(handler)
 
-    # Each method looks for its caller itself: how deep the stack is must not be guessed.
+    # Each method gets the frame of its caller itself, at a fixed depth of the stack.
 
     def log(
         self,
@@ -109,7 +113,7 @@ class RcutilsLogger:
         """Log `message` with the given severity.
 
         Raises:
-            ValueError: Severity, name or options differ from the first call of the same place.
+            ValueError: Severity, name or options differ from the first call of this call site.
             TypeError: An option is unknown.
         """
         severity = LoggingSeverity(severity)
@@ -160,7 +164,7 @@ class RcutilsLogger:
 
 
 def standard_logger(name: str) -> logging.Logger:
-    """Return the standard library's logger for a name of ROS."""
+    """Return the standard library's logger for a ROS name."""
     if name == OWN or name.startswith(f"{OWN}."):
         return logging.getLogger(name)
     return logging.getLogger(f"{ROOT}.{name}" if name else ROOT)
@@ -170,7 +174,7 @@ def get_logger(name: str, *, now_ns: Callable[[], int] = machine.system_ns) -> R
     """Return a logger.
 
     Args:
-        name: Its name; a dot makes it the child of the part before.
+        name: Its name; ``a.b`` is a child of ``a``.
         now_ns: Where its time stamps come from.
 
     Raises:
@@ -186,12 +190,12 @@ def get_logger(name: str, *, now_ns: Callable[[], int] = machine.system_ns) -> R
 
 
 def set_logger_level(name: str, level: int | LoggingSeverity, detailed_error: bool = False) -> None:
-    """Set the level of a logger, which need not exist; the empty name is the root.
+    """Set the level of a logger, which need not exist yet; the empty name is the root.
 
     Raises:
         ValueError: `level` is not one of `LoggingSeverity`.
     """
-    del detailed_error  # of rclpy; errors are always detailed here
+    del detailed_error  # rclpy's argument; errors are always detailed here
     initialize()
     level = LoggingSeverity(level)
     if name:
@@ -202,13 +206,13 @@ def set_logger_level(name: str, level: int | LoggingSeverity, detailed_error: bo
 
 
 def get_logger_level(name: str) -> LoggingSeverity:
-    """Return the level that was set for this logger: UNSET if none was."""
+    """Return the level set for this logger; UNSET if none was set."""
     initialize()
     return nearest_severity(standard_logger(name).level)
 
 
 def get_logger_effective_level(name: str) -> LoggingSeverity:
-    """Return the level that applies to this logger: its own, or the nearest one above."""
+    """Return the level that applies to this logger: its own or an inherited one."""
     initialize()
     return nearest_severity(standard_logger(name).getEffectiveLevel())
 
@@ -218,11 +222,11 @@ def nearest_severity(level: int) -> LoggingSeverity:
     return LoggingSeverity(min(max(level, 0) // 10 * 10, 50))
 
 
-# Set-up
+# Configuration
 
 
 class SetUp:
-    """What is installed in the standard library's logging, so that it can be taken out again."""
+    """What was installed in the standard library's logging, so that it can be removed again."""
 
     def __init__(self) -> None:
         self.ready = False
@@ -237,13 +241,13 @@ class SetUp:
             self._installed.append((logger, handler))
 
     def take_root(self, level: int) -> None:
-        """Let records of all other loggers through from `level`, as basicConfig would."""
+        """Set the level of the root logger, as basicConfig would, for all other loggers."""
         root = logging.getLogger()
         self._root_level = root.level
         root.setLevel(level)
 
     def remove(self) -> None:
-        """Take everything out."""
+        """Remove everything."""
         for logger, handler in self._installed:
             logger.removeHandler(handler)
             handler.close()
@@ -258,10 +262,10 @@ set_up = SetUp()
 
 
 def initialize() -> None:
-    """Set logging up as the environment says, unless it is. Every use of a logger does this.
+    """Configure logging from the environment, unless that was done. Every use of a logger does.
 
     Raises:
-        ConfigurationError: An environment variable does not fit (a ValueError).
+        ConfigurationError: An environment variable is invalid (a ValueError).
     """
     if not set_up.ready:
         configure()
@@ -275,21 +279,21 @@ def configure(
     file_name: str | None = None,
     whole_process: bool = False,
 ) -> None:
-    """Set logging up, in place of what was set up before.
+    """Configure logging, replacing the previous configuration.
 
     Args:
-        level: Level of all loggers that have none of their own; INFO without it.
-        levels: Levels of single loggers.
-        console: Whether lines are written to the console.
-        file_name: Write lines to a file too: ``<file_name>_<pid>_<milliseconds>.log`` in
-            `get_logging_directory`. Without it no file is written.
-        whole_process: Show what other loggers of the standard library log, too, in the same
-            format; unless the application has given `logging` a handler, and so decides itself.
-            `aionode.run` asks for this.
+        level: Level of all loggers without a level of their own; INFO by default.
+        levels: Levels of individual loggers.
+        console: Whether to log to the console.
+        file_name: Also log to the file ``<file_name>_<pid>_<milliseconds>.log`` in
+            `get_logging_directory`; by default to no file.
+        whole_process: Also show the messages of all other loggers of the standard library, in the
+            same format, unless the application has configured `logging` itself. `aionode.run`
+            uses this.
 
     Raises:
-        ConfigurationError: An environment variable does not fit (a ValueError).
-        OSError: The file cannot be made.
+        ConfigurationError: An environment variable is invalid (a ValueError).
+        OSError: The file cannot be created.
     """
     settings = ConsoleSettings.from_environment()
     set_up.remove()
@@ -301,7 +305,7 @@ def configure(
     if console:
         set_up.install(ConsoleHandler(settings), ROOT, OWN, *([""] if root_is_free else []))
     else:
-        set_up.install(logging.NullHandler(), ROOT, OWN)  # or `logging` would write itself
+        set_up.install(logging.NullHandler(), ROOT, OWN)  # or `logging` would write to stderr
     if root_is_free:
         set_up.take_root(logging.getLogger(ROOT).level)
     if file_name is not None:
@@ -309,7 +313,7 @@ def configure(
 
 
 def log_file(prefix: str, line_format: str) -> logging.Handler:
-    """Return what writes lines to a new file in the logging directory."""
+    """Return a handler that writes to a new file in the logging directory."""
     directory = get_logging_directory()
     directory.mkdir(parents=True, exist_ok=True)
     stamp_ms = machine.system_ns() // 1_000_000
@@ -321,12 +325,12 @@ def log_file(prefix: str, line_format: str) -> logging.Handler:
 
 
 def shutdown() -> None:
-    """Take out of the standard library's logging what was put in; the next use sets it up anew."""
+    """Remove everything from the standard library's logging; the next use configures it again."""
     set_up.remove()
 
 
 def clear_config() -> None:
-    """Forget all levels and set logging up again as the environment says."""
+    """Reset all levels, and configure logging from the environment again."""
     for name, logger in list(logging.root.manager.loggerDict.items()):
         ours = name.partition(".")[0] in {ROOT, OWN}
         if ours and isinstance(logger, logging.Logger):

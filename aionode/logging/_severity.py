@@ -1,4 +1,4 @@
-"""How grave a message is."""
+"""Log severities."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ __all__ = ["LoggingSeverity", "get_logging_severity_from_string"]
 
 
 class LoggingSeverity(IntEnum):
-    """How grave a message is; a logger lets through what is at least as grave as its level.
+    """The severity of a message; a logger passes messages at or above its level.
 
-    The numbers are those of ROS and of the standard library's `logging`. UNSET as the level of a
-    logger means that of its parent.
+    The values are those of ROS and of the standard library's `logging`. A logger whose level is
+    UNSET has the level of its parent.
     """
 
     UNSET = 0
@@ -25,10 +25,10 @@ class LoggingSeverity(IntEnum):
 
 
 def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
-    """Return the severity called `log_severity`, in upper or lower case.
+    """Return the severity of this name, in upper or lower case.
 
     Raises:
-        InvalidLogLevelError: There is none of this name (a ValueError and a RuntimeError).
+        InvalidLogLevelError: No severity has this name (a ValueError and a RuntimeError).
     """
     try:
         return LoggingSeverity[log_severity.upper()]

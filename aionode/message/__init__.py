@@ -1,8 +1,8 @@
-"""Messages, services and actions as Python classes: what a user writes them with, and reads.
+"""Messages, services and actions as Python classes.
 
-Annotations say what a field holds, `Message`, `ServiceType` and `ActionType` are the bases, and
-the functions describe, validate, copy and convert. A message class has no public attribute but
-its fields and constants, as those may have any name.
+This package has the annotations for fields, the base classes `Message`, `ServiceType` and
+`ActionType`, and functions that describe, validate, copy and convert messages. The only public
+attributes of a message class are its fields and constants, as those may have any name.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""Messages as plain values, JSON and YAML, and back.
+"""Converts messages to builtin types, JSON and YAML, and back.
 
-Plain values are dicts, lists, numbers, bools and strings. Bytes are lists of numbers and a scalar
-``byte`` is a number, as ROS prints them. JSON has no word for NaN and the infinities: they are the
-strings ``"NaN"``, ``"Infinity"`` and ``"-Infinity"`` there, and those are read back; YAML has its
-own (``.nan``, ``.inf``, ``-.inf``).
+The builtin types are dict, list, int, float, bool and str. Bytes become lists of numbers and a
+single ``byte`` becomes a number, as ROS prints them. JSON has no NaN and infinities: they are
+written and read as the strings ``"NaN"``, ``"Infinity"`` and ``"-Infinity"``; YAML has its own
+notation (``.nan``, ``.inf``, ``-.inf``).
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ import msgspec
 from aionode.errors import MessageError
 from aionode.message._field_types import FieldType
 from aionode.message._message import Message, message_class, type_name
-from aionode.message._snapshot import snapshot
 from aionode.message._validation import fit, given, listed
 
 if TYPE_CHECKING:
@@ -30,7 +29,7 @@ __all__ = ["from_builtins", "from_json", "from_yaml", "to_builtins", "to_json", 
 MessageT = TypeVar("MessageT", bound=Message)
 
 FLOAT_STRINGS = re.compile(r"NaN|-?Infinity|[-+]?\d+[eE][-+]?\d+")
-"""Strings that stand for a float: JSON's missing words, and 1e5, which YAML 1.1 reads as text."""
+"""Strings accepted as floats: NaN and infinity in JSON, and 1e5, which is text in YAML 1.1."""
 
 
 def to_builtins(message: Message) -> dict[str, Any]:
@@ -39,44 +38,44 @@ def to_builtins(message: Message) -> dict[str, Any]:
     Raises:
         MessageError: A value does not fit its field.
     """
-    return plain(snapshot(message), lambda number: number)
+    return plain(validated(message), lambda number: number)
 
 
 def from_builtins(cls: type[MessageT], data: object) -> MessageT:
-    """Return the message that plain values describe; fields that are left out have their default.
+    """Return a message made from builtin types; omitted fields have their default.
 
-    Arrays and bytes-like objects are taken as well as lists.
+    Arrays and bytes-like objects are accepted as well as lists.
 
     Raises:
-        MessageError: A value does not fit its field, or there is no such field.
+        MessageError: A value does not fit its field, or a field does not exist.
     """
     return message_from(message_class(cls), data, type_name(cls))  # type: ignore[return-value] # of cls
 
 
 def to_json(message: Message) -> str:
-    """Return a message as JSON in one line.
+    """Return a message as one line of JSON.
 
     Raises:
         MessageError: A value does not fit its field.
     """
-    return msgspec.json.encode(plain(snapshot(message), json_float)).decode()
+    return msgspec.json.encode(plain(validated(message), json_float)).decode()
 
 
 def from_json(cls: type[MessageT], text: str | bytes) -> MessageT:
-    """Return the message that JSON describes; see `from_builtins`.
+    """Return a message made from JSON; see `from_builtins`.
 
     Raises:
-        MessageError: It is no JSON, or does not describe such a message.
+        MessageError: The text is not valid JSON, or does not describe such a message.
     """
     return from_builtins(cls, decoded(cls, msgspec.json.decode, text, "JSON"))
 
 
 def to_yaml(message: Message, *, flow_style: bool = False) -> str:
-    """Return a message as YAML, laid out as ``ros2 topic echo`` prints it.
+    """Return a message as YAML, formatted as ``ros2 topic echo`` prints it.
 
     Args:
         message: The message.
-        flow_style: In braces and brackets instead of on lines of their own.
+        flow_style: Use braces and brackets instead of a line for each value.
 
     Raises:
         MessageError: A value does not fit its field.
@@ -95,36 +94,43 @@ def to_yaml(message: Message, *, flow_style: bool = False) -> str:
 
 
 def from_yaml(cls: type[MessageT], text: str | bytes) -> MessageT:
-    """Return the message that YAML describes, such as ``{linear: {x: 1.5}}``.
+    """Return a message made from YAML, such as ``{linear: {x: 1.5}}``.
 
-    Nothing at all gives a message of defaults. See `from_builtins`.
+    An empty text gives a message of defaults. See `from_builtins`.
 
     Raises:
-        MessageError: It is no YAML, or does not describe such a message.
+        MessageError: The text is not valid YAML, or does not describe such a message.
     """
     data = decoded(cls, msgspec.yaml.decode, text, "YAML")
     return from_builtins(cls, {} if data is None else data)
 
 
+def validated(message: Message) -> Message:
+    """Return a validated copy of a message."""
+    from aionode.message._snapshot import snapshot
+
+    return snapshot(message)
+
+
 def decoded(
     cls: type[Message], decode: Callable[[str | bytes], Any], text: str | bytes, form: str
 ) -> Any:
-    """Return what a text in JSON or YAML says, as plain values."""
+    """Return a text in JSON or YAML as builtin types."""
     try:
         return decode(text)
     except (msgspec.DecodeError, ValueError, RecursionError) as error:
-        raise MessageError(type_name(cls), f"this is no {form}: {error}") from error
+        raise MessageError(type_name(cls), f"invalid {form}: {error}") from error
 
 
 def json_float(number: float) -> float | str:
-    """Return a float, or the word for one that JSON does not have."""
+    """Return a float, or the string for one that JSON does not have."""
     if math.isfinite(number):
         return number
     return "NaN" if math.isnan(number) else "Infinity" if number > 0 else "-Infinity"
 
 
 def plain(message: Message, as_float: Callable[[float], object]) -> dict[str, Any]:
-    """Return a valid message as plain values."""
+    """Return a valid message as builtin types."""
     return {
         field.name: plain_value(field.type, getattr(message, field.name), as_float)
         for field in message.__ros_fields__
@@ -132,7 +138,7 @@ def plain(message: Message, as_float: Callable[[float], object]) -> dict[str, An
 
 
 def plain_value(type_: FieldType, value: Any, as_float: Callable[[float], object]) -> object:
-    """Return the valid value of a field as plain values."""
+    """Return the valid value of a field as builtin types."""
     if type_.nested is not None:
         if type_.container == "single":
             return plain(value, as_float)
@@ -147,7 +153,7 @@ def plain_value(type_: FieldType, value: Any, as_float: Callable[[float], object
 
 
 def message_from(cls: type[Message], data: object, path: str) -> Message:
-    """Return a message of plain values, or raise `MessageError` with the path of what is wrong."""
+    """Return a message made from builtin types; `path` is its place, for error texts."""
     if not isinstance(data, Mapping):
         raise MessageError(path, f"{given(data)}, needs a mapping from field names to values")
     types = {field.name: field.type for field in cls.__ros_fields__}
@@ -159,16 +165,16 @@ def message_from(cls: type[Message], data: object, path: str) -> Message:
 
 
 def no_such_field(cls: type[Message], key: str, names: list[str]) -> str:
-    """Return what to say of a field that does not exist."""
+    """Return the error text for a field that does not exist."""
     if not names:
-        return f"no such field; {type_name(cls)} has none"
+        return f"no such field; {type_name(cls)} has no fields"
     close = difflib.get_close_matches(key, names, 1)
     meant = f"; did you mean {close[0]!r}?" if close else ""
     return f"no such field{meant}; {type_name(cls)} has {', '.join(names)}"
 
 
 def value_from(type_: FieldType, value: object, path: str) -> object:
-    """Return the value of one field."""
+    """Return the value of one field, converted from builtin types."""
     if type_.nested is not None:
         if type_.container == "single":
             return message_from(type_.nested, value, path)
@@ -180,12 +186,12 @@ def value_from(type_: FieldType, value: object, path: str) -> object:
         value = [scalar_from(type_, item, f"{path}[{i}]") for i, item in enumerate(value)]
     fitted = fit(type_, value, path)
     if type_.form == "ndarray" and fitted is not value and fitted.flags.owndata:
-        fitted.flags.writeable = True  # made for this message alone
+        fitted.flags.writeable = True  # created for this message only
     return fitted
 
 
 def scalar_from(type_: FieldType, value: object, path: str) -> object:
-    """Return a single value; numbers for bytes, and words for floats, are understood."""
+    """Return a single value; numbers are accepted for bytes, and strings for special floats."""
     if type_.kind == "byte" and not isinstance(value, bytes):
         return bytes((fit(FieldType("uint8"), value, path),))
     if type_.kind in {"float32", "float64"} and isinstance(value, str):

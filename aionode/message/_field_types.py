@@ -1,10 +1,10 @@
 # ruff: noqa: PYI042 (the aliases have ROS's names)
-"""What the fields of a message can hold, and the annotations that say so.
+"""The types of message fields, and the annotations for them.
 
-An annotation such as ``Array[float64, 9]`` is, at run time, `typing.Annotated` with a `FieldType`.
+At run time an annotation such as ``Array[float64, 9]`` is `typing.Annotated` with a `FieldType`.
 Type checkers see ``int32`` as ``int``, ``float64`` as ``float``, ``Bounded[str, 10]`` as ``str``.
-They cannot see through a number among type arguments, so ``Array[T, N]`` and ``Sequence[T]`` are
-``Any`` to them; ``Annotated[Floats, Array[float64, 9]]``, as generated modules have it, is checked.
+They do not support numbers as type arguments, so ``Array[T, N]`` and ``Sequence[T]`` are ``Any`` to
+them; ``Annotated[Floats, Array[float64, 9]]``, which generated modules use, is checked.
 """
 
 from __future__ import annotations
@@ -13,9 +13,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, get_args, get_origin
 
 from aionode.errors import brief
-
-if TYPE_CHECKING:
-    from aionode.message._message import Message
 
 __all__ = [
     "DTYPES",
@@ -51,13 +48,13 @@ INT_RANGES: dict[str, tuple[int, int]] = {
     **{f"uint{bits}": (0, 2**bits - 1) for bits in (8, 16, 32, 64)},
     "char": (0, 255),
 }
-"""Smallest and largest value of each integer kind; `char` is an unsigned byte in ROS 2."""
+"""Smallest and largest value of each integer type; `char` is an unsigned byte in ROS 2."""
 
 DTYPES: dict[str, str] = {
     **{kind: kind for kind in (*INT_RANGES, "float32", "float64", "bool")},
     "char": "uint8",
 }
-"""The numpy dtype, by name, of the kinds whose arrays are `numpy.ndarray`."""
+"""Name of the numpy dtype for each type whose arrays are `numpy.ndarray`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,22 +64,22 @@ class FieldType:
     Attributes:
         kind: ``int8`` to ``uint64``, ``float32``, ``float64``, ``bool``, ``byte``, ``char``,
             ``string``, ``wstring`` or ``message``.
-        nested: The message class, if `kind` is ``message``.
-        string_bound: The longest string that fits, in characters, or None.
-        container: One value (``single``), ``array`` of exactly `size`, ``bounded`` sequence of at
-            most `size`, or ``unbounded`` sequence.
-        size: See `container`.
+        nested: The class, a subclass of `Message`, if `kind` is ``message``; None otherwise.
+        string_bound: Largest length of a string in characters, or None.
+        container: ``single`` value, ``array`` of exactly `size` elements, ``bounded`` sequence of
+            at most `size` elements, or ``unbounded`` sequence.
+        size: Number of elements; see `container`.
     """
 
     kind: str
-    nested: type[Message] | None = None
+    nested: Any = None
     string_bound: int | None = None
     container: Literal["single", "array", "bounded", "unbounded"] = "single"
     size: int = 0
 
     @property
     def form(self) -> Literal["value", "bytes", "ndarray", "list"]:
-        """What Python holds it in; ``bytes`` is any bytes-like object."""
+        """The kind of Python object that holds the value; ``bytes`` is any bytes-like object."""
         if self.container == "single":
             return "value"
         if self.kind == "byte" or (self.kind == "uint8" and self.container != "array"):
@@ -91,11 +88,11 @@ class FieldType:
 
     @property
     def element(self) -> FieldType:
-        """The type of one element, or of the value itself."""
+        """The type of one element; of the value itself if it is a single one."""
         return FieldType(self.kind, self.nested, self.string_bound)
 
     def __str__(self) -> str:
-        """Return the type as a ``.msg`` file has it, such as ``string<=10[<=3]``."""
+        """Return the type as written in a ``.msg`` file, such as ``string<=10[<=3]``."""
         name = self.nested.__ros_type__.replace("/msg/", "/") if self.nested else self.kind
         bound = "" if self.string_bound is None else f"<={self.string_bound}"
         ends = {
@@ -114,8 +111,8 @@ class Field:
     Attributes:
         name: Its name, in ROS and in Python.
         type: Its type.
-        default: Its default as the definition gives it (a tuple for arrays and sequences), or None
-            where that is the zero of the type.
+        default: Its default value (a tuple for arrays and sequences), or None if that is the zero
+            of the type.
     """
 
     name: str
@@ -150,7 +147,7 @@ BUILTINS = {bool: FieldType("bool"), str: FieldType("string")}
 
 
 def field_type(annotation: object) -> FieldType:
-    """Return what `annotation` says that a field holds.
+    """Return the field type that `annotation` describes.
 
     Raises:
         TypeError: It is not one of this module's annotations, `bool`, `str` or a message class.
@@ -169,17 +166,17 @@ def field_type(annotation: object) -> FieldType:
     hint = {int: "; int has no width, use int32 or int64", float: "; use float32 or float64"}
     shown = annotation.__name__ if isinstance(annotation, type) else repr(annotation)
     more = hint.get(annotation, "") if isinstance(annotation, type) else ""
-    msg = f"{shown}: no field type; see aionode.message for those there are{more}"
+    msg = f"{shown}: not a field type; the field types are listed in aionode.message{more}"
     raise TypeError(msg)
 
 
 def contained(
     annotation: object, container: Literal["array", "bounded", "unbounded"], size: object = 0
 ) -> object:
-    """Return the annotation for many of `annotation`."""
+    """Return the annotation of an array or sequence of `annotation`."""
     one = field_type(annotation)
     if one.container != "single":
-        msg = f"{one}: ROS has no arrays of arrays; put the inner one into a message of its own"
+        msg = f"{one}: ROS has no arrays of arrays; put the inner array into a message of its own"
         raise TypeError(msg)
     count = 0 if container == "unbounded" else checked_size(one, size)
     return Annotated[Any, FieldType(one.kind, one.nested, one.string_bound, container, count)]
@@ -190,12 +187,12 @@ def checked_size(one: FieldType, size: object) -> int:
     if get_origin(size) is Literal:
         (size,) = get_args(size)
     if not isinstance(size, int) or size < 1:
-        msg = f"{one}: a size or bound of {brief(size)}; it has to be an int of at least 1"
+        msg = f"{one}: size or bound {brief(size)} given; it must be an int of at least 1"
         raise TypeError(msg)
     return size
 
 
-# mypy takes a name of type Any with any arguments; pyright a class with `__class_getitem__`.
+# mypy accepts any type arguments for a name of type Any, pyright for a `__class_getitem__`.
 MYPY = False
 
 if TYPE_CHECKING:
@@ -229,7 +226,7 @@ if TYPE_CHECKING:
     DtypeT = TypeVar("DtypeT", bound=np.generic)
 
     class Numbers(Generic[ItemT, DtypeT]):
-        """To type checkers: reads as an array, takes an array or a sequence of `ItemT`."""
+        """For type checkers: reads as an array, accepts an array or a sequence of `ItemT`."""
 
         @overload
         def __get__(self, instance: None, owner: Any) -> Any: ...
@@ -241,7 +238,7 @@ if TYPE_CHECKING:
         ) -> None: ...
 
     class Bytes:
-        """To type checkers: reads as bytes-like, takes also a sequence of int."""
+        """For type checkers: reads as bytes-like, also accepts a sequence of int."""
 
         @overload
         def __get__(self, instance: None, owner: Any) -> Any: ...
@@ -271,7 +268,7 @@ else:
         def __class_getitem__(cls, item: tuple[object, int]) -> object:
             """Return the annotation of a field."""
             if not isinstance(item, tuple) or len(item) != 2:
-                msg = "Array: needs an element type and a size, as in Array[float64, 9]"
+                msg = "Array: an element type and a size are needed, as in Array[float64, 9]"
                 raise TypeError(msg)
             return contained(item[0], "array", item[1])
 
@@ -291,7 +288,7 @@ else:
             """Return the annotation of a field."""
             one = field_type(item[0])
             if one.kind not in {"string", "wstring"} or one.container != "single":
-                msg = f"Bounded: only strings have a bound, and {one} is none"
+                msg = f"Bounded: only strings have a bound, not {one}"
                 raise TypeError(msg)
             bound = checked_size(one, item[1])
             return Annotated[str, FieldType(one.kind, string_bound=bound)]

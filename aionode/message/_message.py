@@ -1,7 +1,7 @@
-"""Messages as Python classes, and functions that describe them.
+"""The base class of messages, and functions that describe message classes.
 
-A message class has one attribute for each field and nothing else that a field could be called:
-what there is to know about it is asked from functions (`type_name`, `fields`, `constants`).
+The only public attributes of a message class are its fields and constants, as those may have any
+name. Everything else is available from functions: `type_name`, `fields`, `constants`.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ if TYPE_CHECKING:
 __all__ = ["DEFAULT", "Message", "MessageMeta", "constants", "fields", "message_class", "type_name"]
 
 DEFAULT: Any = object()
-"""Stands for the zero of any field type: ``header: Header = DEFAULT``.
+"""The zero value of any field type: ``header: Header = DEFAULT``.
 
-A field without a default gets it too; writing it tells type checkers that the field may be left
-out.
+It is also the default of fields without one; writing it tells type checkers that the field may be
+omitted.
 """
 
 TYPE_NAME = re.compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Z][A-Za-z0-9_]*")
@@ -36,7 +36,7 @@ FIELD_NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 
 
 class MessageMeta(msgspec.StructMeta):
-    """Turns annotations into the description of a message, and gives every field a default."""
+    """Builds the description of a message from annotations, and gives every field a default."""
 
     def __new__(  # noqa: PYI034 (mypy has no Self in metaclasses)
         mcls,
@@ -47,12 +47,12 @@ class MessageMeta(msgspec.StructMeta):
         typename: str = "",
         **options: Any,
     ) -> MessageMeta:
-        """Make the class; `typename` is its ROS name, such as ``std_msgs/msg/String``."""
+        """Create the class; `typename` is its ROS name, such as ``std_msgs/msg/String``."""
         if typename:
             namespace["__ros_type__"] = checked_type_name(typename)
         own: list[Field] = []
         known: list[Constant] = []
-        for key, annotation in annotations_of(namespace, sys._getframe(1)).items():  # noqa: SLF001 (names of the class statement's scope)
+        for key, annotation in annotations_of(namespace, sys._getframe(1)).items():
             if get_origin(annotation) is ClassVar:
                 if not key.startswith("__"):
                     (inner,) = get_args(annotation)
@@ -73,9 +73,9 @@ class MessageMeta(msgspec.StructMeta):
 
 
 def annotations_of(namespace: dict[str, Any], frame: FrameType) -> dict[str, Any]:
-    """Return the annotations of a class that is being made in `frame`, as objects."""
+    """Return the evaluated annotations of a class that is being created in `frame`."""
     found: dict[str, Any] | None = namespace.get("__annotations__")
-    if found is None and sys.version_info >= (3, 14):  # made on demand there
+    if found is None and sys.version_info >= (3, 14):  # annotations are created on demand
         import annotationlib
 
         make = annotationlib.get_annotate_from_class_namespace(namespace)
@@ -89,26 +89,26 @@ def annotations_of(namespace: dict[str, Any], frame: FrameType) -> dict[str, Any
 
 
 def checked_type_name(name: str) -> str:
-    """Return `name` if it is one of a ROS type, or raise `TypeError`."""
+    """Return `name` if it is a valid name of a ROS type; raise `TypeError` otherwise."""
     if not TYPE_NAME.fullmatch(name):
-        msg = f"{name!r}: not the name of a ROS type; it looks like 'my_robot_msgs/msg/Words'"
+        msg = f"{name!r}: not a valid ROS type name; write it like 'my_robot_msgs/msg/Words'"
         raise TypeError(msg)
     return name
 
 
 def checked_field_name(owner: str, name: str) -> None:
-    """Raise `TypeError` if no ROS field can have this name."""
+    """Raise `TypeError` if `name` is not a valid name of a ROS field."""
     if not FIELD_NAME.fullmatch(name) or iskeyword(name):
         msg = (
-            f"{owner}.{name}: not the name of a ROS field; lower-case letters, digits and single "
-            "underscores fit, beginning with a letter, except Python's keywords"
+            f"{owner}.{name}: not a valid ROS field name; use lower-case letters, digits and "
+            "single underscores, starting with a letter, and no Python keyword"
         )
         raise TypeError(msg)
 
 
 @dataclass_transform(kw_only_default=True, field_specifiers=(msgspec.field,))
 class Message(msgspec.Struct, metaclass=MessageMeta):  # noqa: PLW1641 (mutable: no hash)
-    """Base of all messages.
+    """Base class of all messages.
 
     Write a message as a class with annotations from `aionode.message`::
 
@@ -116,16 +116,16 @@ class Message(msgspec.Struct, metaclass=MessageMeta):  # noqa: PLW1641 (mutable:
             text: str = ""
             scores: Sequence[float32] = DEFAULT
 
-    Every field has a default, values are given by keyword and not validated until the message is
-    published, called with or encoded. Two messages are equal if they are of one class and their
-    values are, those in arrays included. Copies and pickles stand on their own.
+    Every field has a default. Values are given by keyword, and validated when the message is
+    published, sent or encoded. Two messages are equal if they have the same class and equal values,
+    arrays included. Copies and pickles share no data with the original.
     """
 
     __ros_type__: ClassVar[str] = ""
     __ros_fields__: ClassVar[tuple[Field, ...]]
     __ros_constants__: ClassVar[tuple[Constant, ...]]
     __ros_functions__: ClassVar[dict[str, Any]]
-    """Functions that were generated for this class, by purpose."""
+    """Functions generated for this class, by purpose."""
 
     def __eq__(self, other: object) -> bool:
         """Return whether both have the same class and values."""
@@ -140,38 +140,38 @@ class Message(msgspec.Struct, metaclass=MessageMeta):  # noqa: PLW1641 (mutable:
         return not self == other
 
     def __repr__(self) -> str:
-        """Return it as rclpy prints messages: ``std_msgs.msg.String(data='hi')``."""
+        """Return the message as rclpy prints it: ``std_msgs.msg.String(data='hi')``."""
         name = self.__ros_type__.replace("/", ".") or type(self).__qualname__
         values = (f"{f.name}={shown(f.type, getattr(self, f.name))}" for f in self.__ros_fields__)
         return f"{name}({', '.join(values)})"
 
     @classmethod
     def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:
-        """Tell Pydantic how to read and write messages, in models and in FastAPI."""
+        """Return the schema with which Pydantic reads and writes messages."""
         return by_name("pydantic_core_schema")(cls)
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core_schema: Any, handler: Any) -> Any:
-        """Tell Pydantic how messages look as JSON, for OpenAPI."""
+        """Return the JSON Schema of the message, for OpenAPI."""
         return by_name("pydantic_json_schema")(cls, handler)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Message:
-        """Return a copy that shares nothing that can change."""
+        """Return a copy that shares no mutable data."""
         return type(self)(*(copy.deepcopy(owned(self, f), memo) for f in self.__struct_fields__))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Return how to make it again, for pickle."""
+        """Return how to recreate the message, for pickle."""
         values = {name: owned(self, name) for name in self.__struct_fields__}
         return functools.partial(type(self), **values), ()
 
 
 def by_name(function: str) -> Any:
-    """Return a function of the module for schemas, which imports this one."""
+    """Return a function of the schema module, which imports this module."""
     return getattr(import_module("aionode.message._schema"), function)
 
 
 def owned(message: Message, name: str) -> object:
-    """Return a field's value; a view of foreign memory as bytes, as it cannot be pickled."""
+    """Return the value of a field; a memoryview as bytes, as it cannot be pickled."""
     value = getattr(message, name)
     return bytes(value) if isinstance(value, memoryview) else value
 
@@ -179,10 +179,10 @@ def owned(message: Message, name: str) -> object:
 def type_name(cls: Any) -> str:
     """Return the ROS name of a message, service or action class, such as ``std_msgs/msg/String``.
 
-    The halves have names of their own, such as ``example_interfaces/srv/AddTwoInts_Request``.
+    Nested messages have names such as ``example_interfaces/srv/AddTwoInts_Request``.
 
     Raises:
-        TypeError: `cls` is no such class, or was made without a name.
+        TypeError: `cls` is not such a class, or has no ROS name.
     """
     name = getattr(cls, "__ros_type__", None) if isinstance(cls, type) else None
     if name is None:
@@ -195,17 +195,17 @@ def type_name(cls: Any) -> str:
 
 
 def message_class(cls: Any) -> type[Message]:
-    """Return `cls` if it is a message class, or raise a `TypeError` that says what it is."""
+    """Return `cls` if it is a message class; raise `TypeError` otherwise."""
     if not isinstance(cls, MessageMeta):
         msg = f"{cls!r}: not a message class"
         if hasattr(cls, "__ros_type__"):
-            msg += "; a service or action is described by its nested messages, such as .Request"
+            msg += "; for a service or action use one of its nested messages, such as .Request"
         raise TypeError(msg)
-    return cls  # type: ignore[return-value] # all of this metaclass are messages
+    return cls  # type: ignore[return-value] # all classes of this metaclass are messages
 
 
 def fields(cls: type[Message]) -> tuple[Field, ...]:
-    """Return the fields of a message class in their order on the wire.
+    """Return the fields of a message class, in the order of their encoding.
 
     Raises:
         TypeError: `cls` is not a message class.
@@ -214,7 +214,7 @@ def fields(cls: type[Message]) -> tuple[Field, ...]:
 
 
 def constants(cls: type[Message]) -> tuple[Constant, ...]:
-    """Return the constants of a message class in the order of its definition.
+    """Return the constants of a message class, in the order of its definition.
 
     Raises:
         TypeError: `cls` is not a message class.

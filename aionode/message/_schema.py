@@ -1,7 +1,7 @@
-"""What a message looks like as JSON: JSON Schema for tools and OpenAPI, fields of Pydantic models.
+"""JSON Schema of messages, for tools, OpenAPI and Pydantic.
 
-Pydantic is needed by nothing here; who has it, as FastAPI does, can use messages as types of
-fields, bodies and responses. It asks a class for `pydantic_core_schema` and `pydantic_json_schema`.
+Pydantic is optional. With it, and so with FastAPI, messages can be used as types of fields, bodies
+and responses: Pydantic gets `pydantic_core_schema` and `pydantic_json_schema` from a message class.
 """
 
 from __future__ import annotations
@@ -12,10 +12,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from aionode.message._conversion import from_builtins, json_float, plain, to_builtins
 from aionode.message._field_types import INT_RANGES, Field, FieldType
 from aionode.message._message import Message, message_class
-from aionode.message._snapshot import snapshot
 
 if TYPE_CHECKING:
     from pydantic import GetJsonSchemaHandler
@@ -31,16 +29,16 @@ NUMBER: Schema = {"type": "number"}
 NUMBER_OR_WORD: Schema = {
     "anyOf": [NUMBER, {"type": "string", "enum": ["NaN", "Infinity", "-Infinity"]}]
 }
-"""A float as `to_json` writes it: JSON has no word for three of them."""
+"""A float as `to_json` writes it, with strings for NaN and the infinities."""
 
 
 def json_schema(cls: type[Message]) -> dict[str, Any]:
-    """Return the JSON Schema of what `from_json` and `from_builtins` read for a message class.
+    """Return the JSON Schema of what `from_json` and `from_builtins` accept for a message class.
 
-    It is an ``object`` in itself, without references, as the tools of language models want it; with
-    the descriptions of the class's docstring, the ranges of its numbers, and its defaults. No field
-    is required, as each has a default. For a service or an action, ask for that of its
-    ``Request`` or ``Goal``.
+    It is a self-contained ``object`` without references, as tools of language models expect it,
+    with the descriptions from the docstring of the class, the ranges of numbers, and the defaults.
+    No field is required, as each has a default. For a service or an action, use its ``Request`` or
+    ``Goal``.
 
     Raises:
         TypeError: `cls` is not a message class.
@@ -52,7 +50,13 @@ def json_schema(cls: type[Message]) -> dict[str, Any]:
 def schema_of(
     cls: type[Message], nested: Callable[[type[Message]], Schema], real: Schema
 ) -> Schema:
-    """Return the schema of a message; `nested` gives that of another one, `real` is a float's."""
+    """Return the schema of a message.
+
+    Args:
+        cls: The message class.
+        nested: Returns the schema of a nested message.
+        real: The schema of a float.
+    """
     text, described = documentation(cls)
     schema: Schema = {"title": title(cls), "type": "object"}
     if text:
@@ -66,7 +70,7 @@ def schema_of(
 
 
 def title(cls: type[Message]) -> str:
-    """Return the name of a message without its package: ``Twist``, ``AddTwoInts_Request``."""
+    """Return the name of a message without its package, such as ``AddTwoInts_Request``."""
     return (cls.__ros_type__ or cls.__qualname__).rpartition("/")[2]
 
 
@@ -92,7 +96,7 @@ def value_schema(
         bound = {} if type_.string_bound is None else {"maxLength": type_.string_bound}
         return {"type": "string", **bound}
     low, high = INT_RANGES["uint8" if type_.kind == "byte" else type_.kind]
-    # Limits of 64 bits are left out: tools that hold them as floats round them up.
+    # 64-bit limits are omitted, since tools that hold them as floats would round them up.
     limits = {"minimum": low, "maximum": high}
     return {"type": "integer", **{name: at for name, at in limits.items() if abs(at) < 2**53}}
 
@@ -106,13 +110,13 @@ def with_notes(field: Field, text: str | None, schema: Schema) -> Schema:
         notes["default"] = default[0] if isinstance(default, bytes) else default
     elif field.default is not None:
         notes["default"] = list(field.default)  # type: ignore[call-overload]  # a tuple
-    if "$ref" in schema and notes:  # beside a reference older readers of OpenAPI see nothing
+    if "$ref" in schema and notes:  # older OpenAPI tools ignore what stands beside a reference
         return {"allOf": [schema], **notes}
     return {**schema, **notes}
 
 
 def documentation(cls: type[Message]) -> tuple[str, dict[str, str]]:
-    """Return what the docstring of a class says of it, and of each field under ``Attributes:``."""
+    """Return the docstring's text, and its description of each field under ``Attributes:``."""
     text, _, attributes = inspect.cleandoc(cls.__doc__ or "").partition("\nAttributes:\n")
     described: dict[str, str] = {}
     name = ""
@@ -132,37 +136,42 @@ def documentation(cls: type[Message]) -> tuple[str, dict[str, str]]:
 
 
 def pydantic_core_schema(cls: type[Message]) -> CoreSchema:
-    """Return how Pydantic reads and writes a message: as `from_builtins` and `to_json` do."""
+    """Return the Pydantic schema that reads and writes as `from_builtins` and `to_json` do."""
     from pydantic_core import core_schema
 
     return core_schema.no_info_plain_validator_function(
         partial(validated, cls),
-        ref=f"{cls.__module__}.{title(cls)}:{id(cls)}",  # the part before the colon names it
+        ref=f"{cls.__module__}.{title(cls)}:{id(cls)}",  # the part before the colon is the name
         serialization=core_schema.plain_serializer_function_ser_schema(serialized, info_arg=True),
     )
 
 
 def validated(cls: type[Message], value: object) -> Message:
-    """Return the message that `value` is or describes; a wrong one is a ValueError."""
+    """Return `value` as a message of `cls`; raise MessageError, a ValueError, if it is invalid."""
+    from aionode.message._conversion import from_builtins
+
     if isinstance(value, cls):
         return value
     return from_builtins(cls, value)
 
 
 def serialized(message: Message, info: SerializationInfo) -> dict[str, Any]:
-    """Return a message as plain values, without what JSON cannot say if it is to be JSON."""
+    """Return a message as builtin types, only with values that JSON has in its JSON mode."""
+    from aionode.message._conversion import json_float, plain, to_builtins
+    from aionode.message._snapshot import snapshot
+
     if info.mode == "json":
         return plain(snapshot(message), json_float)
     return to_builtins(message)
 
 
 def pydantic_json_schema(cls: type[Message], handler: GetJsonSchemaHandler) -> Schema:
-    """Return the JSON Schema of a message, with references to that of each message in it."""
+    """Return the JSON Schema of a message, with references to those of nested messages."""
     from pydantic import TypeAdapter
     from pydantic_core import core_schema
 
     def nested(other: type[Message]) -> Schema:
-        # The handler itself makes no reference; for the items of a list it does.
+        # The handler creates references only for the items of a list.
         several = handler(core_schema.list_schema(TypeAdapter(other).core_schema))
         one: Schema = several["items"]
         return one

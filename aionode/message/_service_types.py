@@ -1,4 +1,4 @@
-"""Services and actions as Python classes, and the messages they are carried out with."""
+"""The base classes of services and actions, and the types that implement them."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ __all__ = ["ActionClass", "ActionType", "Interface", "ServiceClass", "ServiceTyp
 
 
 class Hidden:
-    """A part of a service or action type that is made when it is first asked for."""
+    """A class attribute of a service or action type that is created on first access."""
 
     def __init__(self, make: Any) -> None:
         self.make = make
 
     def __set_name__(self, owner: type, name: str) -> None:
-        """Learn under which name to keep the part."""
+        """Store the name of the attribute."""
         self.name = name
 
     def __get__(self, instance: object, owner: type) -> Any:
-        """Return the part of `owner`, kept for the next time."""
+        """Return the value of the attribute for `owner`, and cache it there."""
         part = self.make(owner)
         setattr(owner, self.name, part)
         return part
@@ -32,30 +32,29 @@ class Hidden:
 def shipped(package: str, kind: str, name: str) -> Any:
     """Return a generated type of aionode.interfaces.
 
-    By name and late, because those modules stand on this one: every service and action has parts
-    that are made of ROS's own messages.
+    It is imported late, because those modules import this one.
     """
     return getattr(import_module(f"aionode.interfaces.{package}.{kind}"), name)
 
 
 def name_halves(cls: type, typename: str, halves: tuple[str, ...]) -> None:
-    """Give a service or action class and its nested messages their ROS names."""
+    """Set the ROS names of a service or action class and its nested messages."""
     cls.__ros_type__ = checked_type_name(typename)  # type: ignore[attr-defined] # both declare it
     for half in halves:
         message = cls.__dict__.get(half)
         if not isinstance(message, MessageMeta):
-            msg = f"{typename}: has no nested class {half}(Message); it may be one without fields"
+            msg = f"{typename}: needs a nested class {half}(Message), even one without fields"
             raise TypeError(msg)
         message.__ros_type__ = f"{typename}_{half}"  # type: ignore[attr-defined] # of Message
 
 
 def make_event(cls: type[ServiceType]) -> type[Message]:
-    """Return the message that tells of one request or response of a service."""
+    """Return the service event message, which reports one request or response of a service."""
     info = shipped("service_msgs", "msg", "ServiceEventInfo")
     namespace = {
         "__module__": cls.__module__,
         "__qualname__": f"{cls.__qualname__}.Event",
-        "__doc__": f"A request to or a response from {cls.__name__}, with who and when.",
+        "__doc__": f"A request to or a response of {cls.__name__}, with its client and time.",
         "__annotations__": {
             "info": info,
             "request": Sequence[cls.Request, 1],  # type: ignore[attr-defined] # nested classes
@@ -66,7 +65,7 @@ def make_event(cls: type[ServiceType]) -> type[Message]:
 
 
 class ServiceType:
-    """Base of all service types, with nested messages `Request` and `Response`.
+    """Base class of all service types, with nested messages `Request` and `Response`.
 
     Write a service as a class::
 
@@ -85,12 +84,12 @@ class ServiceType:
     Event: ClassVar[Any] = Hidden(make_event)
 
     def __init_subclass__(cls, *, typename: str) -> None:
-        """Name the service and its messages."""
+        """Set the ROS names of the service and its messages."""
         name_halves(cls, typename, ("Request", "Response"))
 
 
 def make_impl(cls: type[ActionType]) -> type:
-    """Return the services and messages that an action is carried out with."""
+    """Return the class of services and messages that implement an action."""
     uuid = shipped("unique_identifier_msgs", "msg", "UUID")
     time = shipped("builtin_interfaces", "msg", "Time")
     place = f"{cls.__qualname__}.Impl"
@@ -120,7 +119,7 @@ def make_impl(cls: type[ActionType]) -> type:
     parts = {
         "__module__": cls.__module__,
         "__qualname__": place,
-        "__doc__": f"What {cls.__ros_type__} is carried out with.",
+        "__doc__": f"The services and messages that implement {cls.__ros_type__}.",
         "SendGoalService": service(
             "SendGoalService",
             {"goal_id": uuid, "goal": cls.Goal},  # type: ignore[attr-defined] # nested class
@@ -144,9 +143,9 @@ def make_impl(cls: type[ActionType]) -> type:
 
 
 class ActionType:
-    """Base of all action types, with nested messages `Goal`, `Result` and `Feedback`.
+    """Base class of all action types, with nested messages `Goal`, `Result` and `Feedback`.
 
-    `Impl` holds the types that only the action protocol uses, named as in rclpy:
+    `Impl` has the types that only the action protocol uses, named as in rclpy:
     `SendGoalService`, `GetResultService`, `CancelGoalService`, `FeedbackMessage` and
     `GoalStatusMessage`.
     """
@@ -155,12 +154,12 @@ class ActionType:
     Impl: ClassVar[Any] = Hidden(make_impl)
 
     def __init_subclass__(cls, *, typename: str) -> None:
-        """Name the action and its messages."""
+        """Set the ROS names of the action and its messages."""
         name_halves(cls, typename, ("Goal", "Result", "Feedback"))
 
 
 Interface: TypeAlias = Message | ServiceType | ActionType
-"""What a ROS type name can stand for."""
+"""Any class that has a ROS type name."""
 
 Request_co = TypeVar("Request_co", bound=Message, covariant=True)
 Response_co = TypeVar("Response_co", bound=Message, covariant=True)
@@ -170,11 +169,11 @@ Feedback_co = TypeVar("Feedback_co", bound=Message, covariant=True)
 
 
 class ServiceClass(Protocol[Request_co, Response_co]):
-    """To type checkers: a service type, by what its requests and responses are.
+    """For type checkers: a service type, with its request and response types.
 
-    ``def create_client(self, srv_type: ServiceClass[RequestT, ResponseT], …)`` learns both types
-    from ``AddTwoInts``. The nested classes are described as functions that make a message, as that
-    is the form in which mypy and pyright both find them.
+    ``def create_client(self, srv_type: ServiceClass[RequestT, ResponseT], …)`` infers both types
+    from ``AddTwoInts``. The nested classes are declared as functions that return a message, because
+    both mypy and pyright understand that form.
     """
 
     def Request(self, *args: Any, **values: Any) -> Request_co:  # noqa: N802 (a class)
@@ -185,7 +184,7 @@ class ServiceClass(Protocol[Request_co, Response_co]):
 
 
 class ActionClass(Protocol[Goal_co, Result_co, Feedback_co]):
-    """To type checkers: an action type, by what its goals, results and feedback are."""
+    """For type checkers: an action type, with its goal, result and feedback types."""
 
     def Goal(self, *args: Any, **values: Any) -> Goal_co:  # noqa: N802 (a class)
         ...

@@ -1,8 +1,8 @@
-"""Validating and copying messages, with code that is generated once for each type.
+"""Validates and copies messages, with code generated once for each message type.
 
-The generated function handles the usual value of each field in one line and hands every other one
-to `fit`. Nested messages are unrolled into it, so a Twist costs one call. What is in the code comes
-from the description of a message class, whose names were checked when the class was made.
+The generated function handles the usual values of each field in one line and passes all others to
+`fit`. Nested messages are inlined, so a Twist costs one call. The code is generated from the
+description of a message class, whose names were validated when the class was created.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ FLOAT32_MAX = (2 - 2**-23) * 2.0**127
 
 @cache
 def holds_arrays(cls: type[Message]) -> bool:
-    """Whether values of a message class hold numpy arrays, their parts included."""
+    """Return whether messages of a class contain numpy arrays, at any depth."""
     types = [field.type for field in fields(cls)]
     return any(
         type_.form == "ndarray" or (type_.nested is not None and holds_arrays(type_.nested))
@@ -36,12 +36,12 @@ def holds_arrays(cls: type[Message]) -> bool:
 
 
 def snapshotter(cls: type[MessageT]) -> Callable[[MessageT], MessageT]:
-    """Return a function that validates a message and returns a copy for its readers.
+    """Return a function that validates a message and returns a copy for subscribers.
 
-    The copy shares nothing that can change: bytes and arrays marked read-only are shared, other
-    arrays are copied and the copy is marked read-only, lists of numbers become such arrays.
-    The function is generated once for each type. It raises `TypeError` for an object of another
-    class and `MessageError` for a value that does not fit.
+    The copy shares no mutable data with the message: read-only arrays and bytes are shared, other
+    arrays are copied and marked read-only, and lists of numbers become such arrays. The function
+    is generated once for each type. It raises `TypeError` for an object of another class and
+    `MessageError` for a value that does not fit its field.
 
     Raises:
         TypeError: `cls` is not a message class, or has no ROS name.
@@ -51,7 +51,7 @@ def snapshotter(cls: type[MessageT]) -> Callable[[MessageT], MessageT]:
 
 
 def checker(cls: type[MessageT]) -> Callable[[MessageT], None]:
-    """Return a function that raises as the one of `snapshotter` does, and copies nothing.
+    """Return a function that validates as that of `snapshotter` does, without a copy.
 
     Raises:
         TypeError: `cls` is not a message class, or has no ROS name.
@@ -71,7 +71,7 @@ def check(message: Message) -> None:
 
 
 def generated(cls: type[Message], *, copying: bool) -> Any:
-    """Return the function for a class, made when it is first asked for."""
+    """Return the function for a class, generated on first use."""
     functions = message_class(cls).__ros_functions__
     purpose = "snapshot" if copying else "check"
     if purpose not in functions:
@@ -80,7 +80,7 @@ def generated(cls: type[Message], *, copying: bool) -> Any:
 
 
 class Unrolling:
-    """Writes the function of one message type."""
+    """Generates the function of one message type."""
 
     def __init__(self, *, copying: bool) -> None:
         self.copying = copying
@@ -97,23 +97,23 @@ class Unrolling:
         }
 
     def function(self, cls: type[Message]) -> Callable[..., Any]:
-        """Return the function."""
+        """Return the generated function."""
         whole = self.message(cls, "message", "")
         result = whole if self.copying else "None"
         text = "\n    ".join(["def take(message, path=TYPE):", *self.lines, f"return {result}"])
         self.names["TYPE"] = type_name(cls)
-        exec(compile(text, f"<snapshot of {type_name(cls)}>", "exec"), self.names)  # noqa: S102 (of checked names only)
+        exec(compile(text, f"<snapshot of {type_name(cls)}>", "exec"), self.names)  # noqa: S102 (validated names only)
         function: Callable[..., Any] = self.names["take"]
         return function
 
     def name(self, value: object, prefix: str) -> str:
-        """Return a new name for a value that the code uses."""
+        """Return a new name for a value that the code refers to."""
         name = f"{prefix}{len(self.names)}"
         self.names[name] = value
         return name
 
     def message(self, cls: type[Message], source: str, path: str) -> str:
-        """Write what one message needs; return the expression of its copy."""
+        """Generate the code for a message; return the expression of its copy."""
         class_ = self.name(cls, "C")
         where = f"path + {path!r}" if path else "path"
         self.lines.append(
@@ -127,7 +127,7 @@ class Unrolling:
         return f"{class_}({', '.join(copies)})"
 
     def field(self, type_: FieldType, value: str, path: str) -> str:
-        """Write what one field needs; return the expression of its copy."""
+        """Generate the code for a field; return the expression of its copy."""
         if type_.nested is not None and type_.container == "single":
             return self.message(type_.nested, value, path)
         known = self.name(type_, "F")
@@ -148,14 +148,14 @@ class Unrolling:
             if type_.form == "bytes" and type_.container == "unbounded":
                 line = f"if {value}.__class__ is not bytes: {line}"
             elif not self.copying and type_.container != "array":
-                # An empty tuple always fits, and to see that needs no numpy.
+                # An empty tuple always fits, and numpy need not be imported to see that.
                 line = f"if {value}.__class__ is not tuple or {value}: {line}"
             self.lines.append(line)
         return value
 
 
 def unusual(type_: FieldType, value: str) -> str:
-    """Return the condition under which a single value needs a closer look."""
+    """Return the condition under which a single value is passed to `fit`."""
     kind = type_.kind
     if kind in INT_RANGES:
         low, high = INT_RANGES[kind]
@@ -174,7 +174,7 @@ def unusual(type_: FieldType, value: str) -> str:
 
 
 def refuse(cls: type[Message], value: object, path: str) -> None:
-    """Raise what fits an object that is not of `cls`: the whole message, or a part of it."""
+    """Raise TypeError for a message that is not of `cls`, MessageError for a nested message."""
     other, wanted = given_type(value), type_name(cls)
     if other == wanted:
         other, wanted = (f"{t.__module__}.{t.__qualname__}" for t in (type(value), cls))
@@ -185,7 +185,7 @@ def refuse(cls: type[Message], value: object, path: str) -> None:
 
 
 def given_type(value: object) -> str:
-    """Return what an error calls an object: the ROS name of a message, or value and type."""
+    """Return how an error describes an object: ROS name of a message, or value and type."""
     return getattr(type(value), "__ros_type__", "") or given(value)
 
 
@@ -197,7 +197,7 @@ def messages(
     try:
         return [take(value) for value in values]
     except (MessageError, TypeError):
-        for index, value in enumerate(values):  # again, to find the one and name it
+        for index, value in enumerate(values):  # find and name the invalid one
             take(value, f"{path}{field}[{index}]")
         raise
 
@@ -206,7 +206,7 @@ def strings(type_: FieldType, values: Any, path: str, field: str) -> list[str]:
     """Return a copy of a list of strings."""
     if values.__class__ is list and type_.string_bound is None:
         try:
-            usual = "".join(values).isascii()  # at C speed, and TypeError for what is no str
+            usual = "".join(values).isascii()  # fast, and raises TypeError for other types
         except TypeError:
             usual = False
         if usual:
@@ -216,7 +216,7 @@ def strings(type_: FieldType, values: Any, path: str, field: str) -> list[str]:
 
 
 def frozen_copy(array: Any) -> Any:
-    """Return an array that cannot change: itself if it is marked so, else a marked copy."""
+    """Return an array if it is read-only, else a read-only copy."""
     flags = array.flags
     if not flags.writeable:
         return array
@@ -226,7 +226,7 @@ def frozen_copy(array: Any) -> Any:
 
 
 def fixed_bytes(value: bytes | bytearray | memoryview) -> bytes | memoryview:
-    """Return bytes that cannot change: themselves if they are read-only, else a copy."""
+    """Return bytes if they are read-only, else a copy."""
     if isinstance(value, bytearray) or (isinstance(value, memoryview) and not value.readonly):
         return bytes(value)
     return value

@@ -1,12 +1,8 @@
-"""Values of fields: whether they fit, how they are made, compared and shown.
+"""Validates, creates, compares and prints the values of message fields.
 
-Whether a value fits a field, and the form in which its readers get it.
-
-`fit` takes every value that a user may reasonably put into a field and returns it in the one form
-that readers see; a value that is in that form already comes back as it is, without a copy. Messages
-within messages are the business of `aionode.message._snapshot`, which takes them apart.
-
-How the values of fields are made, compared and shown.
+`fit` accepts every value that a user may reasonably assign to a field and returns it in the form
+that subscribers receive; a value already in that form is returned without a copy. Nested messages
+are handled by `aionode.message._snapshot`.
 """
 
 from __future__ import annotations
@@ -45,10 +41,10 @@ __all__ = [
 
 
 def fit(type_: FieldType, value: object, path: str) -> Any:
-    """Return `value` as the readers of a field of this type see it.
+    """Return `value` in the form in which subscribers receive a field of this type.
 
     Raises:
-        MessageError: It does not fit; the error names `path`, with an index where there is one.
+        MessageError: It does not fit; the error names `path`, with an index for an element.
     """
     form = type_.form
     if form == "ndarray":
@@ -61,7 +57,7 @@ def fit(type_: FieldType, value: object, path: str) -> Any:
 
 
 def fit_element(type_: FieldType, value: object, path: str) -> Any:
-    """Return one value, or one element of several, as readers see it; raise `MessageError`."""
+    """Return a single value, or one element of a sequence, validated as by `fit`."""
     return ELEMENTS[type_.kind](type_, value, path)
 
 
@@ -77,19 +73,19 @@ def given(value: object) -> str:
 
 def short(value: object) -> str:
     """Return a value, shortened, for the text of an error."""
-    # Python writes no int of more than 4300 digits, and says so in other words from 3.14 on.
+    # Python refuses to convert ints of more than 4300 digits to text.
     if isinstance(value, int) and value.bit_length() > HUGE_BITS:
         return HUGE
     try:
         return reprlib.repr(value)
-    except ValueError:  # there is one in a list
+    except ValueError:  # such an int inside a list
         return HUGE
 
 
 def fit_int(type_: FieldType, value: object, path: str) -> int:
-    """Return an exact int in the range of its kind."""
+    """Return an int in the range of its type."""
     try:
-        number = operator.index(value)  # type: ignore[arg-type] # the question is whether it is one
+        number = operator.index(value)  # type: ignore[arg-type] # raises TypeError if it is not an int
     except TypeError:
         number = None
     if number is None or isinstance(value, bool):
@@ -101,7 +97,7 @@ def fit_int(type_: FieldType, value: object, path: str) -> int:
 
 
 def fit_float(type_: FieldType, value: object, path: str) -> float:
-    """Return a float; a float32 has to be able to hold it, if not exactly, then not as infinity."""
+    """Return a float; for a float32 it may be rounded, but must not overflow to infinity."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise MessageError(path, f"{given(value)}, needs a float")
     try:
@@ -115,7 +111,7 @@ def fit_float(type_: FieldType, value: object, path: str) -> float:
 
 
 def fit_bool(_: FieldType, value: object, path: str) -> bool:
-    """Return a bool, made of numpy's where it is one of those."""
+    """Return a bool; one of numpy is converted."""
     if isinstance(value, bool):
         return value
     kind = type(value)
@@ -135,7 +131,7 @@ def fit_byte(_: FieldType, value: object, path: str) -> bytes:
 
 
 def fit_string(type_: FieldType, value: object, path: str) -> str:
-    """Return an exact str that UTF-8 can hold and that is not too long."""
+    """Return a str that can be encoded as UTF-8 and is not too long."""
     if not isinstance(value, str):
         raise MessageError(path, f"{given(value)}, needs a str")
     text = str.__str__(value)
@@ -143,7 +139,7 @@ def fit_string(type_: FieldType, value: object, path: str) -> str:
         try:
             text.encode()
         except UnicodeEncodeError as error:
-            problem = f"half a surrogate pair at index {error.start}, which UTF-8 cannot hold"
+            problem = f"half a surrogate pair at index {error.start}, which UTF-8 cannot encode"
             raise MessageError(path, problem) from None
     if type_.string_bound is not None and len(text) > type_.string_bound:
         problem = f"{len(text)} characters, at most {type_.string_bound} fit"
@@ -171,9 +167,9 @@ def check_length(type_: FieldType, length: int, path: str) -> None:
 
 
 def is_listing(value: object) -> TypeGuard[AbstractSequence[Any]]:
-    """Return whether a value is a sequence of elements, as opposed to text or bytes."""
+    """Return whether a value is a sequence other than text or bytes."""
     kind = type(value)
-    if kind is list or kind is tuple:  # the usual ones, without the detour of an ABC
+    if kind is list or kind is tuple:  # the usual types, without the slower check of the ABC
         return True
     return isinstance(value, AbstractSequence) and not isinstance(
         value, str | bytes | bytearray | memoryview
@@ -181,7 +177,7 @@ def is_listing(value: object) -> TypeGuard[AbstractSequence[Any]]:
 
 
 def listed(type_: FieldType, value: object, path: str) -> list[Any]:
-    """Return a list of as many elements as the field can have, whatever they are."""
+    """Return a value as a list after checking its length, but not its elements."""
     if type(value).__module__ == "numpy" and hasattr(value, "tolist"):
         value = value.tolist()
     if not is_listing(value):
@@ -197,7 +193,7 @@ def fit_list(type_: FieldType, value: object, path: str) -> list[str]:
 
 
 def fit_bytes(type_: FieldType, value: object, path: str) -> bytes | bytearray | memoryview:
-    """Return a bytes-like object, of the memory of `value` where that holds single bytes."""
+    """Return a bytes-like object; a view of `value` if it is a buffer of single bytes."""
     if isinstance(value, bytes | bytearray):
         found: bytes | bytearray | memoryview = value
     elif isinstance(value, AbstractSequence) and is_listing(value) and not buffered(value):
@@ -209,18 +205,18 @@ def fit_bytes(type_: FieldType, value: object, path: str) -> bytes | bytearray |
 
 
 def buffered(value: object) -> bool:
-    """Return whether a value gives access to its memory."""
+    """Return whether a value supports the buffer protocol."""
     if isinstance(value, list | tuple):
         return False
     try:
-        memoryview(value)  # type: ignore[arg-type] # the question is whether it does
+        memoryview(value)  # type: ignore[arg-type] # raises TypeError if it does not
     except (TypeError, BufferError):
         return False
     return True
 
 
 def byte_of(type_: FieldType, item: object, path: str) -> bytes:
-    """Return one element of a list as a byte; rclpy has bytes of length 1 in lists of `byte`."""
+    """Return one element of a list as a byte; rclpy uses bytes of length 1 for `byte`."""
     if isinstance(item, bytes):
         return fit_byte(type_, item, path)
     return bytes((fit_int(UINT8, item, path),))
@@ -230,14 +226,14 @@ UINT8 = FieldType("uint8")
 
 
 def bytes_view(value: object, path: str) -> bytes | memoryview:
-    """Return the memory of a buffer of single bytes, in one piece."""
+    """Return a contiguous view, or a copy, of a buffer of single bytes."""
     if not buffered(value):
         raise MessageError(path, f"{given(value)}, needs bytes-like or a list of int")
-    view = memoryview(value)  # type: ignore[arg-type] # just asked
+    view = memoryview(value)  # type: ignore[arg-type] # just checked
     if view.nbytes == 0:
         return b""
     if view.ndim != 1:
-        problem = f"{view.ndim} dimensions, needs 1; .reshape(-1) or .tobytes() give that"
+        problem = f"{view.ndim} dimensions, needs 1; use .reshape(-1) or .tobytes()"
         raise MessageError(path, problem)
     if view.format not in {"B", "c"}:
         problem = f"a {type(value).__name__} of format {view.format!r}, needs single bytes ('B')"
@@ -246,7 +242,7 @@ def bytes_view(value: object, path: str) -> bytes | memoryview:
 
 
 def fit_array(type_: FieldType, value: object, path: str) -> npt.NDArray[Any]:
-    """Return an array of one dimension and the right dtype; one made here is read-only."""
+    """Return a one-dimensional array of the field's dtype; a newly created one is read-only."""
     import numpy as np
 
     dtype = dtype_of(type_.kind)
@@ -266,8 +262,8 @@ def fit_array(type_: FieldType, value: object, path: str) -> npt.NDArray[Any]:
 
 @cache
 def dtype_of(kind: str) -> np.dtype[Any]:
-    """Return the dtype of the arrays of a kind."""
-    import numpy as np  # numpy is loaded when it is first needed
+    """Return the dtype of arrays of an element type."""
+    import numpy as np  # numpy is imported on first use
 
     return np.dtype(DTYPES[kind])
 
@@ -279,7 +275,7 @@ def frozen(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
 
 
 FAST_ITEMS: dict[str, set[type]] = {"bool": {bool}, "float64": {float, int}}
-"""What numpy converts without a closer look at each element; {int} for the other kinds."""
+"""Element classes that numpy converts correctly by itself; {int} for the other types."""
 
 
 def array_of_items(
@@ -294,13 +290,13 @@ def array_of_items(
         try:
             return frozen(np.array(items, dtype))
         except OverflowError:
-            pass  # found and named below
+            pass  # the invalid element is found below
     fitted = [fit_element(type_, item, f"{path}[{i}]") for i, item in enumerate(items)]
     return frozen(np.array(fitted, dtype))
 
 
 def cast(type_: FieldType, array: npt.NDArray[Any], path: str) -> npt.NDArray[Any]:
-    """Return an array of another dtype as one of this field's, if every element fits."""
+    """Return an array converted to the field's dtype, if every element fits."""
     import numpy as np
 
     dtype = dtype_of(type_.kind)
@@ -323,24 +319,24 @@ def cast(type_: FieldType, array: npt.NDArray[Any], path: str) -> npt.NDArray[An
 
 
 SHOWN_ELEMENTS = 1000
-"""Longer sequences are shortened in a repr, as numpy does, so that an image fits a log line."""
+"""Longer sequences are abbreviated in a repr, as in numpy, so that an image fits a log line."""
 
 
 def zero(kind: str) -> Any:
-    """Return the value that a field of a kind has when nothing else is said."""
+    """Return the default value of a type."""
     if kind in INT_RANGES:
         return 0
     return {"bool": False, "byte": b"\0", "string": "", "wstring": ""}.get(kind, 0.0)
 
 
 def plain_default(type_: FieldType, given_: object, path: str) -> object:
-    """Return a default in one form, whoever wrote it: None if it is the type's zero anyway.
+    """Return a default in its normal form, which is None for the zero of the type.
 
     Raises:
         MessageError: It does not fit the field.
     """
     if type_.kind == "message":
-        raise MessageError(path, "a message has no default here; write DEFAULT for its own ones")
+        raise MessageError(path, "a nested message cannot have a default here; write DEFAULT")
     if type_.container == "single":
         value = fit_element(type_, given_, path)
         return None if value == zero(type_.kind) and str(value) != "-0.0" else value
@@ -356,7 +352,7 @@ def plain_default(type_: FieldType, given_: object, path: str) -> object:
 
 
 def default_value(type_: FieldType, default: object) -> Any:
-    """Return what msgspec needs to give each message its own default of a field."""
+    """Return the default in the form that msgspec expects, a factory for mutable values."""
     if type_.form == "value" and type_.nested is None:
         return zero(type_.kind) if default is None else default
     if type_.form == "bytes":
@@ -365,12 +361,12 @@ def default_value(type_: FieldType, default: object) -> Any:
 
 
 def zeroed(type_: FieldType) -> int:
-    """Return how many elements there are when nothing is said of them."""
+    """Return the number of elements of a default value."""
     return type_.size if type_.container == "array" else 0
 
 
 def default_factory(type_: FieldType, default: object) -> Callable[[], Any]:
-    """Return a function that makes the default of a field that can change."""
+    """Return a function that creates the default of a field with a mutable value."""
     if type_.form == "ndarray":
         dtype = DTYPES[type_.kind]
         if default is not None:
@@ -407,7 +403,7 @@ def zeros(dtype: str, size: int) -> npt.NDArray[Any]:
 
 @cache
 def empty(dtype: str) -> npt.NDArray[Any]:
-    """Return the one empty array of a dtype; it has nothing in it that could change."""
+    """Return the empty array of a dtype; it can be shared, as it has no elements."""
     import numpy as np
 
     array = np.empty(0, dtype)
@@ -416,7 +412,7 @@ def empty(dtype: str) -> npt.NDArray[Any]:
 
 
 EMPTY = {dtype: partial(empty, dtype) for dtype in set(DTYPES.values())}
-"""How to get the empty array of each dtype."""
+"""Functions that return the empty array of each dtype."""
 
 BYTES_LIKE = bytes | bytearray | memoryview
 
@@ -424,7 +420,7 @@ SCALARS = frozenset({int, float, str, bool, bytes})
 
 
 def same(one: Any, other: Any) -> bool:
-    """Return whether two values of a field are equal, in whatever form they are held."""
+    """Return whether two values of a field are equal, whatever types hold them."""
     kind = one.__class__
     if kind in SCALARS and other.__class__ is kind:
         return bool(one == other)
@@ -440,8 +436,8 @@ def same(one: Any, other: Any) -> bool:
 
 
 def same_numbers(one: Any, other: Any) -> bool:
-    """Return whether two values are equal, one of which is an array."""
-    import numpy as np  # numpy is loaded when it is first needed
+    """Return whether two values are equal, at least one of which is an array."""
+    import numpy as np  # numpy is imported on first use
 
     if isinstance(other, BYTES_LIKE):
         one, other = other, one
@@ -449,7 +445,7 @@ def same_numbers(one: Any, other: Any) -> bool:
 
 
 def shown(type_: FieldType, value: Any) -> str:
-    """Return a value as rclpy shows it: sequences of numbers as lists, arrays as numpy's."""
+    """Return a value as rclpy prints it: sequences of numbers as lists, arrays as in numpy."""
     if type_.container == "array" or type_.form in {"value", "list"}:
         return repr(value)
     if len(value) > SHOWN_ELEMENTS:
@@ -461,5 +457,5 @@ def shown(type_: FieldType, value: Any) -> str:
 
 
 def elements(value: Any) -> list[Any]:
-    """Return the elements of bytes, an array or a list as Python's own numbers."""
+    """Return the elements of bytes, an array or a list as Python objects."""
     return value.tolist() if hasattr(value, "tolist") else list(value)

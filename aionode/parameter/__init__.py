@@ -1,15 +1,15 @@
-"""Parameters: values, descriptors, the store of a node, and classes of parameters."""
+"""Parameters: values, descriptors, the store of a node, and parameters as a class."""
 
-from aionode.parameter._qos_overrides import QoSOverridingOptions, declare_qos_overrides
-from aionode.parameter._services import ParameterService, parameter_services
-from aionode.parameter._store import (
+from aionode.parameter._callbacks import (
     OnSetCallback,
     ParameterCallbacks,
-    ParameterStore,
     PostSetCallback,
     PreSetCallback,
-    validate_parameter_name,
 )
+from aionode.parameter._declaration import validate_parameter_name
+from aionode.parameter._qos_overrides import QoSOverridingOptions, declare_qos_overrides
+from aionode.parameter._services import ParameterService, parameter_services
+from aionode.parameter._store import ParameterStore
 from aionode.parameter._struct import ParameterOwner, declare_struct
 from aionode.parameter._value import (
     PARAMETER_SEPARATOR_STRING,

@@ -1,13 +1,13 @@
-"""The parameters of one node: declared, checked, changed, without input or output.
+"""The parameters of one node: declared, checked and changed. Does no I/O.
 
-A change goes through these steps; the first that objects ends it, with nothing changed::
+A change passes through these steps; if one of them rejects it, nothing is changed::
 
-    pre callbacks    may change the list of parameters      not when declaring
-    declared?        or undeclared ones are allowed         not when declaring
+    pre callbacks    may change the list of parameters        not when declaring
+    declared?        unless undeclared ones are allowed       not when declaring
     descriptor       read-only, type, range
     on callbacks     may reject
     stored
-    event            given to `publish`
+    event            passed to `publish`
     post callbacks   may act on it
 """
 
@@ -19,7 +19,6 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from aionode.errors import (
-    InvalidParameterException,
     InvalidParameterTypeException,
     InvalidParameterValueException,
     ParameterAlreadyDeclaredException,
@@ -36,7 +35,14 @@ from aionode.interfaces.rcl_interfaces.msg import (
     SetParametersResult,
 )
 from aionode.interfaces.rcl_interfaces.msg import Parameter as ParameterMsg
+from aionode.parameter._callbacks import ParameterCallbacks
 from aionode.parameter._constraints import descriptor_violation, type_violation
+from aionode.parameter._declaration import (
+    adapted,
+    first_value,
+    split_entry,
+    validate_parameter_name,
+)
 from aionode.parameter._value import (
     PARAMETER_SEPARATOR_STRING,
     Parameter,
@@ -45,18 +51,7 @@ from aionode.parameter._value import (
     parameter_value_to_python,
 )
 
-__all__ = [
-    "OnSetCallback",
-    "ParameterCallbacks",
-    "ParameterStore",
-    "PostSetCallback",
-    "PreSetCallback",
-    "validate_parameter_name",
-]
-
-PreSetCallback = Callable[[list[Parameter]], list[Parameter]]
-OnSetCallback = Callable[[list[Parameter]], SetParametersResult]
-PostSetCallback = Callable[[list[Parameter]], None]
+__all__ = ["ParameterStore"]
 
 EMPTY_LIST = (
     "parameter list cannot be empty, this might be due to pre_set_parameters_callback "
@@ -64,83 +59,20 @@ EMPTY_LIST = (
 )
 
 
-def validate_parameter_name(name: str) -> bool:
-    """Return True if `name` may be a parameter's: if it is not empty.
-
-    Raises:
-        InvalidParameterException: It may not.
-    """
-    if not name:
-        raise InvalidParameterException(name)
-    return True
-
-
-class ParameterCallbacks:
-    """The callbacks of a node for changes of its parameters; the newest of each kind runs first."""
-
-    def __init__(self) -> None:
-        self._pre: list[PreSetCallback] = []
-        self._on: list[OnSetCallback] = []
-        self._post: list[PostSetCallback] = []
-
-    def add_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
-        """Call `callback` before a change is checked: it returns the list to go on with."""
-        self._pre.insert(0, callback)
-
-    def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
-        """Call `callback` to check a change: the first that rejects it wins."""
-        self._on.insert(0, callback)
-
-    def add_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
-        """Call `callback` after a change."""
-        self._post.insert(0, callback)
-
-    def remove_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
-        """Call it no more; a ValueError if it was not added."""
-        self._pre.remove(callback)
-
-    def remove_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
-        """Call it no more; a ValueError if it was not added."""
-        self._on.remove(callback)
-
-    def remove_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
-        """Call it no more; a ValueError if it was not added."""
-        self._post.remove(callback)
-
-    def _modified(self, parameters: list[Parameter]) -> list[Parameter]:
-        # As in rclpy, each callback gets the original list, and all answers count.
-        if not self._pre:
-            return parameters
-        result: list[Parameter] = []
-        for callback in self._pre:
-            returned = callback(parameters)
-            expect(returned, list, f"what the pre-set callback {callback!r} returns")
-            result.extend(returned)
-        return result
-
-    def _rejection(self, parameters: list[Parameter]) -> SetParametersResult | None:
-        for callback in self._on:
-            result = callback(parameters)
-            expect(result, SetParametersResult, f"what the on-set callback {callback!r} returns")
-            if not result.successful:
-                return result
-        return None
-
-
 class ParameterStore(ParameterCallbacks):
     """The parameters of one node.
 
     Args:
         node_name: Full name of the node, for its events.
-        overrides: Values that win over those given when declaring.
-        allow_undeclared: Whether parameters may be set without being declared.
-        publish: Called with the event of each change, before the post callbacks; its stamp is not
-            set.
+        overrides: Values that take precedence over those given when declaring.
+        allow_undeclared: Whether parameters can be set without being declared.
+        publish: Called with the event of each change, whose stamp is not set, before the post
+            callbacks.
 
     Attributes:
         overrides: The overrides, by name.
-        asked: Names of those overrides that were declared at some time.
-        publish: As given; may be changed.
+        asked: Names of the overrides whose parameters have been declared.
+        publish: As given; may be replaced.
     """
 
     def __init__(
@@ -157,11 +89,13 @@ class ParameterStore(ParameterCallbacks):
         self.asked: set[str] = set()
         self.allow_undeclared = allow_undeclared
         self.publish = publish
+        # Both by name, with the same keys: the declared parameters, and those set without being
+        # declared where that is allowed.
         self._parameters: dict[str, Parameter] = {}
         self._descriptors: dict[str, ParameterDescriptor] = {}
 
     def names(self) -> list[str]:
-        """Return the names of all parameters that are declared."""
+        """Return the names of all declared parameters."""
         return list(self._parameters)
 
     # Declaring
@@ -173,19 +107,19 @@ class ParameterStore(ParameterCallbacks):
         descriptor: ParameterDescriptor | None = None,
         ignore_override: bool = False,
     ) -> Parameter:
-        """Declare a parameter and return it, with the value of an override if there is one.
+        """Declare a parameter and return it; an override of its name gives the value.
 
         Args:
             name: Its name.
-            value: Its value to begin with, or its type (`Parameter.Type`) if it is to have none.
-            descriptor: What is known of it. Without `dynamic_typing` its type stays that of
-                `value`.
-            ignore_override: Whether overrides are left aside.
+            value: Its initial value, or its type (`Parameter.Type`) to declare it without a value.
+            descriptor: Description, range, and whether it is read-only. Unless it has
+                `dynamic_typing`, the type remains that of `value`.
+            ignore_override: Whether to ignore overrides.
 
         Raises:
-            ParameterAlreadyDeclaredException: It was declared before.
+            ParameterAlreadyDeclaredException: The parameter is already declared.
             InvalidParameterException: The name is empty.
-            InvalidParameterTypeException: The override is of another type than `value`.
+            InvalidParameterTypeException: The override has a different type than `value`.
             InvalidParameterValueException: The descriptor or a callback rejects the value.
         """
         if value is None and descriptor is None:
@@ -199,17 +133,17 @@ class ParameterStore(ParameterCallbacks):
         parameters: Iterable[tuple[Any, ...]],
         ignore_override: bool = False,
     ) -> list[Parameter]:
-        """Declare parameters, given as ``(name, value or type, descriptor)``, in order.
+        """Declare parameters, each given as ``(name, value or type, descriptor)``, in order.
 
         If one is rejected, those before it stay declared. See `declare_parameter`.
 
         Args:
-            namespace: Put in front of the names, with a dot, unless it is empty.
-            parameters: One tuple of 1 to 3 elements for each.
-            ignore_override: Whether overrides are left aside.
+            namespace: Prepended to the names, with a dot, unless it is empty.
+            parameters: A tuple of 1 to 3 elements for each parameter.
+            ignore_override: Whether to ignore overrides.
 
         Raises:
-            TypeError: A tuple is none of these.
+            TypeError: A tuple has another form.
         """
         declarations = [
             self._declaration(namespace, entry, index, ignore_override)
@@ -266,10 +200,10 @@ class ParameterStore(ParameterCallbacks):
         self._store([parameter], keep_not_set=True)
 
     def undeclare_parameter(self, name: str) -> None:
-        """Forget a parameter. Neither callbacks nor an event tell of it.
+        """Remove a parameter. No callback is called and no event is published.
 
         Raises:
-            ParameterNotDeclaredException: There is none of this name.
+            ParameterNotDeclaredException: No parameter of this name is declared.
             ParameterImmutableException: It is read-only.
         """
         if name not in self._parameters:
@@ -286,11 +220,12 @@ class ParameterStore(ParameterCallbacks):
         return name in self._parameters
 
     def get_parameter(self, name: str) -> Parameter:
-        """Return a parameter; one that is not set if it is undeclared and that is allowed.
+        """Return a parameter; for an undeclared one, if that is allowed, one that is not set.
 
         Raises:
-            ParameterNotDeclaredException: It is undeclared, and that is not allowed.
-            ParameterUninitializedException: It was declared without a value and has none yet.
+            ParameterNotDeclaredException: It is undeclared, and undeclared parameters are not
+                allowed.
+            ParameterUninitializedException: It was declared without a value and never set.
         """
         parameter = self._parameters.get(name)
         if parameter is None:
@@ -302,10 +237,10 @@ class ParameterStore(ParameterCallbacks):
         return parameter
 
     def get_parameters(self, names: Iterable[str]) -> list[Parameter]:
-        """Return parameters, as `get_parameter` does each.
+        """Return several parameters; see `get_parameter`.
 
         Raises:
-            TypeError: A name is no str.
+            TypeError: A name is not a str.
         """
         return [self.get_parameter(name) for name in expect_names(names)]
 
@@ -320,7 +255,8 @@ class ParameterStore(ParameterCallbacks):
         """Return the type of a parameter; NOT_SET if it is undeclared and that is allowed.
 
         Raises:
-            ParameterNotDeclaredException: It is undeclared, and that is not allowed.
+            ParameterNotDeclaredException: It is undeclared, and undeclared parameters are not
+                allowed.
         """
         if name in self._parameters:
             return self._parameters[name].type_
@@ -329,15 +265,15 @@ class ParameterStore(ParameterCallbacks):
         raise ParameterNotDeclaredException(name)
 
     def get_parameter_types(self, names: Iterable[str]) -> list[ParameterType]:
-        """Return types, as `get_parameter_type` does each.
+        """Return several types; see `get_parameter_type`.
 
         Raises:
-            TypeError: A name is no str.
+            TypeError: A name is not a str.
         """
         return [self.get_parameter_type(name) for name in expect_names(names)]
 
     def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter]:
-        """Return the parameters of a group, by what follows its name and the dot."""
+        """Return the parameters of a group, keyed by the rest of their names."""
         start = f"{prefix}{PARAMETER_SEPARATOR_STRING}" if prefix else ""
         return {
             name[len(start) :]: parameter
@@ -349,11 +285,11 @@ class ParameterStore(ParameterCallbacks):
         """Return the names of parameters, and the groups they are in.
 
         Args:
-            prefixes: Only parameters of these names and groups; all if it is empty.
-            depth: How many levels below; 0 means all.
+            prefixes: The names and groups to list; all if it is empty.
+            depth: How many levels below each prefix to list; 0 means all.
 
         Raises:
-            TypeError: An argument is of a wrong kind.
+            TypeError: An argument has the wrong type.
             ValueError: `depth` is negative.
         """
         expect(prefixes, list, "prefixes")
@@ -374,12 +310,12 @@ class ParameterStore(ParameterCallbacks):
     # Changing
 
     def set_parameters(self, parameter_list: Iterable[Parameter]) -> list[SetParametersResult]:
-        """Set parameters one after the other, and return a result for each, in order.
+        """Set parameters one by one, and return a result for each, in order.
 
         Raises:
-            ParameterNotDeclaredException: One is undeclared, and that is not allowed; those before
-                it stay set.
-            TypeError: One is no Parameter.
+            ParameterNotDeclaredException: One is undeclared, and undeclared parameters are not
+                allowed; those before it stay set.
+            TypeError: One is not a Parameter.
         """
         return [self.set_parameters_atomically([parameter]) for parameter in parameter_list]
 
@@ -387,15 +323,16 @@ class ParameterStore(ParameterCallbacks):
         """Set all parameters, or none of them. Setting one to NOT_SET undeclares it.
 
         Raises:
-            ParameterNotDeclaredException: One is undeclared, and that is not allowed.
-            TypeError: One is no Parameter.
+            ParameterNotDeclaredException: One is undeclared, and undeclared parameters are not
+                allowed.
+            TypeError: One is not a Parameter.
         """
         parameters = self._modified(list(parameter_list))
         for parameter in parameters:
             expect(parameter, Parameter, "parameter")
         if self._pre and not parameters:
             return SetParametersResult(successful=False, reason=EMPTY_LIST)
-        # Of several for one name, as from several callbacks, the last counts.
+        # If a name occurs several times, as with several pre callbacks, the last value counts.
         parameters = list({parameter.name: parameter for parameter in parameters}.values())
         parameters = [adapted(each, self._descriptors.get(each.name)) for each in parameters]
         undeclared = [each.name for each in parameters if each.name not in self._parameters]
@@ -459,7 +396,8 @@ class ParameterStore(ParameterCallbacks):
         """Return the descriptor of a parameter; an empty one if undeclared ones are allowed.
 
         Raises:
-            ParameterNotDeclaredException: It is undeclared, and that is not allowed.
+            ParameterNotDeclaredException: It is undeclared, and undeclared parameters are not
+                allowed.
         """
         descriptor = self._descriptors.get(name)
         if descriptor is not None:
@@ -469,7 +407,7 @@ class ParameterStore(ParameterCallbacks):
         raise ParameterNotDeclaredException(name)
 
     def describe_parameters(self, names: Iterable[str]) -> list[ParameterDescriptor]:
-        """Return descriptors, as `describe_parameter` does each."""
+        """Return several descriptors; see `describe_parameter`."""
         return [self.describe_parameter(name) for name in names]
 
     def set_descriptor(
@@ -478,15 +416,16 @@ class ParameterStore(ParameterCallbacks):
         descriptor: ParameterDescriptor,
         alternative_value: ParameterValue | None = None,
     ) -> ParameterValue:
-        """Give a parameter another descriptor, and return its value then.
+        """Replace the descriptor of a parameter, and return its resulting value.
 
         Args:
             name: Name of the parameter.
             descriptor: The new descriptor; its name is ignored.
-            alternative_value: The parameter's new value if the one it has does not fit.
+            alternative_value: The new value if the current one does not fit.
 
         Raises:
-            ParameterNotDeclaredException: The parameter is undeclared, and that is not allowed.
+            ParameterNotDeclaredException: The parameter is undeclared, and undeclared parameters
+                are not allowed.
             ParameterImmutableException: It is read-only.
             InvalidParameterValueException: Neither value fits the new descriptor.
         """
@@ -515,94 +454,28 @@ class ParameterStore(ParameterCallbacks):
         raise InvalidParameterValueException(name, candidates[-1].value, reason)
 
 
-# Parts of declarations
-
-
 def as_overrides(overrides: Iterable[Parameter] | Mapping[str, object]) -> dict[str, Parameter]:
-    """Return overrides by name, from parameters or from names and values."""
+    """Return overrides by name, from parameters or a mapping of names to values."""
     if isinstance(overrides, Mapping):
         return {name: Parameter(name, value=value) for name, value in overrides.items()}
     return {parameter.name: parameter for parameter in overrides}
-
-
-def split_entry(entry: tuple[Any, ...], index: int) -> tuple[str, Any, ParameterDescriptor]:
-    """Return name, value and descriptor of an entry of `declare_parameters`."""
-    if not 1 <= len(entry) <= 3:
-        message = (
-            f"Invalid parameter tuple length at index {index} in parameters list: {entry}; "
-            "expecting length between 1 and 3"
-        )
-        raise TypeError(message)
-    name, value, descriptor = (*entry, *(None, None))[:3]
-    if descriptor is None:
-        descriptor = ParameterDescriptor()
-    expect(name, str, f"First element at index {index} in parameters list")
-    expect(descriptor, ParameterDescriptor, f"Third element at index {index} in parameters list")
-    for ranges in (descriptor.integer_range, descriptor.floating_point_range):
-        if len(ranges) > 1:
-            message = f"{name}: the descriptor has {len(ranges)} ranges; it may have one"
-            raise ValueError(message)
-    return name, value, descriptor
-
-
-def first_value(name: str, value: Any, descriptor: ParameterDescriptor) -> Parameter:
-    """Return the parameter as declared, and note its type in the descriptor.
-
-    Raises:
-        ValueError: The type cannot be told.
-    """
-    if isinstance(value, ParameterType):
-        if value is ParameterType.NOT_SET:
-            message = f"Cannot declare parameter '{name}' as statically typed of type NOT_SET"
-            raise ValueError(message)
-        if descriptor.dynamic_typing:
-            message = (
-                f"When declaring parameter '{name}' passing a descriptor with "
-                "`dynamic_typing=True` is not allowed when the parameter type is provided"
-            )
-            raise ValueError(message)
-        descriptor.type = int(value)
-        return Parameter(name)
-    if isinstance(value, ParameterValue):
-        parameter = Parameter.from_parameter_msg(ParameterMsg(name=name, value=value))
-    else:
-        parameter = Parameter(name, value=value)
-    if not descriptor.dynamic_typing and parameter.type_ is ParameterType.NOT_SET:
-        message = (
-            f"Cannot declare the statically typed parameter '{name}' with a default value of type "
-            "PARAMETER_NOT_SET: give a value, a Parameter.Type, or dynamic_typing=True"
-        )
-        raise ValueError(message)
-    descriptor.type = int(parameter.type_)
-    return parameter
-
-
-def adapted(parameter: Parameter, descriptor: ParameterDescriptor | None) -> Parameter:
-    """Return an empty list, whose type cannot be seen, as a list of the declared type."""
-    if descriptor is None or descriptor.dynamic_typing:
-        return parameter
-    wanted = ParameterType(descriptor.type)
-    is_empty = parameter.type_ is ParameterType.BYTE_ARRAY and not parameter.value
-    if is_empty and wanted > ParameterType.BYTE_ARRAY:
-        return Parameter(parameter.name, wanted, [])
-    return parameter
 
 
 def expect_names(names: Iterable[str]) -> list[str]:
     """Return names as a list.
 
     Raises:
-        TypeError: One is no str.
+        TypeError: One is not a str.
     """
     result = list(names)
     if not all(isinstance(name, str) for name in result):
-        message = f"All names must be instances of type str, unlike in {brief(result)}"
+        message = f"All names must be instances of type str; got {brief(result)}"
         raise TypeError(message)
     return result
 
 
 def is_listed(name: str, prefixes: list[str], depth: int) -> bool:
-    """Return whether `list_parameters` lists a name."""
+    """Return whether `list_parameters` includes a name."""
     if not prefixes:
         return is_shallow(name, depth)
     return any(

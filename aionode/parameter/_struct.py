@@ -27,7 +27,7 @@ from aionode.interfaces.rcl_interfaces.msg import (
     ParameterDescriptor,
     SetParametersResult,
 )
-from aionode.parameter._store import OnSetCallback, PostSetCallback
+from aionode.parameter._callbacks import OnSetCallback, PostSetCallback
 from aionode.parameter._value import PARAMETER_SEPARATOR_STRING, Parameter, ParameterType
 
 __all__ = ["ParameterOwner", "declare_struct"]

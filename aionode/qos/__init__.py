@@ -1,11 +1,11 @@
-"""Quality of service: what an endpoint offers or asks for, and who fits whom.
+"""Quality of service: policies, profiles, and which profiles are compatible.
 
-A publisher *offers*, a subscription *requests*, and a pair communicates if the offer is at least
-as strong as the request. `mismatch` says why it is not, in words; logs, command line and tests
-use the same words.
+A publisher *offers* and a subscription *requests* a profile; the pair communicates if the offer is
+at least as strong as the request. `mismatch` returns the reason if it is not, in the words that
+logs and the command line use.
 
-Policies have a value SYSTEM_DEFAULT, which leaves the choice to us: `QoSProfile.resolved` makes
-it (as rmw_zenoh does). A duration of zero means "not limited", as in rclpy.
+SYSTEM_DEFAULT leaves the choice of a policy to aionode: `QoSProfile.resolved` makes it as rmw_zenoh
+does. A duration of zero means "not limited", as in rclpy.
 """
 
 from __future__ import annotations

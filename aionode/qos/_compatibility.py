@@ -1,4 +1,4 @@
-"""Whether an offered profile satisfies a requested one, and why not."""
+"""Compatibility of offered and requested profiles."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ PolicyT = TypeVar("PolicyT", bound="QoSPolicyEnum")
 
 
 class Incompatibility(NamedTuple):
-    """Why an offer does not meet a request.
+    """A policy in which an offer is weaker than a request.
 
     Attributes:
         kind: The policy.
-        reason: Both values, in words.
+        reason: The policy with both values, in words.
     """
 
     kind: QoSPolicyKind
@@ -86,17 +86,17 @@ def incompatibilities(offered: QoSProfile, requested: QoSProfile) -> list[Incomp
 
 
 def mismatch(offered: QoSProfile, requested: QoSProfile) -> str | None:
-    """Return why `offered` cannot serve `requested`, or None when it can."""
+    """Return why `offered` does not satisfy `requested`, or None if it does."""
     return "; ".join(found.reason for found in incompatibilities(offered, requested)) or None
 
 
 def incompatible_qos_text(topic: str, kind: QoSPolicyKind, *, publisher: bool) -> str:
-    """Return the warning about a newly discovered publisher or subscription that does not fit.
+    """Return the warning about a newly discovered, incompatible publisher or subscription.
 
     Args:
         topic: Name of the topic.
         kind: The last incompatible policy: ``incompatibilities(…)[-1].kind``.
-        publisher: Whether the discovered one is a publisher; the warning is for the other side.
+        publisher: Whether a publisher was discovered; the warning is then for a subscription.
     """
     if publisher:
         what, verb, effect = "publisher", "offering", "received from it"
@@ -109,7 +109,7 @@ def incompatible_qos_text(topic: str, kind: QoSPolicyKind, *, publisher: bool) -
 
 
 class QoSCompatibility(IntEnum):
-    """Whether two profiles fit: surely, surely not, or it depends on defaults."""
+    """Whether two profiles are compatible; WARNING if that depends on defaults."""
 
     OK = 0
     WARNING = 1
@@ -119,10 +119,10 @@ class QoSCompatibility(IntEnum):
 def qos_check_compatible(
     publisher_qos: QoSProfile, subscription_qos: QoSProfile
 ) -> tuple[QoSCompatibility, str]:
-    """Return whether the profiles fit, and if not surely, why.
+    """Return whether two profiles are compatible, with the reasons for a warning or an error.
 
-    WARNING means that a policy is left to the system or unknown, so that the answer depends on
-    the implementation at the other end.
+    WARNING means that a policy is left to the system or unknown, so the result depends on the
+    implementation at the other end.
     """
     decided = [
         qos.replace(
@@ -151,7 +151,7 @@ def qos_check_compatible(
 
 
 def undecided(value: PolicyT, unknown: PolicyT) -> PolicyT:
-    """Return `unknown` for a value that is left to the system, else the value."""
+    """Return `unknown` for SYSTEM_DEFAULT, else the value."""
     return value or unknown
 
 
@@ -173,9 +173,9 @@ def is_doubtful(
 def best_available_for_subscription(
     profile: QoSProfile, publishers: Iterable[QoSProfile]
 ) -> QoSProfile:
-    """Return `profile` with each BEST_AVAILABLE policy settled: the strongest all publishers offer.
+    """Return `profile` with BEST_AVAILABLE replaced by the strongest policies all publishers offer.
 
-    Without publishers that is the strongest there is.
+    Without publishers these are the strongest policies that exist.
     """
     others = [other.resolved() for other in publishers]
 
@@ -183,7 +183,7 @@ def best_available_for_subscription(
         return strong if all(getattr(other, name) is strong for other in others) else weak
 
     def widest(limits: list[Duration]) -> Duration:
-        # rmw leaves out publishers without a limit, and so would not hear them.
+        # rmw ignores publishers without a limit, and would then be incompatible with them.
         return Duration() if any(map(is_unlimited, limits)) else max(limits, default=Duration())
 
     return resolve_best_available(profile, pick, widest, others)
@@ -192,10 +192,10 @@ def best_available_for_subscription(
 def best_available_for_publisher(
     profile: QoSProfile, subscriptions: Iterable[QoSProfile]
 ) -> QoSProfile:
-    """Return `profile` with each BEST_AVAILABLE policy settled: one that serves all subscriptions.
+    """Return `profile` with BEST_AVAILABLE replaced by policies that satisfy all subscriptions.
 
-    A publisher may always be reliable and transient local. It promises its own liveliness, a
-    deadline or a lease only if somebody asks.
+    A publisher can always be reliable and transient local. It offers manual liveliness, a deadline
+    or a lease duration only if a subscription requests it.
     """
     others = [other.resolved() for other in subscriptions]
 
@@ -216,7 +216,7 @@ def resolve_best_available(
     limit: Callable[[list[Duration]], Duration],
     others: list[QoSProfile],
 ) -> QoSProfile:
-    """Return `profile` without BEST_AVAILABLE."""
+    """Return `profile` with BEST_AVAILABLE replaced by what `pick` and `limit` choose."""
     changes: dict[str, object] = {}
     for name, strong, weak in (
         ("reliability", ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT),

@@ -46,13 +46,13 @@ __all__ = [
 ]
 
 DEFAULT_DEPTH = 42
-"""What a depth of 0 means (rmw_zenoh_cpp, src/detail/qos.cpp)."""
+"""The depth used for a depth of 0 (rmw_zenoh_cpp, src/detail/qos.cpp)."""
 
 DeadlineBestAvailable = Duration(nanoseconds=CONST_INFINITE_NS - 1)
-"""As a deadline: the one that fits the endpoints that are visible when the entity is made."""
+"""A deadline that is compatible with the endpoints visible when the entity is created."""
 
 LivelinessLeaseDurationBestAvailable = DeadlineBestAvailable
-"""The same as a lease duration."""
+"""The same for a lease duration."""
 
 PolicyT = TypeVar("PolicyT", bound="QoSPolicyEnum")
 
@@ -60,11 +60,11 @@ PolicyT = TypeVar("PolicyT", bound="QoSPolicyEnum")
 
 
 class QoSPolicyEnum(IntEnum):
-    """Base of the policies: members by short, lower-case names."""
+    """Base class of the policies, whose members have short, lower-case names."""
 
     @classmethod
     def short_keys(cls) -> list[str]:
-        """Return the names of all values, as they are typed on a command line."""
+        """Return the names of all values, as used on the command line."""
         return [key.lower() for key in cls.__members__]
 
     @classmethod
@@ -72,7 +72,7 @@ class QoSPolicyEnum(IntEnum):
         """Return the value called `name`, in upper or lower case.
 
         Raises:
-            KeyError: There is none of this name.
+            KeyError: The name is unknown.
         """
         return cls[name.upper()]
 
@@ -83,7 +83,7 @@ class QoSPolicyEnum(IntEnum):
 
 
 class HistoryPolicy(QoSPolicyEnum):
-    """How many messages wait for a slow reader: the newest `depth`, or all."""
+    """Which messages are kept for a slow subscription: the newest `depth`, or all."""
 
     SYSTEM_DEFAULT = 0
     KEEP_LAST = 1
@@ -92,7 +92,7 @@ class HistoryPolicy(QoSPolicyEnum):
 
 
 class ReliabilityPolicy(QoSPolicyEnum):
-    """Whether a lost message is sent again."""
+    """Whether lost messages are sent again."""
 
     SYSTEM_DEFAULT = 0
     RELIABLE = 1
@@ -102,7 +102,7 @@ class ReliabilityPolicy(QoSPolicyEnum):
 
 
 class DurabilityPolicy(QoSPolicyEnum):
-    """Whether a subscription that comes late gets the newest messages from before it came."""
+    """Whether a late subscription receives the newest of the messages published before."""
 
     SYSTEM_DEFAULT = 0
     TRANSIENT_LOCAL = 1
@@ -112,7 +112,7 @@ class DurabilityPolicy(QoSPolicyEnum):
 
 
 class LivelinessPolicy(QoSPolicyEnum):
-    """Who says that a publisher is alive: its node, or the publisher itself."""
+    """How the liveliness of a publisher is asserted: by its node, or by the publisher itself."""
 
     SYSTEM_DEFAULT = 0
     AUTOMATIC = 1
@@ -131,7 +131,7 @@ QoSLivelinessPolicy = LivelinessPolicy
 
 
 class QoSPolicyKind(IntEnum):
-    """The policies themselves; the values are those of rmw's events."""
+    """The kinds of policies; the values are those of rmw."""
 
     INVALID = 1 << 0
     DURABILITY = 1 << 1
@@ -154,7 +154,7 @@ def qos_policy_name_from_kind(policy_kind: QoSPolicyKind | int) -> str:
 
 
 def policy(name: str, kind: type[PolicyT]) -> Callable[[object], PolicyT]:
-    """Return the check of a field that holds a policy."""
+    """Return the validation function of a policy field."""
     fits = ", ".join(f"{member.short_key} ({member.value})" for member in kind)
 
     def check(value: object) -> PolicyT:
@@ -173,7 +173,7 @@ def policy(name: str, kind: type[PolicyT]) -> Callable[[object], PolicyT]:
 
 
 def duration(name: str) -> Callable[[object], Duration]:
-    """Return the check of a field that holds a duration."""
+    """Return the validation function of a duration field."""
 
     def check(value: object) -> Duration:
         if not isinstance(value, Duration):
@@ -182,7 +182,7 @@ def duration(name: str) -> Callable[[object], Duration]:
             )
             raise TypeError(message)
         if value.nanoseconds < 0:
-            problem = f"{name}={value} is negative; a duration of zero means not limited"
+            problem = f"{name}={value} is negative; use zero for no limit"
             raise InvalidQoSProfileException(problem)
         return value
 
@@ -195,7 +195,7 @@ def check_depth(value: object) -> int:
         message = f"depth must be an int, the number of messages kept, not {brief(value)}"
         raise TypeError(message)
     if value < 0:
-        problem = f"depth={value} is negative; a queue holds one message or more"
+        problem = f"depth={value} is negative; a queue holds at least one message"
         raise InvalidQoSProfileException(problem)
     return value
 
@@ -236,16 +236,28 @@ DEFAULTS: dict[str, Any] = {
 class QoSProfile:
     """The policies of one endpoint.
 
-    At least a history or a depth must be given, so that the size of the queue is a choice. The
-    rest defaults to reliable, volatile, and no limits of time.
+    A history or a depth must be given, so that the queue size is chosen explicitly. The other
+    policies default to reliable, volatile, and no time limits.
 
-    A profile may be changed, and each value is checked when it is set. An entity takes a copy
-    when it is made, so later changes do not reach it. Do not change one that is a key of a dict.
+    A profile is mutable, and values are validated when they are set. Entities copy the profile when
+    they are created, so later changes do not affect them. Do not change a profile that is a key of
+    a dict.
+
+    Attributes:
+        history: Whether the newest `depth` messages are kept, or all.
+        depth: How many messages are kept with KEEP_LAST.
+        reliability: Whether lost messages are sent again.
+        durability: Whether late subscriptions get the messages that are kept.
+        lifespan: How long a message is valid.
+        deadline: The longest time between two messages.
+        liveliness: How a publisher shows that it is alive.
+        liveliness_lease_duration: The longest time between two such signs.
+        avoid_ros_namespace_conventions: Whether topic names get no prefix over DDS.
 
     Raises:
-        InvalidQoSProfileException: Neither history nor depth is given, KEEP_LAST comes without a
+        InvalidQoSProfileException: Neither history nor depth is given, KEEP_LAST is given without a
             depth, or a value is out of range.
-        TypeError: A value is of a wrong kind.
+        TypeError: A value has the wrong type.
     """
 
     __slots__ = tuple(CHECKS)
@@ -294,7 +306,7 @@ class QoSProfile:
         for (name, default), value in zip(DEFAULTS.items(), given, strict=True):
             setattr(self, name, default if value is None else value)
 
-    if not TYPE_CHECKING:  # or a misspelled field would pass the type checker
+    if not TYPE_CHECKING:  # otherwise type checkers would accept misspelled fields
 
         def __setattr__(self, name: str, value: object) -> None:
             check = CHECKS.get(name)
@@ -315,7 +327,7 @@ class QoSProfile:
             object.__setattr__(self, name, checked)
 
     def replace(self, **changes: Any) -> QoSProfile:
-        """Return a copy with other values for the named fields."""
+        """Return a copy with the given fields changed."""
         copy = object.__new__(QoSProfile)
         for name in CHECKS:
             if name in changes:
@@ -323,14 +335,14 @@ class QoSProfile:
             else:
                 object.__setattr__(copy, name, getattr(self, name))
         for name, value in changes.items():
-            setattr(copy, name, value)  # raises, with the names that there are
+            setattr(copy, name, value)  # raises AttributeError, which lists the valid names
         return copy
 
     def resolved(self) -> QoSProfile:
-        """Return a copy in which nothing is left to the system: what an endpoint really does.
+        """Return a copy with all system defaults replaced by the values that endpoints use.
 
-        Depth 0 becomes 42, a duration of zero infinite, and each SYSTEM_DEFAULT what rmw_zenoh
-        takes: keep_last, reliable, volatile, automatic.
+        Depth 0 becomes 42, a zero duration becomes infinite, and SYSTEM_DEFAULT becomes the default
+        of rmw_zenoh: keep_last, reliable, volatile, automatic.
         """
         changes: dict[str, object] = {
             name: choice for name, choice in SYSTEM_CHOICES.items() if not getattr(self, name)
@@ -350,7 +362,7 @@ class QoSProfile:
         return hash(tuple(getattr(self, name) for name in CHECKS))
 
     def __repr__(self) -> str:
-        """Return what makes an equal profile: depth, and whatever is not the default."""
+        """Return an expression of an equal profile: the depth and all values not at the default."""
         shown = []
         for name, default in DEFAULTS.items():
             value = getattr(self, name)
@@ -360,7 +372,7 @@ class QoSProfile:
         return f"QoSProfile({', '.join(shown)})"
 
     def __str__(self) -> str:
-        """Return the policies in a few words, such as ``keep_last(10) reliable volatile``."""
+        """Return a short description, such as ``keep_last(10) reliable volatile``."""
         words = [
             f"{self.history.short_key}({self.depth})",
             self.reliability.short_key,
@@ -385,7 +397,7 @@ SYSTEM_CHOICES = {
 
 
 def enum_text(value: QoSPolicyEnum) -> str:
-    """Return the expression for a policy value."""
+    """Return the Python expression of a policy value."""
     return f"{type(value).__name__}.{value.name}"
 
 
@@ -395,14 +407,14 @@ def is_unlimited(value: Duration) -> bool:
 
 
 def duration_text(value: Duration) -> str:
-    """Return a duration in seconds for people."""
+    """Return a duration in seconds as readable text."""
     if value == DeadlineBestAvailable:
         return "best_available"
     return "infinite" if is_unlimited(value) else f"{value.nanoseconds / 1e9:g} s"
 
 
 def as_profile(qos: object) -> QoSProfile:
-    """Return a profile of its own for an entity: a copy, or KEEP_LAST with the given depth.
+    """Return a new profile for an entity: a copy, or KEEP_LAST with the given depth.
 
     Raises:
         ValueError: The depth is negative.
@@ -426,24 +438,24 @@ qos_profile_default = QoSProfile(depth=10)
 """Ten messages, reliable, volatile."""
 
 qos_profile_sensor_data = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
-"""For data that is soon out of date: a short queue, and nothing is sent twice."""
+"""For data that is soon outdated: a short queue, and lost messages are not sent again."""
 
 qos_profile_services_default = QoSProfile(depth=10)
 """For services and their clients."""
 
 qos_profile_parameters = QoSProfile(depth=1000)
-"""For parameter services: a queue long enough for bursts at the start of many nodes."""
+"""For parameter services: a long queue for bursts of requests when many nodes start."""
 
 qos_profile_parameter_events = QoSProfile(depth=1000)
 """For `/parameter_events`."""
 
 qos_profile_action_status_default = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-"""For the status of actions: who comes late gets the newest."""
+"""For action status: late subscriptions receive the newest message."""
 
 qos_profile_rosout_default = QoSProfile(
     depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL, lifespan=Duration(seconds=10)
 )
-"""For `/rosout`: who comes late gets the last 10 s."""
+"""For `/rosout`: late subscriptions receive the messages of the last 10 s."""
 
 qos_profile_system_default = QoSProfile(
     history=HistoryPolicy.SYSTEM_DEFAULT,
@@ -451,7 +463,7 @@ qos_profile_system_default = QoSProfile(
     reliability=ReliabilityPolicy.SYSTEM_DEFAULT,
     durability=DurabilityPolicy.SYSTEM_DEFAULT,
 )
-"""Everything is left to the system."""
+"""All policies are left to the system."""
 
 qos_profile_best_available = QoSProfile(
     depth=10,
@@ -461,7 +473,7 @@ qos_profile_best_available = QoSProfile(
     liveliness=LivelinessPolicy.BEST_AVAILABLE,
     liveliness_lease_duration=LivelinessLeaseDurationBestAvailable,
 )
-"""The strongest policies that fit the endpoints visible when the entity is made; fixed then."""
+"""The strongest policies compatible with the endpoints visible when the entity is created."""
 
 qos_profile_unknown = QoSProfile(
     history=HistoryPolicy.UNKNOWN,
@@ -470,7 +482,7 @@ qos_profile_unknown = QoSProfile(
     durability=DurabilityPolicy.UNKNOWN,
     liveliness=LivelinessPolicy.UNKNOWN,
 )
-"""What is known about an endpoint before it says; not for use."""
+"""The profile of an endpoint whose policies are unknown; not valid for creating one."""
 
 
 class QoSPresetProfiles(Enum):
@@ -489,7 +501,7 @@ class QoSPresetProfiles(Enum):
 
     @classmethod
     def short_keys(cls) -> list[str]:
-        """Return the names of all presets, as they are typed on a command line."""
+        """Return the names of all presets, as used on the command line."""
         return [key.lower() for key in cls.__members__]
 
     @classmethod
@@ -497,17 +509,17 @@ class QoSPresetProfiles(Enum):
         """Return the preset called `name`, in upper or lower case.
 
         Raises:
-            KeyError: There is none of this name.
+            KeyError: The name is unknown.
         """
         return cls[name.upper()].value
 
 
 KEEP_ALL_DEPTH = 10_000
-"""How many messages an endpoint with KEEP_ALL holds at least."""
+"""Smallest queue size of an endpoint with KEEP_ALL, in messages."""
 
 
 def depth_of(qos: QoSProfile) -> int:
-    """Return how many messages an endpoint holds."""
+    """Return the queue size of an endpoint, in messages."""
     resolved = qos.resolved()
     if resolved.history is HistoryPolicy.KEEP_ALL:
         return max(resolved.depth, KEEP_ALL_DEPTH)
@@ -515,7 +527,7 @@ def depth_of(qos: QoSProfile) -> int:
 
 
 def keeps_all(qos: QoSProfile) -> bool:
-    """Whether nothing may be dropped."""
+    """Return whether an endpoint must not drop messages: KEEP_ALL and reliable."""
     resolved = qos.resolved()
     return (
         resolved.history is HistoryPolicy.KEEP_ALL

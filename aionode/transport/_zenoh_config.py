@@ -326,6 +326,10 @@ def session_settings(network: Network, taken: Iterable[int]) -> dict[str, Any]:
         **{f"transport/link/tx/queue/size/{name}": BATCHES for name in BURSTING},
         # Large messages are sent from a thread, which may wait longer for a slow network.
         "transport/link/tx/queue/congestion_control/drop/max_wait_before_drop_fragments": 500_000,
+        # Zenoh never gives back the shared memory of a peer that has ended: two descriptors and
+        # mappings for each restart of a publisher (1.10). Links have shared memory of their own;
+        # processes of other users cannot open Zenoh's, and ROS 2 nodes have it switched off.
+        "transport/shared_memory/enabled": False,
         # Bounds close() while a frozen peer does not answer; other machines may be slow to.
         "transport/unicast/open_timeout": 3000 if network.static_peers else 700,
         "scouting/multicast/enabled": subnet,

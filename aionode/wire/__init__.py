@@ -1,1 +1,1 @@
-"""The wire format of ROS 2 on Zenoh, without input and output."""
+"""The wire format of ROS 2 on Zenoh; these modules do no I/O."""

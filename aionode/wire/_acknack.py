@@ -1,11 +1,11 @@
-"""What publishers and subscriptions of aionode say to each other so that Zenoh loses nothing.
+"""Acknowledgements between publishers and subscriptions of aionode over Zenoh: their format.
 
-The words are those of RTPS. Each is one sample for one process, of which ROS nodes hear nothing::
+The submessages are those of RTPS. Each is one Zenoh sample for one context; ROS nodes get none::
 
     version u8 | kind u8 | zero u16 | writer 16 bytes | reader 16 bytes | first i64 | last i64 |
     rest
 
-Whoever does not know the version or the kind leaves the sample out.
+A receiver ignores samples of an unknown version or kind.
 """
 
 from __future__ import annotations
@@ -15,38 +15,40 @@ import struct
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
-__all__ = ["MAX_RANGES", "VERSION", "Kind", "Submessage", "pack", "pack_ranges", "unpack"]
+__all__ = ["MAX_RANGES", "VERSION", "Submessage", "SubmessageKind", "pack", "pack_ranges", "unpack"]
 
 VERSION: Final = 1
 
 MAX_RANGES: Final = 64
-"""How many ranges of missing messages are named at once."""
+"""How many ranges of missing messages one ACKNACK names at most."""
 
 HEADER: Final = struct.Struct("<BBH16s16sqq")
 RANGE: Final = struct.Struct("<qq")
 
 
-class Kind(enum.IntEnum):
-    """What a submessage says; `first` and `last` stand for what is noted here."""
+class SubmessageKind(enum.IntEnum):
+    """The kind of a submessage, which decides what `first`, `last` and the rest mean."""
 
     HEARTBEAT = 1
-    """The writer has sent messages up to `last`; what is before `first` is not for this reader.
+    """The writer has sent messages up to `last`; those before `first` are not for this reader.
 
-    The rest is the writer's participant, to which the reader answers with an ACKNACK.
+    The rest is the writer's participant, to which the reader sends an ACKNACK.
     """
     ACKNACK = 2
-    """The reader has taken all messages before `first`. The rest are ranges that it lacks."""
+    """The reader has taken all messages before `first`. The rest are missing ranges."""
     GAP = 3
-    """The messages from `first` to `last` will not come."""
+    """The messages from `first` to `last` will not be sent."""
     DATA = 4
-    """Message `first` once more, sent at `last` (nanoseconds since 1970); the rest is its payload.
-    """
+    """Message `first` again; `last` is its source time (ns since 1970), the rest its payload."""
+
+
+KINDS: Final = {int(kind): kind for kind in SubmessageKind}
 
 
 class Submessage(NamedTuple):
-    """One of them as it came."""
+    """A received submessage."""
 
-    kind: Kind
+    kind: SubmessageKind
     writer: bytes
     reader: bytes
     first: int
@@ -54,13 +56,13 @@ class Submessage(NamedTuple):
     rest: bytes
 
     def ranges(self) -> list[tuple[int, int]]:
-        """Return what an ACKNACK lacks, first and last of each range."""
+        """Return the missing ranges of an ACKNACK, first and last of each."""
         size = min(len(self.rest) // RANGE.size, MAX_RANGES) * RANGE.size
         return list(RANGE.iter_unpack(self.rest[:size]))
 
 
 def pack(
-    kind: Kind, writer: bytes, reader: bytes, first: int, last: int, rest: bytes = b""
+    kind: SubmessageKind, writer: bytes, reader: bytes, first: int, last: int, rest: bytes = b""
 ) -> bytes:
     """Return a submessage."""
     return HEADER.pack(VERSION, kind, 0, writer, reader, first, last) + rest
@@ -72,10 +74,10 @@ def pack_ranges(ranges: Sequence[tuple[int, int]]) -> bytes:
 
 
 def unpack(data: bytes) -> Submessage | None:
-    """Return what `data` says, or None if it is in no known form."""
+    """Return the submessage in `data`, or None if its form is unknown."""
     if len(data) < HEADER.size:
         return None
     version, kind, _, writer, reader, first, last = HEADER.unpack_from(data)
-    if version != VERSION or kind not in Kind.__members__.values():
+    if version != VERSION or kind not in KINDS:
         return None
-    return Submessage(Kind(kind), writer, reader, first, last, data[HEADER.size :])
+    return Submessage(KINDS[kind], writer, reader, first, last, data[HEADER.size :])

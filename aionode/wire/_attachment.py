@@ -1,8 +1,8 @@
-"""The 33 bytes that go with every publication, request and reply.
+"""The 33-byte attachment of every publication, request and reply.
 
-They are Zenoh's serialization of (int64 sequence number, int64 source time, sequence of 16 bytes):
-the length of the last is one LEB128 byte. A ROS node drops a sample without them, and may fail
-as a whole on malformed ones, so they are always written; reading is lenient.
+It is Zenoh's serialization of (int64 sequence number, int64 source time, sequence of 16 bytes),
+where the length of the sequence is one LEB128 byte. A ROS node drops samples without an attachment
+and may crash on a malformed one, so it is always written; parsing is lenient.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ GID_SIZE: Final = 16
 
 LAYOUT = struct.Struct("<qqB16s")
 
-# Jazzy's first releases (0.2.0 to 0.2.3) put the name of each field, with its length, before it.
+# The first releases for Jazzy (0.2.0 to 0.2.3) write the name of each field before its value.
 NAMED_LAYOUT = struct.Struct("<16sq17sq11sB16s")
 SEQUENCE_LABEL = b"\x0fsequence_number"
 TIME_LABEL = b"\x10source_timestamp"
@@ -24,14 +24,14 @@ GID_LABEL = b"\x0asource_gid"
 
 
 class Attachment(NamedTuple):
-    """Who sent a sample, when, and as its how many-th."""
+    """The sender of a sample, its sequence number and its time."""
 
     sequence: int
-    """Counts from 1 for each publisher and client."""
+    """Sequence number, counted from 1 for each publisher and client."""
     source_ns: int
     """System time of the sender, in nanoseconds since 1970."""
     gid: bytes
-    """The 16 bytes that name the publisher, or the client of a request or reply."""
+    """The 16 bytes that identify the publisher, or the client of a request or reply."""
 
 
 def pack(sequence: int, source_ns: int, gid: bytes) -> bytes:
@@ -46,16 +46,16 @@ def pack(sequence: int, source_ns: int, gid: bytes) -> bytes:
 
 
 def unpack(data: bytes) -> Attachment | None:
-    """Return what an attachment says, or None when it is in no known form.
+    """Return a parsed attachment, or None if its format is unknown.
 
-    Bytes after the known ones are left alone, for releases to come.
+    Additional bytes, which future releases may append, are ignored.
     """
     fields = unpack_fields(data)
     return None if fields is None else Attachment(*fields)
 
 
 def unpack_fields(data: bytes) -> tuple[int, int, bytes] | None:
-    """Return what `unpack` does as a plain tuple, in half the time."""
+    """Return the same as `unpack` as a plain tuple, which takes half the time."""
     if len(data) == LAYOUT.size:
         sequence, source_ns, length, gid = LAYOUT.unpack(data)
         return (sequence, source_ns, gid) if length == GID_SIZE else None

@@ -1,9 +1,9 @@
-"""Zenoh key expressions of topics and services, as `rmw_zenoh_cpp` forms them.
+"""Zenoh key expressions of topics and services, as in `rmw_zenoh_cpp`.
 
-A key is ``<domain>/<name>/<DDS type>/<type hash>``. The name keeps its inner slashes and loses its
-outer ones; the DDS type of ``std_msgs/msg/String`` is ``std_msgs::msg::dds_::String_``.
+A key is ``<domain>/<name>/<DDS type>/<type hash>``, with the name's leading slash removed. The DDS
+type of ``std_msgs/msg/String`` is ``std_msgs::msg::dds_::String_``.
 
-Zenoh's wildcards stand for what is not known: ``*`` for one chunk, ``**`` for any number of them.
+Unknown parts are wildcards of Zenoh: ``*`` for one chunk, ``**`` for any number of chunks.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ __all__ = [
 ]
 
 HUMBLE_HASH = "TypeHashNotSupported"
-"""What a ROS 2 Humble node writes where newer ones write a type hash."""
+"""Written by ROS 2 Humble nodes in place of a type hash."""
 
 BUFFER_SUFFIX = "_buf_cpu"
-"""Last chunk of the second key of a topic with byte sequences, from ROS 2 Lyrical on."""
+"""Last chunk of the second key of topics with byte sequences, since ROS 2 Lyrical."""
 
 DDS_MARK = "dds_::"
 
 
 class DataKey(NamedTuple):
-    """What the key of a sample or query says."""
+    """The parsed key of a sample or query."""
 
     domain_id: int
     name: str
@@ -50,7 +50,7 @@ def dds_type(type_name: str) -> str:
 
 
 def ros_type(dds_name: str) -> str | None:
-    """Return the ROS name of a DDS type, or None when `dds_name` is not one."""
+    """Return the ROS name of a DDS type, or None if `dds_name` is not a DDS type."""
     package, mark, name = dds_name.rpartition(DDS_MARK)
     if not (mark and package.endswith("::") and len(name) > 1 and name.endswith("_")):
         return None
@@ -62,36 +62,36 @@ def data_key(
 ) -> str:
     """Return the key of a topic or service.
 
-    Without `type_hash` it matches every definition of the type, without `type_name` every type:
-    such a key is for receiving only, as Zenoh sends nothing on a wildcard to a ROS node.
+    Without `type_hash` it matches every definition of the type, without `type_name` every type.
+    Such keys are for receiving only: ROS nodes receive nothing that is sent to a wildcard.
     """
     dds_name = "*" if type_name is None else dds_type(type_name)
     return f"{domain_id}/{name.strip('/')}/{dds_name}/{type_hash or '*'}"
 
 
 def buffer_key(key: str) -> str:
-    """Return the second key on which a ROS 2 Lyrical publisher sends plain bytes."""
+    """Return the second key, on which ROS 2 Lyrical publishers send plain bytes."""
     return f"{key}/{BUFFER_SUFFIX}"
 
 
 def parse_data_key(key: str) -> DataKey | None:
-    """Return what `key` says, or None when it is not the key of a topic or service."""
+    """Return the parsed key, or None if it is not the key of a topic or service."""
     chunks = key.removesuffix(f"/{BUFFER_SUFFIX}").split("/")
     if len(chunks) < 4 or "" in chunks:
         return None
     domain, *name, dds_name, type_hash = chunks
     type_name = ros_type(dds_name)
-    # int() would take signs, blanks, underscores and other scripts' digits as well.
+    # int() would also accept signs, blanks, underscores and digits of other scripts.
     if type_name is None or not (domain.isascii() and domain.isdigit() and len(domain) <= 10):
         return None
     return DataKey(int(domain), "/" + "/".join(name), type_name, type_hash)
 
 
 def mangle(name: str) -> str:
-    """Return `name` as one chunk of a liveliness token: each slash becomes ``%``."""
+    """Return `name` as one chunk of a liveliness token, with each slash replaced by ``%``."""
     return name.replace("/", "%")
 
 
 def demangle(chunk: str) -> str:
-    """Return the name that `mangle` made `chunk` of."""
+    """Return the name from which `mangle` made `chunk`."""
     return chunk.replace("%", "/")

@@ -1,15 +1,15 @@
-"""Liveliness tokens: how the ROS graph is written in key expressions.
+"""Liveliness tokens: the ROS graph as Zenoh key expressions.
 
-Each node and each endpoint holds one token while it lives::
+Each node and each endpoint declares one token for as long as it exists::
 
     @ros2_lv/<domain>/<zid>/<nid>/<nid>/NN/<enclave>/<namespace>/<node>
     @ros2_lv/<domain>/<zid>/<nid>/<eid>/<kind>/<enclave>/<namespace>/<node>/<name>/<type>/<hash>/<qos>
 
-A name is one chunk, each slash in it written as ``%``. The chunk for QoS leaves out what is equal
-to rmw_zenoh's defaults. From ROS 2 Lyrical on a 14th chunk ``backends:…`` may follow.
+A name is one chunk, with each slash replaced by ``%``. The QoS chunk omits values that are equal to
+rmw_zenoh's defaults. Since ROS 2 Lyrical a 14th chunk ``backends:…`` may follow.
 
-Reading is lenient: a token in an unknown form is None, never an exception, as anybody may declare
-anything below this prefix.
+Parsing is lenient: it returns None for a token of unknown format and never raises, as any program
+may declare any token with this prefix.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ __all__ = [
 PREFIX: Final = "@ros2_lv"
 
 CPU_BACKEND: Final = "backends:cpu:"
-"""The 14th chunk of a subscription that takes plain bytes on the buffer key as well."""
+"""The 14th chunk of a subscription that also accepts plain bytes on the buffer key."""
 
 NODE_KIND: Final = "NN"
 KIND_CHUNKS: Final = {
@@ -63,7 +63,7 @@ FOREVER: Final = divmod(CONST_INFINITE_NS, S_TO_NS)
 
 
 class Token(NamedTuple):
-    """What a liveliness token says."""
+    """A parsed liveliness token."""
 
     domain_id: int
     info: NodeInfo | EndpointInfo
@@ -78,7 +78,7 @@ def node_token(domain_id: int, node: NodeInfo) -> str:
 
 
 def endpoint_token(domain_id: int, endpoint: EndpointInfo, backends: str = "") -> str:
-    """Return the token of an endpoint; its `gid` is not part of it, but made from it."""
+    """Return the token of an endpoint; the `gid` is not part of it, but derived from it."""
     chunks = [
         *node_chunks(domain_id, endpoint.node, endpoint.endpoint_id, KIND_CHUNKS[endpoint.kind]),
         mangle(endpoint.name),
@@ -107,15 +107,15 @@ def node_chunks(domain_id: int, node: NodeInfo, entity_id: int, kind: str) -> li
 
 
 def gid_of(token: str) -> bytes:
-    """Return the 16 bytes that name the entity of `token` in attachments and in the graph.
+    """Return the 16 bytes that identify an entity in attachments and in the graph.
 
-    Everybody who sees the token comes to the same: XXH3-128, low half first, each little-endian.
+    They are derived from its token alone: XXH3-128, low half first, each half little-endian.
     """
     return xxhash.xxh3_128_digest(token.encode())[::-1]
 
 
 def qos_chunk(qos: QoSProfile) -> str:
-    """Return the chunk for QoS; what the profile leaves to the system is rmw_zenoh's default."""
+    """Return the QoS chunk of a profile, with system defaults resolved as in rmw_zenoh."""
     qos = qos.resolved()
     lease = duration_text(qos.liveliness_lease_duration)
     return ":".join(
@@ -131,12 +131,12 @@ def qos_chunk(qos: QoSProfile) -> str:
 
 
 def elided(value: int, default: int) -> str:
-    """Return `value` as text, nothing for the default."""
+    """Return `value` as text, empty for the default."""
     return "" if value == default else str(int(value))
 
 
 def duration_text(duration: Duration) -> str:
-    """Return seconds and nanoseconds, each left out where it is that of an infinite duration."""
+    """Return seconds and nanoseconds as text; the parts of an infinite duration are omitted."""
     parts = divmod(duration.nanoseconds, S_TO_NS)
     return ",".join(elided(*pair) for pair in zip(parts, FOREVER, strict=True))
 
@@ -145,7 +145,7 @@ def duration_text(duration: Duration) -> str:
 
 
 def parse_token(key: str) -> Token | None:
-    """Return what a token says, or None when it is in no known form."""
+    """Return the parsed token, or None if its format is unknown."""
     chunks = key.split("/")
     if len(chunks) < NODE_CHUNKS or chunks[0] != PREFIX or "" in chunks:
         return None
@@ -164,7 +164,7 @@ def parse_token(key: str) -> Token | None:
 def parse_endpoint(
     key: str, node: NodeInfo, endpoint_id: int, kind: str, chunks: list[str]
 ) -> EndpointInfo | None:
-    """Return the endpoint that the last chunks of its token tell of."""
+    """Return the endpoint described by the last chunks of its token."""
     if kind not in KINDS or len(chunks) < ENDPOINT_CHUNKS - NODE_CHUNKS:
         return None
     name, dds_name, type_hash, qos_text = chunks[:4]
@@ -185,7 +185,7 @@ def parse_endpoint(
 
 
 def parse_qos(chunk: str) -> QoSProfile | None:
-    """Return the profile that a QoS chunk tells of, or None when it is in no known form."""
+    """Return the profile described by a QoS chunk, or None if its format is unknown."""
     fields = [field.split(",") for field in chunk.split(":")]
     if len(fields) < 6 or any(
         len(parts) < needed for parts, needed in zip(fields, (1, 1, 2, 2, 2, 3), strict=False)
@@ -209,20 +209,20 @@ def parse_qos(chunk: str) -> QoSProfile | None:
 
 
 def parse_duration(parts: list[str]) -> Duration:
-    """Return the duration that two parts tell of.
+    """Return the duration given as seconds and nanoseconds.
 
     Raises:
-        ValueError: they are no numbers, or too large ones.
+        ValueError: A part is not a number, or is too large.
     """
     seconds, nanoseconds = (value(*pair) for pair in zip(parts[:2], FOREVER, strict=True))
     return Duration(nanoseconds=min(seconds * S_TO_NS + nanoseconds, CONST_INFINITE_NS))
 
 
 def value(text: str, default: int) -> int:
-    """Return the number that `text` says, `default` where it says nothing.
+    """Return the number in `text`, or `default` if it is empty.
 
     Raises:
-        ValueError: it is no number.
+        ValueError: `text` is not a number.
     """
     if not text:
         return int(default)
@@ -233,5 +233,5 @@ def value(text: str, default: int) -> int:
 
 
 def number(text: str) -> int | None:
-    """Return a decimal number, or None. int() would take signs, blanks and underscores as well."""
+    """Return a decimal number, or None; int() would also accept signs, blanks and underscores."""
     return int(text) if text.isascii() and text.isdigit() and len(text) <= 20 else None

@@ -1,7 +1,7 @@
-"""What a type consists of, in the form in which ROS 2 nodes tell each other and compute hashes.
+"""Type descriptions, which ROS 2 nodes exchange and from which type hashes are computed.
 
-It names every field with its type, and so on for all types that are used, as in the messages of
-`type_description_interfaces`.
+A description lists every field with its type, for a type and all types it uses, as in the messages
+of `type_description_interfaces`.
 """
 
 from __future__ import annotations
@@ -44,15 +44,15 @@ TYPE_IDS = {
     "byte": 16,
     "string": 17,
     "wstring": 18,
-    # In a .msg file, char is another word for uint8; 13 is the char of IDL.
+    # In a .msg file, char is an alias of uint8; 13 is the char of IDL.
     "char": 3,
 }
 
 BOUNDED_TEXT = 4
-"""What a bound adds to the id of a string."""
+"""Added to the id of a string that has a bound."""
 
 CONTAINERS = {"single": 0, "array": 48, "bounded": 96, "unbounded": 144}
-"""What a container adds to the id of its elements."""
+"""Added to the id of the element type, by container."""
 
 
 class FieldTypeDescription(TypedDict):
@@ -79,7 +79,7 @@ class Individual(TypedDict):
 
 
 class Description(TypedDict):
-    """A type, and all types that it is made of, sorted by name."""
+    """A type and all types that it uses, sorted by name."""
 
     type_description: Individual
     referenced_type_descriptions: list[Individual]
@@ -89,7 +89,7 @@ def describe(cls: type[Any]) -> Description:
     """Return the description of a message, service or action class.
 
     Raises:
-        TypeError: `cls` is no such class.
+        TypeError: `cls` is not such a class.
     """
     return {
         "type_description": individual(cls),
@@ -98,12 +98,12 @@ def describe(cls: type[Any]) -> Description:
 
 
 def description_message(cls: type[Any]) -> TypeDescription:
-    """Return the description as the message in which nodes tell what their types are.
+    """Return the description as a message, as nodes send it on request.
 
     Raises:
         TypeError: `cls` is not a message, service or action class.
     """
-    # Only a node that is asked needs these classes.
+    # Imported here, as they are only needed for a request.
     from aionode.interfaces.type_description_interfaces.msg import (
         TypeDescription,
     )
@@ -115,7 +115,7 @@ def description_message(cls: type[Any]) -> TypeDescription:
 
 
 def individual_message(cls: type[Any]) -> IndividualTypeDescription:
-    """Return the description of one type alone as a message, default values included."""
+    """Return the description of a single type as a message, default values included."""
     from aionode.interfaces.type_description_interfaces import msg
 
     form = individual(cls)
@@ -135,7 +135,7 @@ def individual_message(cls: type[Any]) -> IndividualTypeDescription:
 
 
 def default_text(default: object) -> str:
-    """Return a default value as ROS writes it there; nothing where there is none."""
+    """Return a default value as ROS writes it; empty if there is none."""
     if default is None:
         return ""
     if isinstance(default, bytes):
@@ -144,13 +144,13 @@ def default_text(default: object) -> str:
 
 
 def individual(cls: type[Any]) -> Individual:
-    """Return the description of one type alone."""
+    """Return the description of a single type."""
     name = type_name(cls)
     if issubclass(cls, ServiceType | ActionType):
         members = [nested_member(name, part) for name, part in halves(cls)]
     else:
         members = [member(field.name, field.type) for field in fields(cls)]
-    # Structures without fields do not exist in IDL.
+    # IDL does not allow structures without fields.
     placeholder = member("structure_needs_at_least_one_member", FieldType("uint8"))
     return {"type_name": name, "fields": members or [placeholder]}
 
@@ -185,7 +185,7 @@ def member(name: str, kind: FieldType) -> FieldDescription:
 
 
 def nested_member(name: str, part: type[Any]) -> FieldDescription:
-    """Return the description of a field that holds one of `part`, which may be a service."""
+    """Return the description of a field of type `part`, which may be a service."""
     return {
         "name": name,
         "type": {
@@ -198,7 +198,7 @@ def nested_member(name: str, part: type[Any]) -> FieldDescription:
 
 
 def parts(cls: type[Any]) -> list[type[Any]]:
-    """Return every type that `cls` is made of, itself excepted, sorted by name."""
+    """Return all types that `cls` uses, at any depth, sorted by name."""
     found: dict[str, type[Any]] = {}
     waiting = used_by(cls)
     while waiting:
@@ -211,7 +211,7 @@ def parts(cls: type[Any]) -> list[type[Any]]:
 
 
 def used_by(cls: type[Any]) -> list[type[Any]]:
-    """Return the types of the fields of `cls` that have fields themselves."""
+    """Return the types of the fields of `cls` that are not primitive."""
     if issubclass(cls, ServiceType | ActionType):
         return [part for _, part in halves(cls)]
     return [field.type.nested for field in fields(cls) if field.type.nested is not None]

@@ -1,6 +1,6 @@
-"""RIHS01 hashes: whether two nodes mean the same by the name of a type.
+"""RIHS01 type hashes, which tell whether two nodes use the same definition of a type.
 
-A hash stands in the keys of topics and services, so only endpoints of equal hashes hear each other.
+It is part of the keys of topics and services: only endpoints with equal hashes communicate.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ __all__ = ["type_hash"]
 def type_hash(cls: type[Any]) -> str:
     """Return the hash of a message, service or action class: ``RIHS01_`` and 64 hex digits.
 
-    Constants, comments and default values do not count. Requests, responses and the other parts of
-    services and actions have hashes of their own.
+    Constants, comments and default values do not affect it. Requests, responses and the other parts
+    of services and actions have hashes of their own.
 
     Raises:
-        TypeError: `cls` is no such class.
+        TypeError: `cls` is not such a class.
     """
-    # The form of json.dumps, order of keys and blanks included, is the one that ROS 2 hashes.
+    # ROS 2 hashes exactly this output of json.dumps, including the order of keys and the blanks.
     text = json.dumps(describe(cls))
     return "RIHS01_" + hashlib.sha256(text.encode()).hexdigest()

@@ -180,7 +180,7 @@ def test_a_log_file_is_written_only_when_asked_for(flags: str, prefix: str | Non
         ("-p a:=[1,b]", "'-p a:=[1,b]': Sequence should be of same type"),
         ("-p a:={b:1}", "'-p a:={b:1}': a mapping where a scalar should stand"),
         ("-p a:=[", "'-p a:=[': not YAML"),
-        ("--log-level loud", "'--log-level loud': log level 'loud' is unknown; it may be UNSET"),
+        ("--log-level loud", "'--log-level loud': unknown log level 'loud'; valid levels"),
         ("--log-level :=info", "the name of the logger is empty"),
         ("--params-file missing", "'--params-file missing': cannot be read: No such file"),
     ],

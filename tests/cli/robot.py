@@ -1,4 +1,4 @@
-"""The nodes that the terminals of the tests look at, run with ``aionode run``."""
+"""The nodes that the terminal tests inspect, run with ``aionode run``."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Talker(Node):
         self.create_timer(0.05, lambda: stamped.publish(self.stamp()))
 
     def stamp(self) -> TwistStamped:
-        """Return a message of this moment."""
+        """Return a message with the current time."""
         message = TwistStamped()
         message.header.stamp = self.get_clock().now().to_msg()
         return message
@@ -57,7 +57,7 @@ class ParamNode(Node):
 
 
 class FibServer(Node):
-    """Serves /fibonacci; order 0 takes for ever. The last one, so it says when all is there."""
+    """Serves /fibonacci; order 0 never ends. the last one, so it reports readiness."""
 
     def __init__(self) -> None:
         super().__init__("fib_server")
@@ -71,7 +71,7 @@ class FibServer(Node):
         self.first = self.create_timer(0.01, self.ready)
 
     def ready(self) -> None:
-        """Say that the nodes run."""
+        """Report that all nodes are running."""
         self.get_logger().info("the robot is ready")
         self.first.cancel()
 

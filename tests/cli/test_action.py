@@ -10,7 +10,8 @@ import pytest
 
 from aionode import Node
 from aionode.action import ActionServer, CancelResponse, GoalResponse
-from aionode.cli._verbs.action import find, info, list_actions, send_goal, type_of_action
+from aionode.cli._support.nouns import ACTION
+from aionode.cli._verbs.action import info, send_goal
 from aionode.errors import CommandError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.testing import settle
@@ -19,7 +20,7 @@ FIBONACCI = "example_interfaces/action/Fibonacci"
 
 
 async def execute(goal_handle: Any) -> Fibonacci.Result:
-    """Compute at once; with order 0 never, and with a negative one fail."""
+    """Compute at once; order 0 never ends, a negative order fails."""
     order = goal_handle.request.order
     if order == 0:
         await asyncio.get_running_loop().create_future()
@@ -55,7 +56,7 @@ async def server(node_factory: Callable[..., Node]) -> Node:
 
 
 async def test_send_goal_prints_what_ros2_prints(tool: Node, server: Node, screen: Any) -> None:
-    """Recorded with ros2, but for the id."""
+    """As recorded with ros2, apart from the id."""
     status = await send_goal(
         tool, "/fibonacci", FIBONACCI, values="{order: 3}", feedback=True, output=screen.output
     )
@@ -76,7 +77,7 @@ async def test_send_goal_prints_what_ros2_prints(tool: Node, server: Node, scree
 
 
 async def test_json_prints_feedback_and_result(tool: Node, server: Node, screen: Any) -> None:
-    """One record for each, the goal's id in all."""
+    """One record per line, each with the goal id."""
     await send_goal(
         tool, "/fibonacci", FIBONACCI, values="{order: 2}", feedback=True,
         output=screen.json_output,
@@ -89,7 +90,7 @@ async def test_json_prints_feedback_and_result(tool: Node, server: Node, screen:
 
 
 async def test_a_rejected_goal_is_said(tool: Node, server: Node, screen: Any) -> None:
-    """ros2 returns 0; a script should not think that it was done."""
+    """ros2 returns 0; a script would take the goal for done."""
     status = await send_goal(
         tool, "/fibonacci", FIBONACCI, values="{order: 101}", output=screen.output
     )
@@ -99,7 +100,7 @@ async def test_a_rejected_goal_is_said(tool: Node, server: Node, screen: Any) ->
 
 
 async def test_an_aborted_goal_is_no_success(tool: Node, server: Node, screen: Any) -> None:
-    """The result is printed all the same."""
+    """The result is printed nevertheless."""
     status = await send_goal(
         tool, "/fibonacci", FIBONACCI, values="{order: -1}", output=screen.output
     )
@@ -132,7 +133,7 @@ async def test_an_interrupted_wait_cancels_the_goal(
 async def test_what_does_not_fit_is_refused_before_it_waits(
     action_type: str, values: str, says: str, tool: Node, server: Node, screen: Any
 ) -> None:
-    """What was given and what fits."""
+    """The error names what was given and what is expected."""
     with pytest.raises(CommandError) as raised:
         await send_goal(tool, "/fibonacci", action_type, values=values, output=screen.output)
 
@@ -140,20 +141,20 @@ async def test_what_does_not_fit_is_refused_before_it_waits(
 
 
 async def test_a_limited_wait_says_what_may_be_meant(tool: Node, server: Node, screen: Any) -> None:
-    """ros2 waits for ever."""
-    with pytest.raises(CommandError, match="Nobody served '/fibonaci'"):
+    """ros2 waits forever."""
+    with pytest.raises(CommandError, match="No server of '/fibonaci' appeared within"):
         await send_goal(tool, "/fibonaci", FIBONACCI, timeout=0.001, output=screen.output)
 
-    assert screen.errors == "Nobody serves '/fibonaci'. Did you mean '/fibonacci'?\n"
+    assert screen.errors == "No server of '/fibonaci' yet. Did you mean '/fibonacci'?\n"
 
 
 async def test_list_info_type_and_find(tool: Node, server: Node, screen: Any) -> None:
-    """Recorded with ros2."""
-    await list_actions(tool, types=True, output=screen.output)
+    """As recorded with ros2."""
+    await ACTION.list_names(tool, types=True, output=screen.output)
     await info(tool, "/fibonacci", types=True, output=screen.output)
     await info(tool, "/fibonacci", count=True, output=screen.output)
-    await type_of_action(tool, "/fibonacci", output=screen.output)
-    await find(tool, FIBONACCI, output=screen.output)
+    await ACTION.print_type(tool, "/fibonacci", output=screen.output)
+    await ACTION.find(tool, FIBONACCI, output=screen.output)
 
     assert screen.text == (
         f"/fibonacci [{FIBONACCI}]\n"

@@ -1,4 +1,4 @@
-"""The main program: help, wrong arguments, errors in one line, output that nobody reads."""
+"""The main program: help, wrong arguments, errors in one line, output without a reader."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def commands() -> list[tuple[str, click.Command]]:
 
 
 def test_every_verb_of_ros2_is_there() -> None:
-    """Fingers that know ros2 find what they type."""
+    """Users of ros2 type the same commands."""
     words = {words for words, _ in commands()}
 
     for noun, verbs in VERBS.items():
@@ -66,7 +66,7 @@ def test_no_verb_at_all_shows_what_there_is(
 
 
 def test_every_command_that_prints_data_has_json() -> None:
-    """Only running nodes and the shells' scripts have no records."""
+    """Only running nodes and completion scripts have no records."""
     without = {
         words
         for words, one in commands()
@@ -77,7 +77,7 @@ def test_every_command_that_prints_data_has_json() -> None:
 
 
 def test_help_imports_neither_numpy_nor_zenoh() -> None:
-    """It is what a person waits for most often."""
+    """Help has to appear at once."""
     program = (
         "import sys; from aionode.cli import main; main(['--help']); "
         "print([name for name in ('numpy', 'zenoh', 'rich', 'uvloop') if name in sys.modules])"
@@ -110,7 +110,7 @@ def test_help_imports_neither_numpy_nor_zenoh() -> None:
 def test_wrong_arguments_are_one_line_and_status_two(
     arguments: list[str], says: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With the command whose help tells what fits."""
+    """The line names the command whose help describes the arguments."""
     assert main(arguments) == 2
 
     printed = capsys.readouterr()
@@ -163,7 +163,7 @@ def test_an_error_is_one_line_on_stderr(
 def test_a_noun_that_is_not_there_is_answered_with_a_similar_one(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """As options and verbs are; nouns are imported late, and click does not know them."""
+    """As for options and verbs; nouns are imported late, so click does not know them."""
     assert main(["topc", "list"]) == 2
     assert capsys.readouterr().err == (
         "aionode: No such command 'topc'. Did you mean 'topic'? See 'aionode --help'.\n"
@@ -171,7 +171,7 @@ def test_a_noun_that_is_not_there_is_answered_with_a_similar_one(
 
 
 def test_an_index_behind_the_end_is_left_out() -> None:
-    """An empty name has no character at fault."""
+    """An empty name has no invalid character."""
     text = one_line(InvalidTopicNameException("", "must not be empty", 0))
 
     assert text == "Invalid topic name '': must not be empty"
@@ -188,7 +188,7 @@ def test_ctrl_c_before_the_loop_runs_is_an_interruption(
 
 
 def test_a_bug_is_not_hidden(failing: Callable[[BaseException], None]) -> None:
-    """A traceback is what one needs then."""
+    """A bug needs its traceback."""
     failing(ZeroDivisionError())
 
     with pytest.raises(ZeroDivisionError):
@@ -214,7 +214,7 @@ def test_a_reader_that_goes_away_ends_a_command_quietly(
 def test_completion_prints_the_script_of_a_shell(
     shell: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With how to make it permanent."""
+    """The script says how to install it permanently."""
     assert main(["completion", shell]) == 0
 
     script = capsys.readouterr().out
@@ -223,7 +223,7 @@ def test_completion_prints_the_script_of_a_shell(
 
 
 def test_the_shell_is_offered_types(monkeypatch: pytest.MonkeyPatch) -> None:
-    """First packages, then what is in them: all at once would be hundreds."""
+    """First packages, then their types: all types together would be hundreds."""
     context = click.Context(root)
     made = root.get_command(context, "interface")
     assert isinstance(made, click.Group)

@@ -1,4 +1,4 @@
-"""Answers that are complete, however many there are, or say that they may not be."""
+"""Answers are complete, or come with a warning that they may not be."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ TOPICS = 3000
 
 @pytest.fixture
 def env(monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
-    """Out of earshot of everything else on the machine, this process included."""
+    """An environment isolated from all other processes on the machine."""
     isolated = isolated_environment()
     for name, value in isolated.items():
         monkeypatch.setenv(name, value)
@@ -33,7 +33,7 @@ def env(monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
 
 
 def test_three_thousand_topics_are_all_listed(env: dict[str, str]) -> None:
-    """The first answer is the answer; it was 0 to 2 of them."""
+    """The first answer has to be complete; once it had 0 to 2 of them."""
     node = NodeInfo("8b20917502ee955ac4476e0266340d5c", 0, "many", "/")
     qos = qos_profile_default.resolved()
     chatter = ("std_msgs/msg/String", "RIHS01_0")
@@ -61,7 +61,7 @@ def test_three_thousand_topics_are_all_listed(env: dict[str, str]) -> None:
 
 
 def test_an_answer_that_may_be_incomplete_says_so(env: dict[str, str]) -> None:
-    """A process that accepts connections and says nothing is frozen, or no node at all."""
+    """A process that accepts connections and sends nothing is frozen, or not a node."""
     port = int(env["AIONODE_MEETING_PORTS"].split(",")[0])
     with closing(socket.create_server(("127.0.0.1", port))):
         done = subprocess.run(
@@ -80,7 +80,7 @@ def test_an_answer_that_may_be_incomplete_says_so(env: dict[str, str]) -> None:
 async def test_what_takes_long_is_said_on_stderr(
     tool: Node, screen: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A second without a word is a long time, and stdout is for the answer."""
+    """A second without output is long, and stdout is reserved for the answer."""
     monkeypatch.setattr("aionode.cli._support.session.PROGRESS_S", 0.001)
     said = asyncio.Event()
     monkeypatch.setattr(screen.stderr, "flush", said.set)
@@ -95,5 +95,5 @@ async def test_what_takes_long_is_said_on_stderr(
     await wait_until_known(tool, screen.output)
 
     assert screen.text == ""
-    assert screen.errors.startswith("Waiting for what there is to be known: 3 nodes and endpoints")
+    assert screen.errors.startswith("Waiting for discovery: 3 nodes and endpoints")
     assert screen.errors.endswith("this may be incomplete\n")

@@ -1,4 +1,4 @@
-"""``aionode doctor``: what is found wrong, and what is not."""
+"""``aionode doctor``: which problems it finds, and what it leaves unmentioned."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ async def talker(node_factory: Callable[..., Node]) -> Node:
 
 
 async def findings(tool: Node, screen: Any, *names: str) -> tuple[int, list[dict[str, str]]]:
-    """Return the exit status and what was found, without what is about the network."""
+    """Return the exit status and the findings, without those about the network."""
     status = await doctor(tool, names, output=screen.json_output)
     about_nodes = [r for r in screen.records[1:] if r["subject"] != "discovery range"]
     return status, about_nodes
@@ -35,7 +35,7 @@ async def findings(tool: Node, screen: Any, *names: str) -> tuple[int, list[dict
 async def test_a_sound_system_has_no_problem(
     tool: Node, talker: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """Nothing is said of what is as it should be; the status is that of success."""
+    """No findings, and the status of success."""
     node_factory("listener").create_subscription(String, "/chatter", lambda msg: None)
 
     status, found = await findings(tool, screen)
@@ -44,10 +44,10 @@ async def test_a_sound_system_has_no_problem(
     assert screen.records[0]["nodes"] == 2
 
 
-async def test_two_types_do_not_talk(
+async def test_two_types_do_not_communicate(
     tool: Node, talker: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """Both are named, with who uses them."""
+    """The finding names both types and their nodes."""
     node_factory("listener").create_subscription(Int8, "/chatter", lambda msg: None)
 
     status, (found,) = await findings(tool, screen)
@@ -55,14 +55,14 @@ async def test_two_types_do_not_talk(
     assert status == 1
     assert found["severity"] == "problem"
     assert found["subject"] == "topic /chatter"
-    assert "publisher of /talker and subscription of /listener do not talk" in found["text"]
-    assert "std_msgs/msg/String there, std_msgs/msg/Int8 here" in found["text"]
+    assert "publisher of /talker and subscription of /listener do not communicate" in found["text"]
+    assert "their types are std_msgs/msg/String and std_msgs/msg/Int8" in found["text"]
 
 
-async def test_two_definitions_of_one_type_do_not_talk(
+async def test_two_definitions_of_one_type_do_not_communicate(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """The hashes differ, which no other tool says."""
+    """Only the type hashes differ; no other tool reports that."""
 
     class Words(Message, typename="tutorial/msg/Words"):
         text: str
@@ -94,36 +94,36 @@ async def test_qos_that_does_not_fit_is_explained(
 async def test_nearly_equal_names_are_found(
     tool: Node, talker: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """The most common reason of all, and the remedy as it is typed."""
+    """The most common reason, with a remedy that can be typed."""
     node_factory("listener").create_subscription(String, "/robot/chatter", lambda msg: None)
 
     status, (found,) = await findings(tool, screen)
 
     assert status == 1
     assert (
-        "subscription of /listener waits, while the publisher of /talker uses /chatter"
+        "subscription of /listener is waiting, but the publisher of /talker uses /chatter"
         in (found["text"])
     )
-    assert found["remedy"] == "rename one: --ros-args -r /robot/chatter:=/chatter"
+    assert found["remedy"] == "rename one of them: --ros-args -r /robot/chatter:=/chatter"
 
 
 async def test_a_client_without_a_server_is_a_hint(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """It may come later, so the status is still that of success."""
+    """It may start later, so the status is still that of success."""
     node_factory("client").create_client(AddTwoInts, "/add_two_ints")
 
     status, (found,) = await findings(tool, screen)
 
     assert status == 0
     assert found["severity"] == "hint"
-    assert found["text"] == "the client of /client waits: nobody serves it"
+    assert found["text"] == "the client of /client is waiting: there is no server"
 
 
 async def test_two_nodes_of_one_name_are_a_hint(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """Their parameters cannot be told apart."""
+    """Requests for their parameters reach both."""
     node_factory("twin")
     node_factory("twin")
 
@@ -135,7 +135,7 @@ async def test_two_nodes_of_one_name_are_a_hint(
 async def test_names_narrow_the_view(
     tool: Node, talker: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """In a large system one wants to know about one topic, and who it was meant for."""
+    """In a large system the question is about one topic, and the endpoint that misspelled it."""
     node_factory("listener").create_subscription(String, "/chater", lambda msg: None)
     node_factory("client").create_client(AddTwoInts, "/add_two_ints")
 
@@ -177,7 +177,7 @@ async def test_text_has_a_summary_and_an_arrow_for_each_remedy(
 def test_what_keeps_nodes_from_being_found(
     environ: dict[str, str], state: dict[str, Any], subject: str
 ) -> None:
-    """Settings are the reason when nothing is seen at all."""
+    """Settings are the usual reason when no node is found."""
     options: dict[str, Any] = {"has_router": False, "domains": [], "alone": False, **state}
 
     (found,) = network_findings(network_from(environ), environ, **options)
@@ -186,7 +186,7 @@ def test_what_keeps_nodes_from_being_found(
 
 
 def test_a_normal_network_is_not_remarked_on() -> None:
-    """Nor the RMW that aionode talks to."""
+    """No finding for default settings or for the RMW that aionode communicates with."""
     environ = {"RMW_IMPLEMENTATION": "rmw_zenoh_cpp"}
 
     found = network_findings(
@@ -207,5 +207,5 @@ def test_a_normal_network_is_not_remarked_on() -> None:
     ],
 )
 def test_names_that_are_alike(one: str, other: str, alike: bool) -> None:
-    """Different words are no misspelling."""
+    """Different words are not a misspelling."""
     assert (likeness(one, other) >= 0.8) is alike

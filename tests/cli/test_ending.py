@@ -1,4 +1,4 @@
-"""Commands whose output is not read or cannot be written, and ends that are held up."""
+"""Commands whose output is not read or cannot be written, and exits that are blocked."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ AIONODE = [sys.executable, "-m", "aionode"]
 ROOT = Path(__file__).parents[2]
 PIPE_BYTES = 4096
 ENDS_S = 30.0
-"""Long for a busy machine, and far from what these commands once took: for ever."""
+"""Generous for a busy machine; without the mended defects these commands never ended."""
 
 CHATTERBOX = """
 from aionode import Node
@@ -37,13 +37,13 @@ class Chatterbox(Node):
 
 @pytest.fixture(scope="module")
 def env() -> dict[str, str]:
-    """Out of earshot of everything else on the machine."""
+    """An environment isolated from all other processes on the machine."""
     return {**os.environ, **isolated_environment()}
 
 
 @contextmanager
 def unread() -> Iterator[int]:
-    """Give the end of a small pipe that nobody reads."""
+    """Yield the write end of a small pipe without a reader."""
     reading, writing = os.pipe()
     fcntl.fcntl(writing, fcntl.F_SETPIPE_SZ, PIPE_BYTES)
     try:
@@ -54,7 +54,7 @@ def unread() -> Iterator[int]:
 
 
 def wait_until_full(pipe: int) -> None:
-    """Return when hardly anything more fits into a pipe."""
+    """Return when a pipe is almost full."""
     waiting = threading.Event()
     held = 0
     while held < PIPE_BYTES - 200:
@@ -72,14 +72,14 @@ def wait_until_full(pipe: int) -> None:
         ("stderr", ["run", "chatterbox.py:Chatterbox"]),
     ],
 )
-def test_a_signal_ends_what_nobody_reads(
+def test_a_signal_ends_a_command_whose_output_is_not_read(
     stream: str,
     arguments: list[str],
     number: signal.Signals,
     env: dict[str, str],
     tmp_path: Path,
 ) -> None:
-    """The write that waits for a reader would else hold up the loop, and with it the end."""
+    """The write that waits for a reader would otherwise block the loop, and with it the exit."""
     (tmp_path / "chatterbox.py").write_text(CHATTERBOX)
     with (
         unread() as pipe,
@@ -107,7 +107,7 @@ def test_a_signal_ends_what_nobody_reads(
     [["--help"], ["interface", "list"], ["topic", "list", "-c"], ["completion", "bash"]],
 )
 def test_a_full_disk_is_one_line(arguments: list[str], env: dict[str, str]) -> None:
-    """And a status that says that the answer is not there: 45 lines of traceback said no more."""
+    """Instead of 45 lines of traceback, and with a status that says that output is missing."""
     with Path("/dev/full").open("w") as full:
         done = subprocess.run(
             [*AIONODE, *arguments],
@@ -120,7 +120,7 @@ def test_a_full_disk_is_one_line(arguments: list[str], env: dict[str, str]) -> N
         )
 
     assert done.stderr == (
-        "stdout cannot be written to: No space left on device; the answer is incomplete\n"
+        "cannot write to stdout: No space left on device; the output is incomplete\n"
     )
     assert done.returncode == 1
 
@@ -138,7 +138,7 @@ def test_a_full_disk_is_one_line(arguments: list[str], env: dict[str, str]) -> N
 def test_streams_that_are_not_there_are_no_error(
     shell: str, status: int, printed: str, env: dict[str, str]
 ) -> None:
-    """As where a service manager starts a command with its standard streams closed."""
+    """A service manager may start a command with its standard streams closed."""
     done = subprocess.run(
         ["bash", "-c", f"'{sys.executable}' -m aionode topic list -c {shell}"],
         env=env,
@@ -152,8 +152,8 @@ def test_streams_that_are_not_there_are_no_error(
 
 
 @pytest.mark.parametrize("shell", ["2>&-", "2>/dev/full", ">&- 2>/dev/full"])
-def test_an_error_that_cannot_be_told_is_a_status(shell: str, env: dict[str, str]) -> None:
-    """There is no other place for it."""
+def test_an_error_that_cannot_be_printed_is_a_status(shell: str, env: dict[str, str]) -> None:
+    """The exit status is the only place left for it."""
     done = subprocess.run(
         ["bash", "-c", f"'{sys.executable}' -m aionode topic info /nope {shell}"],
         env=env,
@@ -166,8 +166,8 @@ def test_an_error_that_cannot_be_told_is_a_status(shell: str, env: dict[str, str
     assert (done.returncode, done.stdout, done.stderr) == (1, "", "")
 
 
-def test_what_a_terminal_cannot_show_is_shown_as_numbers(env: dict[str, str]) -> None:
-    """A stream of ASCII is no reason to end."""
+def test_what_a_stream_cannot_encode_is_escaped(env: dict[str, str]) -> None:
+    """An ASCII stream must not end the command."""
     done = subprocess.run(
         [*AIONODE, "topic", "pub", "-1", "-w", "0", "/a", "std_msgs/msg/String", "data: \u00e9"],
         env=env | {"PYTHONIOENCODING": "ascii"},
@@ -198,7 +198,7 @@ class Threaded(Node):
 
 
 def test_threads_of_a_node_that_was_run_are_waited_for(env: dict[str, str], tmp_path: Path) -> None:
-    """They are the user's, as in any program of Python."""
+    """They are the user's, as in any Python program."""
     (tmp_path / "threaded.py").write_text(THREADED)
 
     done = subprocess.run(
@@ -216,12 +216,12 @@ def test_threads_of_a_node_that_was_run_are_waited_for(env: dict[str, str], tmp_
 
 HANGING_LOOP = """
 import threading
-from aionode.transport.zenoh.link import Entity
-Entity.undeclare = lambda _: threading.Event().wait()
+from aionode.transport.zenoh._session_state import Declaration
+Declaration.undeclare = lambda _: threading.Event().wait()
 """
 HANGING_THREAD = """
 import threading
-from aionode.transport.zenoh import transport
+from aionode.transport.zenoh import _transport as transport
 async def close_session(session):
     threading.Thread(target=threading.Event().wait).start()
 transport.close_session = close_session
@@ -237,14 +237,14 @@ transport.close_session = close_session
             "'param', 'get', '/nope', 'name', '--timeout', '0.01'",
             1,
             "",
-            "Node not found: '/nope'. `aionode node list` shows those there are\n",
+            "Node not found: '/nope'. `aionode node list` lists those available\n",
         ),
     ],
 )
 def test_a_command_that_has_answered_ends(
     hanging: str, arguments: str, status: int, stdout: str, stderr: str, env: dict[str, str]
 ) -> None:
-    """Closing waits for Zenoh, and Zenoh may wait for a peer that is frozen or overloaded."""
+    """Closing waits for Zenoh, which may wait for a peer that is frozen or overloaded."""
     program = f"{hanging}\nimport sys\nfrom aionode.cli import main\n"
     program += f"sys.argv = ['aionode', {arguments}]\nsys.exit(main())"
 

@@ -1,4 +1,4 @@
-"""Whatever a user types is a value, or one line that says why not: never a traceback."""
+"""Any input is a value, or an error of one line: never a traceback."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ def test_package_lists_the_types_of_one(screen: Any) -> None:
 
 
 def test_an_unknown_package_is_named_with_one_like_it(screen: Any) -> None:
-    """What was given and what fits."""
+    """The error names what was given and what is expected."""
     with pytest.raises(
         CommandError, match=r"Unknown package 'std_msg'\. Did you mean 'std_msgs'\?"
     ):
@@ -80,7 +80,7 @@ def test_list_has_a_heading_for_each_kind(screen: Any) -> None:
 
 
 def test_an_unknown_type_is_named_with_one_like_it(screen: Any) -> None:
-    """The error of the lookup says it."""
+    """With the error of the lookup."""
     with pytest.raises(InterfaceNotFoundError, match="did you mean std_msgs/msg/String"):
         show("std_msgs/msg/Strng", output=screen.output)
 

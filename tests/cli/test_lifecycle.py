@@ -48,7 +48,7 @@ async def test_get_prints_label_and_number(tool: Node, camera: Camera, screen: A
 
 
 async def test_list_prints_what_is_available(tool: Node, camera: Camera, screen: Any) -> None:
-    """With the state in which each starts, and the one to which it leads."""
+    """Each with its start state and goal state."""
     await list_transitions(tool, "camera", output=screen.output)
 
     assert screen.text == (
@@ -95,6 +95,6 @@ async def test_an_unknown_transition_lists_those_there_are(
 
 
 async def test_an_unknown_node_is_an_error(tool: Node, camera: Camera, screen: Any) -> None:
-    """A node that is not managed is none either."""
+    """A node that is not managed is not found either."""
     with pytest.raises(CommandError, match="Node not found"):
         await get_state(tool, "/talker", output=screen.output)

@@ -29,7 +29,7 @@ NOTHING: dict[str, Any] = {
 
 
 def test_without_options_there_is_no_profile() -> None:
-    """The verb then chooses by what is offered."""
+    """The verb then chooses by what the publishers offer."""
     options = {**NOTHING, "other": 1}
 
     assert qos_from("default", options) is None
@@ -89,7 +89,7 @@ def test_a_history_for_late_ones_holds_one_message_at_least() -> None:
 async def test_the_shell_is_offered_what_is_there(
     what: str, names: list[str], tool: Node, node_factory: Callable[..., Node]
 ) -> None:
-    """Hidden names are typed by those who know them."""
+    """Hidden names are not offered; they can still be typed."""
     robot = node_factory("robot", enable_rosout=False, start_parameter_services=False)
     robot.create_publisher(String, "/chatter", 1)
     robot.create_publisher(String, "/_hidden", 1)

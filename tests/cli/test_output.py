@@ -18,7 +18,7 @@ def test_text_is_for_people_only(screen: Any) -> None:
 
 
 def test_progress_leaves_stdout_to_the_records(screen: Any) -> None:
-    """People see it where ros2 prints it."""
+    """On stdout, where ros2 prints it."""
     screen.output.progress("waiting")
     screen.json_output.progress("waiting")
 
@@ -29,7 +29,7 @@ def test_progress_leaves_stdout_to_the_records(screen: Any) -> None:
     ("number", "word"), [(math.nan, "NaN"), (math.inf, "Infinity"), (-math.inf, "-Infinity")]
 )
 def test_what_json_has_no_number_for_is_a_word(number: float, word: str, screen: Any) -> None:
-    """A range finder says infinite for nothing in sight, which is not nothing at all."""
+    """A range finder reports infinity when nothing is in range; that is a value, not null."""
     screen.json_output.item(
         "", {"range": number, "ranges": [1.0, number], "nested": [{"a": number}]}
     )

@@ -50,7 +50,7 @@ async def test_list_prints_names_indented(tool: Node, owner: Node, screen: Any) 
 async def test_list_of_all_prints_the_nodes(
     tool: Node, owner: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """Nodes without parameters are passed over, not waited for."""
+    """Nodes without parameter services are skipped, not waited for."""
     node_factory("add_server")
     node_factory("silent", start_parameter_services=False)
 
@@ -144,7 +144,7 @@ async def test_a_failed_set_is_an_error(
 
 
 async def test_malformed_yaml_is_no_string(tool: Node, owner: Node, screen: Any) -> None:
-    """A forgotten bracket would else be stored as it stands."""
+    """Otherwise text with an unclosed bracket would be stored as a string."""
     with pytest.raises(ParameterFileError, match=r"value '\[1, 2'.*not YAML"):
         await set_parameter(tool, "/param_node", "name", "[1, 2", output=screen.output)
 
@@ -160,7 +160,7 @@ async def test_an_undeclared_parameter_is_named(tool: Node, owner: Node, screen:
 
 
 async def test_an_unknown_node_is_named(tool: Node, owner: Node, screen: Any) -> None:
-    """After the time that it was waited for."""
+    """After the timeout."""
     with pytest.raises(CommandError, match=r"Node not found: '/param_nod'\. Did you mean"):
         await get(tool, "param_nod", "name", timeout=0.001, output=screen.output)
 
@@ -168,10 +168,10 @@ async def test_an_unknown_node_is_named(tool: Node, owner: Node, screen: Any) ->
 async def test_a_node_without_parameters_is_told(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """Not a wait for ever."""
+    """The command does not wait forever."""
     node_factory("silent", start_parameter_services=False)
 
-    with pytest.raises(CommandError, match="Node '/silent' offers no parameters"):
+    with pytest.raises(CommandError, match="Node '/silent' has no parameter services"):
         await get(tool, "/silent", "name", timeout=0.001, output=screen.output)
 
 
@@ -226,7 +226,7 @@ async def test_dump_prints_a_parameter_file(tool: Node, owner: Node, screen: Any
 async def test_what_dump_prints_load_reads(
     tool: Node, owner: Node, tmp_path: Path, screen: Any
 ) -> None:
-    """A parameter file goes round, wildcards included unless they are refused."""
+    """A dumped file can be loaded; wildcards are used unless excluded."""
     file = tmp_path / "values.yaml"
     file.write_text(
         "/**:\n  ros__parameters:\n    name: alice\n"
@@ -247,7 +247,7 @@ async def test_what_dump_prints_load_reads(
 async def test_a_dump_is_loaded_as_it_is(
     tool: Node, owner: Node, tmp_path: Path, screen: Any
 ) -> None:
-    """Read-only parameters are in it, and the types that YAML does not have."""
+    """Read-only parameters and types that YAML lacks survive the round trip."""
     file = tmp_path / "values.yaml"
     values = {
         "data": b"\x01\xff",
@@ -269,7 +269,7 @@ async def test_a_dump_is_loaded_as_it_is(
 
     assert screen.errors == ""
     assert status == 0
-    assert "start_type_description_service successful: it has this value already" in screen.text
+    assert "start_type_description_service successful: it already has this value" in screen.text
     assert file_form(owner.get_parameters(list(values))) == before
 
 
@@ -292,7 +292,7 @@ NAMES = st.from_regex(r"[a-z][a-z_0-9]{0,3}(\.[a-z][a-z_0-9]{0,3}){0,2}", fullma
 
 @given(st.dictionaries(NAMES, VALUES, max_size=5))
 def test_every_value_goes_through_a_parameter_file(values: dict[str, Any]) -> None:
-    """What `dump` writes means the same when `load` reads it, whatever it looks like."""
+    """`load` reads every value as `dump` wrote it."""
     before = {name: Parameter(name, value=value) for name, value in values.items()}
     text = file_text({"/node": {"ros__parameters": file_form(before.values())}})
 
@@ -323,11 +323,11 @@ async def test_load_says_what_failed(tool: Node, owner: Node, tmp_path: Path, sc
 async def test_load_of_a_file_for_others_is_an_error(
     tool: Node, owner: Node, tmp_path: Path, screen: Any
 ) -> None:
-    """Setting nothing is not what was meant."""
+    """Setting nothing is a mistake, not a success."""
     file = tmp_path / "values.yaml"
     file.write_text("/other:\n  ros__parameters:\n    name: a\n")
 
-    with pytest.raises(ParameterFileError, match="nothing for /param_node; it has /other"):
+    with pytest.raises(ParameterFileError, match="no parameters for /param_node, only for /other"):
         await load(tool, "/param_node", file, output=screen.output)
     with pytest.raises(ParameterFileError, match="cannot be read"):
         await load(tool, "/param_node", tmp_path / "nope.yaml", output=screen.output)

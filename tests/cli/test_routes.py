@@ -1,4 +1,4 @@
-"""Which way a pair uses, as the doctor tells it from outside."""
+"""Which route a pair uses, as another process sees it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import Int8, String
 from aionode.transport.base import LinkStatus
 
-NOBODY = LinkStatus(set(), set())
+NO_LINKS = LinkStatus(set(), set())
 
 
 def endpoint(kind: EndpointKind, participant: str, name: str) -> EndpointInfo:
@@ -30,12 +30,12 @@ LISTENER = endpoint(EndpointKind.SUBSCRIPTION, "b", "listener")
 
 
 def advertisements(**ends: str) -> LinkStatus:
-    """Return the announcements of contexts that are not linked: version, host and user of each."""
+    """Return the advertisements of unlinked contexts, each with version, host and user."""
     return LinkStatus({f"{participant}/link/{end}" for participant, end in ends.items()}, set())
 
 
 def test_linked_processes_use_the_link() -> None:
-    """Whichever of the two has announced it."""
+    """Regardless of which process advertises the link."""
     (pair,) = pairs_of([LISTENER, TALKER], LinkStatus(set(), {frozenset("ab")}))
 
     assert pair.text() == "/talker -> /listener on /chatter: link"
@@ -43,7 +43,7 @@ def test_linked_processes_use_the_link() -> None:
 
 
 def test_what_is_kept_for_late_subscriptions_goes_by_zenoh() -> None:
-    """Although the processes are linked."""
+    """Even if the processes are linked."""
     profile = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     kept = dataclasses.replace(TALKER, qos=profile)
 
@@ -56,7 +56,7 @@ def test_what_is_kept_for_late_subscriptions_goes_by_zenoh() -> None:
 @pytest.mark.parametrize(
     ("known", "reason"),
     [
-        (NOBODY, "no link offered by /talker and /listener"),
+        (NO_LINKS, "no link offered by /talker and /listener"),
         (advertisements(a="1/host/1000"), "no link offered by /listener"),
         (advertisements(b="1/host/1000"), "no link offered by /talker"),
         (advertisements(a="1/host/1000", b="nonsense"), "no link offered by /listener"),
@@ -67,7 +67,7 @@ def test_what_is_kept_for_late_subscriptions_goes_by_zenoh() -> None:
 def test_where_no_link_is_possible_zenoh_is_used_and_nothing_is_wrong(
     known: LinkStatus, reason: str
 ) -> None:
-    """As with every node of ROS 2."""
+    """The normal case with every ROS 2 node."""
     (pair,) = pairs_of([TALKER, LISTENER], known)
 
     assert pair.text() == f"/talker -> /listener on /chatter: zenoh ({reason})"
@@ -82,7 +82,7 @@ def test_where_no_link_is_possible_zenoh_is_used_and_nothing_is_wrong(
     ],
 )
 def test_a_link_that_should_be_there_is_a_hint(version: int, text: str, remedy: str) -> None:
-    """Everything works without it, only slower; once for two processes with many endpoints."""
+    """Everything works without it, only slower; one hint for two processes with many endpoints."""
     other = endpoint(EndpointKind.SUBSCRIPTION, "b", "other")
     known = advertisements(a="1/host/1000", b=f"{version}/host/1000")
 
@@ -95,10 +95,10 @@ def test_a_link_that_should_be_there_is_a_hint(version: int, text: str, remedy: 
     assert remedy in found.remedy
 
 
-async def test_the_doctor_shows_the_ways_of_what_it_was_asked_about(
+async def test_the_doctor_shows_the_routes_of_the_given_names(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """Within one process there is nothing to link; what does not match has no way."""
+    """Within one process nothing is linked; endpoints that do not match have no route."""
     node_factory("talker").create_publisher(String, "/chatter", 10)
     node_factory("listener").create_subscription(String, "/chatter", lambda msg: None)
     node_factory("deaf").create_subscription(Int8, "/chatter", lambda msg: None)
@@ -115,10 +115,10 @@ async def test_the_doctor_shows_the_ways_of_what_it_was_asked_about(
     assert "/deaf on" not in screen.text
 
 
-async def test_without_names_the_ways_are_for_programs_only(
+async def test_without_names_the_routes_are_only_in_the_record(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """A person would not find anything in so many lines."""
+    """As text they would be too many lines."""
     node_factory("talker").create_publisher(String, "/chatter", 10)
     node_factory("listener").create_subscription(String, "/chatter", lambda msg: None)
 

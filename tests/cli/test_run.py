@@ -1,4 +1,4 @@
-"""``aionode run``: finding what to run."""
+"""``aionode run``: finding the node classes."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_a_class_or_function_is_found_in_a_module_or_file(
     source: str, name: str, program: Path
 ) -> None:
-    """Installed or lying around."""
+    """Installed, or in the current folder."""
     found = node_maker(f"{source}:{name}")
 
     assert callable(found)
@@ -55,15 +55,18 @@ def test_a_class_or_function_is_found_in_a_module_or_file(
     ("spec", "says"),
     [
         ("cli_run_nodes:Nope", "nothing of that name in cli_run_nodes; its node classes: Talker"),
-        ("cli_run_nodes:NUMBER", "no node class, and no function"),
-        ("cli_run_nodes", "say which class: cli_run_nodes:NAME; there are Talker, Listener"),
+        ("cli_run_nodes:NUMBER", "neither a node class nor a function"),
+        (
+            "cli_run_nodes",
+            "give a class, as cli_run_nodes:NAME; its node classes: Talker, Listener",
+        ),
         ("no_such_module:Talker", "no module no_such_module here"),
         ("nope.py:Talker", "no file nope.py here"),
-        (":Talker", "no module; MODULE:CLASS fits"),
+        (":Talker", "no module; expected MODULE:CLASS"),
     ],
 )
 def test_what_cannot_be_run_is_explained(spec: str, says: str, program: Path) -> None:
-    """What was given and what fits."""
+    """The error names what was given and what is expected."""
     with pytest.raises(CommandError) as raised:
         node_maker(spec)
 
@@ -71,7 +74,7 @@ def test_what_cannot_be_run_is_explained(spec: str, says: str, program: Path) ->
 
 
 def test_a_module_that_needs_a_missing_one_names_that(tmp_path: Path) -> None:
-    """The missing one is not the one that was asked for."""
+    """The missing module is not the one that was asked for."""
     file = tmp_path / "cli_run_broken.py"
     file.write_text("import no_such_thing\n")
 
@@ -79,10 +82,10 @@ def test_a_module_that_needs_a_missing_one_names_that(tmp_path: Path) -> None:
         node_maker(f"{file}:Talker")
 
 
-def test_classes_and_arguments_are_told_apart(
+def test_classes_and_arguments_are_separated(
     program: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What follows --ros-args goes to the nodes, whatever it looks like."""
+    """Everything after --ros-args goes to the nodes."""
     ran: list[Any] = []
 
     def run(*nodes: Any, args: list[str]) -> None:
@@ -101,8 +104,8 @@ def test_classes_and_arguments_are_told_apart(
 def test_an_option_before_the_arguments_is_an_error(
     program: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Otherwise it would be taken for a module."""
+    """Otherwise it would be taken for the name of a module."""
     status = main(["run", "cli_run_nodes:Talker", "-p", "a:=1"])
 
     assert status == 2
-    assert "No such option '-p': arguments begin with --ros-args." in capsys.readouterr().err
+    assert "No such option '-p': arguments of nodes follow --ros-args." in capsys.readouterr().err

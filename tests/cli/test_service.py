@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from aionode import Node
-from aionode.cli._verbs.service import call, find, info, list_services, type_of_service
+from aionode.cli._support.nouns import SERVICE
+from aionode.cli._verbs.service import call, info
 from aionode.errors import CommandError, ServiceError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.testing import ManualClock, settle
@@ -24,7 +25,7 @@ def add(request: AddTwoInts.Request, response: AddTwoInts.Response) -> AddTwoInt
 
 @pytest.fixture
 async def server(node_factory: Callable[..., Node]) -> Node:
-    """A node that adds, and has no parameters, so that the list is short."""
+    """A node that adds, without parameter services, so that the list is short."""
     made = node_factory("add_server", start_parameter_services=False)
     made.create_service(AddTwoInts, "/add_two_ints", add)
     return made
@@ -63,7 +64,7 @@ async def test_call_repeats_at_a_rate(
 async def test_call_waits_for_the_service_and_says_so(
     running: Any, tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """A server is often started second."""
+    """The server is often started later than the client."""
     async with running(call(tool, "/add_two_ints", ADD, output=screen.output)) as task:
         assert screen.text == "waiting for service to become available...\n"
         node_factory("late").create_service(AddTwoInts, "/add_two_ints", add)
@@ -74,11 +75,11 @@ async def test_call_waits_for_the_service_and_says_so(
 
 
 async def test_waiting_says_what_may_be_meant(tool: Node, server: Node, screen: Any) -> None:
-    """ros2 waits for ever without a word on what is missing."""
-    with pytest.raises(CommandError, match=r"Nobody served '/add_two_int' in 0\.001 s"):
+    """ros2 waits forever without saying what is missing."""
+    with pytest.raises(CommandError, match=r"No server of '/add_two_int' appeared within 0\.001 s"):
         await call(tool, "/add_two_int", ADD, timeout=0.001, output=screen.output)
 
-    assert screen.errors == "Nobody serves '/add_two_int'. Did you mean '/add_two_ints'?\n"
+    assert screen.errors == "No server of '/add_two_int' yet. Did you mean '/add_two_ints'?\n"
 
 
 @pytest.mark.parametrize(
@@ -89,13 +90,13 @@ async def test_waiting_says_what_may_be_meant(tool: Node, server: Node, screen: 
         ("std_srvs/srv/Empty", "{}", f"'/add_two_ints' has type {ADD}, not std_srvs/srv/Empty"),
         (ADD, "{c: 42}", "Failed to populate field: example_interfaces/srv/AddTwoInts_Request.c"),
         (ADD, "{a: 1.5}", "AddTwoInts_Request.a: 1.5"),
-        (ADD, "{a: [", "no YAML"),
+        (ADD, "{a: [", "not valid YAML"),
     ],
 )
 async def test_what_does_not_fit_is_refused_before_the_call(
     service_type: str, values: str, says: str, tool: Node, server: Node, screen: Any
 ) -> None:
-    """What was given and what fits."""
+    """The error names what was given and what is expected."""
     with pytest.raises(CommandError) as raised:
         await call(tool, "/add_two_ints", service_type, values=values, output=screen.output)
 
@@ -106,7 +107,7 @@ async def test_what_does_not_fit_is_refused_before_the_call(
 async def test_a_failing_handler_is_an_error_with_its_text(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """The command ends at once, with what the server says."""
+    """The command ends at once, with the text of the server."""
 
     def fail(request: Any, response: Any) -> Any:
         raise ValueError("no such number")
@@ -119,8 +120,8 @@ async def test_a_failing_handler_is_an_error_with_its_text(
 
 
 async def test_list_prints_names_and_types(tool: Node, server: Node, screen: Any) -> None:
-    """Every node has the service of its types besides."""
-    await list_services(tool, types=True, output=screen.output)
+    """Every node also serves its type descriptions."""
+    await SERVICE.list_names(tool, types=True, output=screen.output)
 
     assert screen.text == (
         "/add_server/get_type_description [type_description_interfaces/srv/GetTypeDescription]\n"
@@ -138,18 +139,18 @@ async def test_info_prints_type_and_counts(tool: Node, server: Node, screen: Any
 
 
 async def test_type_and_find_are_inverse(tool: Node, server: Node, screen: Any) -> None:
-    """From the name to the type, and back."""
-    await type_of_service(tool, "/add_two_ints", output=screen.output)
-    await find(tool, ADD, output=screen.output)
-    await find(tool, ADD, count=True, output=screen.output)
+    """From a name to its type, and back."""
+    await SERVICE.print_type(tool, "/add_two_ints", output=screen.output)
+    await SERVICE.find(tool, ADD, output=screen.output)
+    await SERVICE.find(tool, ADD, count=True, output=screen.output)
 
     assert screen.text == f"{ADD}\n/add_two_ints\n1\n"
 
 
-@pytest.mark.parametrize("verb", [info, type_of_service])
+@pytest.mark.parametrize("verb", [info, SERVICE.print_type])
 async def test_an_unknown_service_is_named(
     verb: Callable[..., Any], tool: Node, server: Node, screen: Any
 ) -> None:
-    """With one like it."""
+    """The error suggests a similar name."""
     with pytest.raises(CommandError, match="Unknown service '/add'"):
         await verb(tool, "/add", output=screen.output)

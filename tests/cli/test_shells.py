@@ -1,4 +1,4 @@
-"""Completion as the shells themselves do it."""
+"""Completion in the real shells."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ pytestmark = [
 
 @pytest.mark.parametrize("shell", SHELLS)
 def test_a_type_is_completed_in_two_steps(shell: str, tmp_path: Path) -> None:
-    """First its package, with nothing behind the slash, then its name: one word for the command."""
+    """First the package, without a space after the slash, then the name: a single word."""
     if shutil.which(shell) is None:
         pytest.skip(f"{shell} is not installed")
     program, *arguments = SHELLS[shell]

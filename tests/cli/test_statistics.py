@@ -1,4 +1,4 @@
-"""Figures about a stream of messages."""
+"""Statistics of a stream of messages."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from aionode.cli._support.statistics import Bandwidth, Intervals, size_texts, sp
 
 @given(st.lists(st.integers(0, 10**12), min_size=1, max_size=50))
 def test_the_spread_holds_its_mean(values: list[int]) -> None:
-    """Lowest, mean and highest are in order, and a deviation is none below zero."""
+    """Minimum, mean and maximum are in order, and the deviation is not negative."""
     spread = spread_of(values)
 
     assert spread.low <= spread.mean <= spread.high
@@ -24,7 +24,7 @@ def test_the_deviation_is_that_of_the_population() -> None:
 
 
 def test_time_that_goes_backwards_resets() -> None:
-    """A simulation was started again."""
+    """A simulation was restarted."""
     intervals = Intervals(10)
     for now in (100, 200, 300):
         assert not intervals.arrive(now)
@@ -34,7 +34,7 @@ def test_time_that_goes_backwards_resets() -> None:
 
 
 def test_figures_are_given_once() -> None:
-    """Without a new message there is nothing new to say."""
+    """Without a new message there is nothing to report."""
     intervals = Intervals(10)
     intervals.arrive(0)
     intervals.arrive(5)
@@ -85,5 +85,5 @@ def test_the_bandwidth_falls_when_nothing_comes_any_more() -> None:
     ],
 )
 def test_all_sizes_have_the_unit_of_the_rate(bytes_per_s: float, texts: list[str]) -> None:
-    """As in ros2: one unit in a line."""
+    """As in ros2: one unit per line."""
     assert size_texts(bytes_per_s, 20) == texts

@@ -26,7 +26,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:This process .* is multi-threade
 
 
 class Terminals:
-    """Opens terminals that hear the robot, and nothing else on the machine."""
+    """Opens terminals that see the robot, and no other process on the machine."""
 
     def __init__(self) -> None:
         self.env = {
@@ -50,14 +50,14 @@ class Terminals:
         )
 
     def shown(self, *arguments: str) -> tuple[str, int]:
-        """Return what a command shows in a terminal until its end, and its status."""
+        """Return the output of a command in a terminal, and its exit status."""
         child = self.open(*arguments)
         child.expect(pexpect.EOF)
         child.close()
         return child.before.replace("\r\n", "\n"), child.exitstatus
 
     def run(self, *arguments: str, **env: str) -> subprocess.CompletedProcess[str]:
-        """Return what a command prints into pipes."""
+        """Run a command with its output in pipes."""
         return subprocess.run(
             [*AIONODE, *arguments],
             env=self.env | env,
@@ -87,7 +87,7 @@ def terminals() -> Iterator[Terminals]:
 
 
 def test_topic_list(terminals: Terminals) -> None:
-    """All topics at the first answer: no daemon has to learn of them."""
+    """The first answer has all topics; there is no daemon that has to discover them."""
     assert terminals.shown("topic", "list") == (
         "/chatter\n/parameter_events\n/rosout\n/stamped\n",
         0,
@@ -95,7 +95,7 @@ def test_topic_list(terminals: Terminals) -> None:
 
 
 def test_node_list(terminals: Terminals) -> None:
-    """Composed into one process, and still four nodes."""
+    """Four nodes, although in one process."""
     assert terminals.shown("node", "list") == (
         "/add_server\n/fib_server\n/param_node\n/talker\n",
         0,
@@ -116,7 +116,7 @@ def test_topic_echo_once(terminals: Terminals) -> None:
 
 
 def test_service_call(terminals: Terminals) -> None:
-    """Word for word the tutorial's."""
+    """The output of the tutorial, word for word."""
     request = ("example_interfaces/srv/AddTwoInts", "{a: 42, b: 58}")
 
     text, status = terminals.shown("service", "call", "/add_two_ints", *request)
@@ -132,7 +132,7 @@ def test_service_call(terminals: Terminals) -> None:
 
 
 def test_parameters_are_set_and_read_back(terminals: Terminals) -> None:
-    """And what does not fit is refused, with a status that says so."""
+    """A value of the wrong type is refused, with status 1."""
     node = "/param_node"
 
     assert terminals.shown("param", "get", node, "name") == ("String value is: bob\n", 0)
@@ -190,17 +190,17 @@ FIBONACCI = "example_interfaces/action/Fibonacci"
         ("topic delay /stamped", "average delay: ", 0),
         ("topic pub /out std_msgs/msg/String", "publishing #1", 0),
         ("topic pub -1 /out std_msgs/msg/String", "Waiting for at least 1", 130),
-        ("topic hz /nobody", "does not appear to be published yet", 0),
-        (f"service call /nobody {ADD}", "waiting for service to become available", 130),
+        ("topic hz /unknown", "does not appear to be published yet", 0),
+        (f"service call /unknown {ADD}", "waiting for service to become available", 130),
         (f"action send_goal /fibonacci {FIBONACCI}", "Goal accepted", 130),
-        (f"action send_goal /nobody {FIBONACCI}", "Waiting for an action server", 130),
+        (f"action send_goal /unknown {FIBONACCI}", "Waiting for an action server", 130),
         ("router -l tcp/127.0.0.1:0", "Router is listening", 0),
     ],
 )
 def test_ctrl_c_ends_a_command_without_a_traceback(
     arguments: str, when: str, status: int, terminals: Terminals
 ) -> None:
-    """0 where Ctrl-C is the usual end, 130 where something was left undone."""
+    """0 where Ctrl-C is the normal end, 130 where work was left undone."""
     child = terminals.open(*arguments.split())
     child.expect_exact(when)
     child.sendintr()
@@ -213,8 +213,8 @@ def test_ctrl_c_ends_a_command_without_a_traceback(
         assert "Canceling goal...\r\nGoal canceled.\r\n" in child.before
 
 
-def test_a_reader_that_has_enough_is_no_error(terminals: Terminals) -> None:
-    """``| head`` is how one looks at a topic."""
+def test_a_reader_that_goes_away_is_no_error(terminals: Terminals) -> None:
+    """``| head`` is a common way to look at a topic."""
     command = f"{' '.join(AIONODE)} topic echo /chatter | head -n 1; echo ${{PIPESTATUS[0]}}"
 
     done = subprocess.run(
@@ -240,7 +240,7 @@ def test_a_reader_that_has_enough_is_no_error(terminals: Terminals) -> None:
         (["topic", "echo", "no blanks"], "Invalid topic name 'no blanks'"),
         (["topic", "pub", "/a", "std_msgs/msg/Strin"], "did you mean std_msgs/msg/String?"),
         (["topic", "pub", "/a", "std_msgs/msg/Int8", "{data: 300}"], "-128 to 127"),
-        (["topic", "pub", "/a", "std_msgs/msg/String", "{data: "], "no YAML"),
+        (["topic", "pub", "/a", "std_msgs/msg/String", "{data: "], "not valid YAML"),
         (["service", "call", "/add_two_ints", ADD, "{c: 1}"], "has a, b"),
         (["param", "get", "/param_node", "nope"], "Parameter not set: no parameter 'nope'"),
         (["param", "get", "/nope", "name"], "Node not found: '/nope'"),
@@ -250,7 +250,7 @@ def test_a_reader_that_has_enough_is_no_error(terminals: Terminals) -> None:
 def test_bad_input_is_one_line_on_stderr(
     arguments: list[str], says: str, terminals: Terminals
 ) -> None:
-    """What was given, where, and what would do; a status that is not 0; no traceback."""
+    """What was given, where, and what is expected; status 1; no traceback."""
     done = terminals.run(*arguments)
 
     assert done.returncode == 1
@@ -259,8 +259,8 @@ def test_bad_input_is_one_line_on_stderr(
     assert says in done.stderr
 
 
-def test_a_domain_that_cannot_be_is_said(terminals: Terminals) -> None:
-    """The environment is input, too."""
+def test_an_invalid_domain_is_an_error(terminals: Terminals) -> None:
+    """The environment is input too."""
     done = terminals.run("topic", "list", ROS_DOMAIN_ID="many")
 
     assert done.returncode == 1
@@ -276,18 +276,18 @@ def test_a_domain_that_cannot_be_is_said(terminals: Terminals) -> None:
         (["topic", "info", "/ch"], ["/chatter"]),
         (["topic", "pub", "/chatter", ""], ["std_msgs/msg/String"]),
         (["topic", "echo", "/chatter", "std_s"], ["std_srvs/"]),
-        (["topic", "pub", "/nobody", "std_m"], ["std_msgs/"]),
+        (["topic", "pub", "/unknown", "std_m"], ["std_msgs/"]),
         (["service", "call", "/add_two_ints", ""], [ADD]),
         (["action", "send_goal", "/fibonacci", "ex"], [FIBONACCI]),
         (["param", "get", "/param_node", "s"], ["speed", "start_type_description_service"]),
         (["param", "describe", "param_node", "name", "sp"], ["speed"]),
-        (["param", "get", "/nobody", ""], []),
+        (["param", "get", "/unknown", ""], []),
     ],
 )
 def test_the_shell_is_offered_what_is_on_the_network(
     words: list[str], offered: list[str], terminals: Terminals
 ) -> None:
-    """Names of this moment; and behind a name its types, or its parameters."""
+    """The current names; after a name, its types or parameters."""
     done = terminals.run(
         _AIONODE_COMPLETE="bash_complete",
         COMP_WORDS="\n".join(["aionode", *words]),
@@ -308,7 +308,7 @@ def test_programs_get_one_record_for_each_line(terminals: Terminals) -> None:
 
 
 def test_the_doctor_finds_a_sound_robot_sound(terminals: Terminals) -> None:
-    """It sees all nodes of the other process, and a router only if there is one."""
+    """It sees all nodes of the other process, and no router."""
     text, status = terminals.shown("doctor")
 
     assert status == 0
@@ -318,8 +318,8 @@ def test_the_doctor_finds_a_sound_robot_sound(terminals: Terminals) -> None:
 
 
 @pytest.mark.skipif(not available(), reason="links are of Linux")
-def test_the_doctor_says_which_way_a_pair_uses(terminals: Terminals) -> None:
-    """Seen from a process that takes part in no link."""
+def test_the_doctor_shows_the_route_of_a_pair(terminals: Terminals) -> None:
+    """As seen from a process without links."""
     listener = terminals.open("run", f"{ROOT}/examples/listener.py:Listener")
     try:
         listener.expect("I heard: Hello")
@@ -335,9 +335,9 @@ def test_the_doctor_says_which_way_a_pair_uses(terminals: Terminals) -> None:
 
 
 def test_the_doctor_sees_nodes_of_another_domain(terminals: Terminals) -> None:
-    """The most common reason why nothing at all is seen, and the remedy as it is typed."""
+    """The most common reason why no node is found, with a remedy that can be typed."""
     done = terminals.run("doctor", ROS_DOMAIN_ID="41")
 
     assert done.returncode == 1
-    assert "problem: domain: there are nodes in domain 42, and this is domain 41" in done.stdout
-    assert "-> ROS_DOMAIN_ID=42" in done.stdout
+    assert "problem: domain: there are nodes in domain 42, but this is domain 41" in done.stdout
+    assert "-> set ROS_DOMAIN_ID=42" in done.stdout

@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from aionode import Node
-from aionode.cli._verbs.topic import find, info, list_topics, type_of_topic
+from aionode.cli._support.nouns import TOPIC
+from aionode.cli._verbs.topic import info, list_topics
 from aionode.errors import CommandError, InvalidTopicNameException
 from aionode.interfaces.std_msgs.msg import Int8, String
 
@@ -23,7 +24,7 @@ async def talker(node_factory: Callable[..., Node]) -> Node:
 
 
 async def test_list_prints_what_ros2_prints(tool: Node, talker: Node, screen: Any) -> None:
-    """A newcomer compares the second terminal with the tutorial's, line for line."""
+    """A newcomer compares this output with the tutorial's, line by line."""
     await list_topics(tool, output=screen.output)
 
     assert screen.text == "/chatter\n/parameter_events\n/rosout\n"
@@ -61,7 +62,7 @@ async def test_verbose_list_prints_who_publishes_and_who_subscribes(
 
 
 async def test_the_command_does_not_list_itself(tool: Node, screen: Any) -> None:
-    """ros2 counts its own endpoints; whoever looks wants to know what was there before."""
+    """ros2 counts its own endpoints; the user wants to know what was there before."""
     tool.create_subscription(String, "/mine", qos_profile=1)
 
     await list_topics(tool, output=screen.output)
@@ -79,7 +80,7 @@ async def test_count_prints_a_number(tool: Node, talker: Node, screen: Any) -> N
 async def test_hidden_topics_are_listed_on_request(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """The topics of an action are nobody's business, unless asked for."""
+    """The topics of an action are an implementation detail, shown only on request."""
     node_factory("server", enable_rosout=False).create_publisher(Int8, "/a/_action/status", 1)
 
     await list_topics(tool, output=screen.output)
@@ -93,7 +94,7 @@ async def test_hidden_topics_are_listed_on_request(
 async def test_json_list_has_one_record_for_each_topic(
     tool: Node, talker: Node, screen: Any
 ) -> None:
-    """A program reads lines, and finds in each all that the text options show."""
+    """A program reads lines; each has everything that the text options show."""
     await list_topics(tool, output=screen.json_output)
 
     assert screen.records[0] == {
@@ -112,7 +113,7 @@ async def test_info_prints_type_and_counts(tool: Node, talker: Node, screen: Any
 
 
 async def test_verbose_info_prints_every_endpoint(tool: Node, talker: Node, screen: Any) -> None:
-    """All that is needed to find out why two endpoints do not match."""
+    """Everything needed to find out why two endpoints do not match."""
     (publisher,) = talker.get_publishers_info_by_topic("/chatter")
     (subscription,) = talker.get_subscriptions_info_by_topic("/chatter")
 
@@ -147,7 +148,7 @@ async def test_verbose_info_prints_every_endpoint(tool: Node, talker: Node, scre
 
 
 async def test_json_info_tells_the_qos(tool: Node, talker: Node, screen: Any) -> None:
-    """A program compares profiles without taking text apart."""
+    """A program compares profiles without parsing text."""
     await info(tool, "/chatter", verbose=True, output=screen.json_output)
 
     (record,) = screen.records
@@ -156,7 +157,7 @@ async def test_json_info_tells_the_qos(tool: Node, talker: Node, screen: Any) ->
 
 
 async def test_a_relative_name_belongs_to_the_root(tool: Node, talker: Node, screen: Any) -> None:
-    """ros2 wants the slash; leaving it out can mean nothing else."""
+    """ros2 requires the slash; without it the name is unambiguous too."""
     await info(tool, "chatter", output=screen.output)
 
     assert screen.text.startswith("Type: std_msgs/msg/String")
@@ -165,7 +166,7 @@ async def test_a_relative_name_belongs_to_the_root(tool: Node, talker: Node, scr
 async def test_a_topic_of_two_types_shows_both(
     tool: Node, talker: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """Two types under one name are a mistake that one must see."""
+    """Two types under one name are a mistake that has to be visible."""
     node_factory("other").create_publisher(Int8, "/chatter", 1)
 
     await info(tool, "/chatter", output=screen.output)
@@ -174,21 +175,21 @@ async def test_a_topic_of_two_types_shows_both(
 
 
 async def test_type_prints_the_type(tool: Node, talker: Node, screen: Any) -> None:
-    """Its output goes into ``interface show -``."""
-    await type_of_topic(tool, "/chatter", output=screen.output)
+    """Its output can be piped into ``interface show -``."""
+    await TOPIC.print_type(tool, "/chatter", output=screen.output)
 
     assert screen.text == "std_msgs/msg/String\n"
 
 
 async def test_find_prints_the_topics_of_a_type(tool: Node, talker: Node, screen: Any) -> None:
     """The other direction of ``type``."""
-    await find(tool, "std_msgs/msg/String", output=screen.output)
-    await find(tool, "std_msgs/msg/Int8", output=screen.output)
+    await TOPIC.find(tool, "std_msgs/msg/String", output=screen.output)
+    await TOPIC.find(tool, "std_msgs/msg/Int8", output=screen.output)
 
     assert screen.text == "/chatter\n"
 
 
-@pytest.mark.parametrize("verb", [info, type_of_topic])
+@pytest.mark.parametrize("verb", [info, TOPIC.print_type])
 async def test_an_unknown_topic_is_named_with_one_like_it(
     verb: Callable[..., Any], tool: Node, talker: Node, screen: Any
 ) -> None:
@@ -200,6 +201,6 @@ async def test_an_unknown_topic_is_named_with_one_like_it(
 
 
 async def test_an_impossible_name_is_no_unknown_one(tool: Node, screen: Any) -> None:
-    """What cannot be a name cannot be waited for either."""
+    """Waiting for an invalid name would never end."""
     with pytest.raises(InvalidTopicNameException, match="must not contain characters"):
         await info(tool, "/no blanks", output=screen.output)

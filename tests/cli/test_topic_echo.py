@@ -66,7 +66,7 @@ async def test_nested_messages_are_indented(
 async def test_once_ends_after_one_message(
     running: Any, tool: Node, talker: Node, screen: Any
 ) -> None:
-    """Scripts take one message this way."""
+    """Scripts read one message this way."""
     publisher = talker.create_publisher(String, "/topic", 10)
     async with running(echo(tool, "/topic", once=True, output=screen.output)) as task:
         publisher.publish(String(data="first"))
@@ -91,7 +91,7 @@ async def test_csv_is_one_line_of_values(
 async def test_json_is_one_line_in_full(
     running: Any, tool: Node, talker: Node, screen: Any
 ) -> None:
-    """A program wants all of it; whoever wants less has --field."""
+    """A program needs everything; --field selects a part."""
     message = String(data="x" * 200)
 
     await echoed(running, tool, screen, talker, message, output=screen.json_output)
@@ -112,7 +112,7 @@ async def test_long_arrays_and_strings_are_cut(
 
 
 async def test_bytes_are_numbers(running: Any, tool: Node, talker: Node, screen: Any) -> None:
-    """uint8[] is data and no text."""
+    """uint8[] is data, not text."""
     message = UInt8MultiArray(data=b"\x01\x02\x03")
 
     text = await echoed(running, tool, screen, talker, message, truncate_length=2, flow_style=True)
@@ -123,7 +123,7 @@ async def test_bytes_are_numbers(running: Any, tool: Node, talker: Node, screen:
 async def test_no_arr_and_no_str_describe_what_they_leave_out(
     running: Any, tool: Node, talker: Node, screen: Any
 ) -> None:
-    """One still sees how much there is."""
+    """The length is still shown."""
     message = JointState(name=["a"], position=[1.0, 2.0], header=Header(frame_id="map"))
 
     text = await echoed(running, tool, screen, talker, message, no_arr=True, no_str=True)
@@ -166,7 +166,7 @@ async def test_field_takes_an_index(running: Any, tool: Node, talker: Node, scre
         ("liner", "no 'liner' in it; geometry_msgs/msg/Twist has linear, angular"),
         ("linear.x.y", "a single value has no fields"),
         ("linear[0]", r"nothing at \[0\] of linear"),
-        (".", "a path such as pose.position fits"),
+        (".", "expected a path such as pose.position"),
     ],
 )
 async def test_a_wrong_field_says_which_there_are(
@@ -194,12 +194,12 @@ async def test_filter_lets_through_what_fits(
 
 @pytest.mark.parametrize(
     ("expression", "says"),
-    [("m.x >", "no Python expression"), ("m.nope", "AttributeError")],
+    [("m.x >", "not a Python expression"), ("m.nope", "AttributeError")],
 )
 async def test_a_filter_that_fails_is_an_error_of_the_user(
     expression: str, says: str, running: Any, tool: Node, talker: Node, screen: Any
 ) -> None:
-    """No traceback of aionode for a slip in somebody's own expression."""
+    """An error in the user's expression shows no traceback of aionode."""
     with pytest.raises((CommandError, ExceptionGroup)) as raised:
         await echoed(running, tool, screen, talker, Twist(), filter_text=expression)
 
@@ -223,7 +223,7 @@ async def test_message_info_stands_in_front(
 
 
 async def test_raw_prints_the_bytes(running: Any, tool: Node, talker: Node, screen: Any) -> None:
-    """CDR as it travels: a header of four bytes, then the length of the string."""
+    """CDR as sent: a header of four bytes, then the length of the string."""
     text = await echoed(running, tool, screen, talker, String(data="a"), raw=True)
 
     assert text == "b'\\x00\\x01\\x00\\x00\\x02\\x00\\x00\\x00a\\x00'\n---\n"
@@ -255,19 +255,19 @@ async def test_with_a_type_it_waits_for_the_topic(
 
 
 async def test_a_timeout_without_a_message_is_said(tool: Node, talker: Node, screen: Any) -> None:
-    """Silence and success look the same to a script otherwise."""
+    """Otherwise a script could not tell silence from success."""
     talker.create_publisher(String, "/topic", 10)
 
     status = await echo(tool, "/topic", timeout=0.001, output=screen.output)
 
     assert status == 1
-    assert screen.errors == "No message on '/topic' in 0.001 s; publishers: 1\n"
+    assert screen.errors == "No message on '/topic' within 0.001 s; publishers: 1\n"
 
 
 async def test_mixed_publishers_are_read_with_what_all_offer(
     running: Any, tool: Node, talker: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """Asking one publisher for more than it offers would silence it."""
+    """Requesting more than a publisher offers would exclude that publisher."""
     weak = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
     other = node_factory("other").create_publisher(String, "/topic", weak)
 
@@ -284,7 +284,7 @@ async def test_mixed_publishers_are_read_with_what_all_offer(
 async def test_two_types_need_a_choice(
     tool: Node, talker: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """One of them would be decoded as the other."""
+    """Otherwise messages of one would be decoded as the other."""
     talker.create_publisher(String, "/topic", 1)
     node_factory("other").create_publisher(Twist, "/topic", 1)
 

@@ -52,7 +52,7 @@ async def test_hz_is_right_at_ten_kilohertz(
     manual_clock: ManualClock,
     screen: Any,
 ) -> None:
-    """Arrival is what is measured, not when there is time to look."""
+    """The time of arrival counts, not that of processing."""
     fast = node_factory("fast")
     publisher = fast.create_publisher(String, "/fast", 10)
     fast.create_timer(0.0001, lambda: publisher.publish(String()))
@@ -66,7 +66,7 @@ async def test_hz_is_right_at_ten_kilohertz(
 async def test_hz_prints_nothing_while_nothing_comes(
     running: Any, tool: Node, talker: Node, manual_clock: ManualClock, screen: Any
 ) -> None:
-    """An old rate is no rate."""
+    """An outdated rate is not repeated."""
     async with running(hz(tool, ["/chatter"], output=screen.output)):
         await manual_clock.advance(1.1)
         talker.destroy_node()
@@ -132,7 +132,7 @@ async def test_it_waits_for_a_topic_and_says_so(
     manual_clock: ManualClock,
     screen: Any,
 ) -> None:
-    """The type comes with the first publisher."""
+    """The type is known when the first publisher appears."""
     async with running(bw(tool, "/late", output=screen.output)):
         assert screen.text == "WARNING: topic [/late] does not appear to be published yet\n"
         node_factory("late").create_publisher(String, "/late", 1)
@@ -143,7 +143,7 @@ async def test_it_waits_for_a_topic_and_says_so(
 async def test_bw_prints_bytes_per_second_and_sizes(
     running: Any, tool: Node, talker: Node, manual_clock: ManualClock, screen: Any
 ) -> None:
-    """CDR with its header, as it travels: 4 + 4 + 11 + 1 bytes."""
+    """CDR with its header, as sent: 4 + 4 + 11 + 1 bytes."""
     async with running(bw(tool, "/chatter", output=screen.output)):
         await manual_clock.advance(1.0)
 
@@ -161,7 +161,7 @@ async def test_delay_prints_the_age_by_the_header(
     manual_clock: ManualClock,
     screen: Any,
 ) -> None:
-    """Half a second old when it comes."""
+    """Half a second old on arrival."""
     await manual_clock.advance(10.05)
     camera = node_factory("camera")
     publisher = camera.create_publisher(TwistStamped, "/stamped", 10)
@@ -184,7 +184,7 @@ async def test_delay_prints_the_age_by_the_header(
 async def test_what_comes_while_publishers_are_connected_is_not_counted(
     node_factory: Callable[..., Node], manual_clock: ManualClock, running: Any, screen: Any
 ) -> None:
-    """Connecting to another process delays messages, which then come at once: 39 Hz of 30."""
+    """Connecting delays messages, which then arrive in a burst: 39 Hz were shown instead of 30."""
     network = FaultyTransport(LocalTransport(), drop=1.0)
     context = Context(transport=[LocalTransport(), network], clock=manual_clock)
     tool = node_factory("tool", context=context)
@@ -208,7 +208,7 @@ async def test_a_stamp_that_is_no_time_is_a_delay_nevertheless(
     screen: Any,
     stamp: TimeMsg,
 ) -> None:
-    """Whatever a driver writes into its header, the command says how far off it is."""
+    """The command reports the difference to any stamp a driver may write."""
     publisher = node_factory("camera").create_publisher(TwistStamped, "/stamped", 10)
 
     async with running(delay(tool, "/stamped", output=screen.json_output)):
@@ -234,7 +234,7 @@ async def test_hz_says_when_messages_came_too_fast(
     monkeypatch: pytest.MonkeyPatch,
     screen: Any,
 ) -> None:
-    """A figure that is too low has to say so."""
+    """A rate that is too low has to be marked as such."""
     monkeypatch.setattr(topic_measure, "QOS", QoSProfile(depth=2))
     publisher = node_factory("burst").create_publisher(String, "/burst", 10)
 
@@ -244,7 +244,7 @@ async def test_hz_says_when_messages_came_too_fast(
         await manual_clock.advance(1.05)
 
     assert screen.errors == (
-        "3 messages came too fast to be counted: the real figures are higher\n"
+        "3 messages arrived too fast to be counted: the real rates are higher\n"
     )
 
 
@@ -255,7 +255,7 @@ async def test_delay_is_that_of_the_simulation_if_asked(
     manual_clock: ManualClock,
     screen: Any,
 ) -> None:
-    """A stamp of a simulation means nothing to this machine's clock."""
+    """A simulated stamp cannot be compared with this machine's clock."""
     simulator = node_factory("simulator")
     clock = simulator.create_publisher(Clock, "/clock", 1)
     publisher = simulator.create_publisher(TwistStamped, "/stamped", 10)

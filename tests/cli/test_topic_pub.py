@@ -17,7 +17,7 @@ from aionode.testing import ManualClock, settle
 
 @pytest.fixture
 async def heard(node_factory: Callable[..., Node]) -> list[Any]:
-    """What a node hears on /golden."""
+    """The messages that a node receives on /golden."""
     messages: list[Any] = []
     node_factory("listener").create_subscription(String, "/golden", messages.append)
     return messages
@@ -44,7 +44,7 @@ async def test_once_prints_what_ros2_prints(tool: Node, heard: list[Any], screen
 
 
 async def test_a_short_type_name_is_understood(tool: Node, heard: list[Any], screen: Any) -> None:
-    """std_msgs/String is how ROS 1 had it, and ros2 takes it."""
+    """std_msgs/String is the form of ROS 1, and ros2 accepts it."""
     await pub(tool, "/golden", "std_msgs/String", times=1, keep_alive_s=0, output=screen.output)
     await settle()
 
@@ -83,7 +83,7 @@ async def test_times_ends_after_so_many(
 async def test_it_waits_for_subscriptions_and_says_so(
     running: Any, tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """Otherwise the one message of --once goes to nobody."""
+    """Otherwise the only message of --once is lost."""
     heard: list[Any] = []
     work = pub(
         tool, "/golden", "std_msgs/msg/String", times=1, wait_for=1, keep_alive_s=0,
@@ -99,7 +99,7 @@ async def test_it_waits_for_subscriptions_and_says_so(
 
 
 async def test_a_limited_wait_ends_with_the_numbers(tool: Node, screen: Any) -> None:
-    """What was expected, what came, and how not to wait."""
+    """The error says what was expected, what appeared, and how not to wait."""
     with pytest.raises(CommandError, match=r"expected 1, but only got 0 in 0\.001 s"):
         await pub(
             tool, "/golden", "std_msgs/msg/String", times=1, wait_for=1, max_wait_s=0.001,
@@ -152,10 +152,10 @@ async def test_json_prints_the_messages(tool: Node, heard: list[Any], screen: An
         ("std_msgs/msg/Int8", "{data: 300}", "-128 to 127"),
         ("std_msgs/msg/Int8", "{data: x}", "std_msgs/msg/Int8.data: 'x'"),
         ("geometry_msgs/msg/Twist", "{linear: {x: a}}", "geometry_msgs/msg/Twist.linear.x: 'a'"),
-        ("std_msgs/msg/String", "{data: hi", "The passed value is no YAML: '{data: hi' at its end"),
+        ("std_msgs/msg/String", "{data: hi", "value is not valid YAML: '{data: hi' at its end"),
         ("std_msgs/msg/String", "a: }", "at line 1, column 4"),
         ("std_msgs/msg/String", "hi", "needs to be a dictionary in YAML format: 'hi' is a str"),
-        ("std_msgs/msg/String", "[hi]", "'[hi]' is a list; '{data: ...}' fits"),
+        ("std_msgs/msg/String", "[hi]", "'[hi]' is a list; expected '{data: ...}'"),
     ],
 )
 async def test_what_does_not_fit_is_refused_before_the_first_message(
@@ -178,7 +178,7 @@ async def test_a_bad_name_is_refused(tool: Node, screen: Any) -> None:
 async def test_a_topic_of_another_type_may_be_published_to(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """The type that the user says counts, and the mismatch is reported by the node."""
+    """The type that the user gave is used, and the node reports the mismatch."""
     node_factory("listener").create_subscription(Twist, "/golden", lambda msg: None)
 
     await pub(tool, "/golden", "std_msgs/msg/String", times=1, keep_alive_s=0, output=screen.output)

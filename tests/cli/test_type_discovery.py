@@ -1,4 +1,4 @@
-"""Types that are not known here."""
+"""Types without a local definition."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class Reverse(ServiceType, typename="tutorial/srv/Reverse"):
         text: str = ""
 
     class Response(Message):
-        """The same from its end."""
+        """The reversed text."""
 
         text: str = ""
 
@@ -73,7 +73,7 @@ class Reverse(ServiceType, typename="tutorial/srv/Reverse"):
     ],
 )
 def test_a_class_made_of_a_description_has_the_same_hash(cls: Any) -> None:
-    """The hash is what decides whether two ends hear each other."""
+    """The type hash decides whether two endpoints communicate."""
     made = type_from(description_message(cls))
 
     assert type_hash(made) == type_hash(cls)
@@ -82,7 +82,7 @@ def test_a_class_made_of_a_description_has_the_same_hash(cls: Any) -> None:
 async def test_echo_learns_a_type_from_the_node_that_publishes_it(
     running: Any, tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """ros2 needs the package on the machine that looks."""
+    """ros2 needs the package on the inspecting machine."""
     publisher = node_factory("talker").create_publisher(Words, "/words", 1)
     found = await topic_type(tool, "/words")
 

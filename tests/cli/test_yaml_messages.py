@@ -29,7 +29,7 @@ def test_what_echo_prints_pub_reads() -> None:
 
 
 def test_two_messages_are_one_too_many() -> None:
-    """The second would be lost without a word."""
+    """The second would be lost silently."""
     with pytest.raises(CommandError, match="has 2 YAML documents"):
         message_from_yaml(String, "data: a\n---\ndata: b\n")
 

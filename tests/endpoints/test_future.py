@@ -1,4 +1,4 @@
-"""rclpy's names for calls, goals and waits: futures, and awaitables that nobody awaits."""
+"""rclpy's names for calls, goals and waits: futures, and awaitables that are not awaited."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ async def test_a_future_tells_of_its_end_as_rclpys_does(node: Node) -> None:
 
 
 async def test_a_future_raises_what_call_raises(node: Node) -> None:
-    """The node lives on: the error is for whoever has the future."""
+    """The node continues: the error is raised where the future is awaited."""
 
     def fail(_request: Request) -> Response:
         raise ValueError("no")
@@ -110,7 +110,7 @@ async def test_a_call_of_a_constructor_is_made_once_the_node_runs(context: Conte
 
 @pytest.mark.parametrize("runs", [False, True])
 async def test_the_end_of_the_client_cancels_its_futures(context: Context, *, runs: bool) -> None:
-    """Nobody waits for ever, whether the call had begun or not."""
+    """No task waits for ever, whether the call had begun or not."""
     node = Node("short", context=context)
     future = node.create_client(AddTwoInts, "add").call_async(Request())
     if runs:
@@ -183,7 +183,7 @@ async def test_a_refused_goal_is_a_handle_that_says_so(node: Node, worker: Worke
     handle = await client.send_goal_async(Fibonacci.Goal())
 
     assert not handle.accepted
-    with pytest.raises(GoalLostError, match="refused"):
+    with pytest.raises(GoalLostError, match="rejected"):
         await handle.get_result_async()
 
 
@@ -206,7 +206,7 @@ async def test_a_goal_is_cancelled_by_its_future_name(node: Node, worker: Worker
     assert (await handle.get_result_async()).status == GoalStatus.STATUS_CANCELED
 
 
-# Waits that nobody awaits
+# Waits without an await
 
 
 WAITS: dict[str, Callable[[Node], Any]] = {

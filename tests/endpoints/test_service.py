@@ -1,4 +1,4 @@
-"""Services and clients: answers, errors, cancellation, and nobody there."""
+"""Services and clients: answers, errors, cancellation, and missing servers."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def add(request: Request, response: Response) -> Response:
 
 
 class Gate:
-    """A handler that waits to be let through, and notes what became of it."""
+    """A handler that waits for a gate, and records how it ended."""
 
     def __init__(self) -> None:
         self.began: list[int] = []
@@ -173,7 +173,7 @@ async def test_requests_are_snapshots(node: Node) -> None:
     assert seen == [1]
 
 
-# Nobody there
+# Without a server
 
 
 async def test_a_call_without_a_server_ends_by_timeout_and_says_why(node: Node) -> None:
@@ -199,7 +199,7 @@ async def test_a_timeout_of_asyncio_says_why_too(
 async def test_a_server_that_appears_later_does_not_get_the_old_request(
     node: Node, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """Services are volatile; the log said that the call waits for nobody."""
+    """Services are volatile; the log says that no server is there."""
     served: list[int] = []
     client = node.create_client(AddTwoInts, "add")
     async with asyncio.TaskGroup() as tasks:
@@ -262,7 +262,7 @@ async def test_a_failing_handler_answers_with_its_error(node: Node) -> None:
 async def test_a_failing_handler_ends_its_node_after_the_client_was_told(
     context: Context, node: Node, *, concurrent: bool
 ) -> None:
-    """`on_error="raise"` is rclpy's behaviour for whoever wants it; the client gets its answer."""
+    """`on_error="raise"` behaves as rclpy does; the client still gets its answer."""
 
     def handler(request: Request) -> Response:
         raise ValueError("boom")
@@ -350,8 +350,8 @@ async def test_a_request_that_does_not_fit_is_an_error(node: Node, *, served: bo
 @pytest.mark.parametrize(
     ("arguments", "error", "text"),
     [
-        ((String, "add", add), TypeError, "is no service class"),
-        ((AddTwoInts.Request, "add", add), TypeError, "is no service class"),
+        ((String, "add", add), TypeError, "is not a service class"),
+        ((AddTwoInts.Request, "add", add), TypeError, "is not a service class"),
         ((AddTwoInts, "1add", add), InvalidServiceNameException, "must not start with a number"),
         ((AddTwoInts, "add", None), TypeError, "None cannot be called"),
         ((AddTwoInts, "add", lambda: None), CallbackSignatureError, "must take (request, resp"),
@@ -386,7 +386,7 @@ async def test_a_timed_out_call_does_not_disturb_the_next(node: Node) -> None:
 
 
 async def test_a_request_that_was_given_up_before_its_turn_is_not_served(node: Node) -> None:
-    """Nobody wants the answer any more."""
+    """Its client no longer waits for the answer."""
     gate = Gate()
     service = node.create_service(AddTwoInts, "add", gate)
     client = node.create_client(AddTwoInts, "add")
@@ -431,12 +431,12 @@ async def test_destroying_a_client_cancels_its_calls(node: Node) -> None:
     client.destroy()
     with pytest.raises(asyncio.CancelledError):
         await call
-    with pytest.raises(RuntimeError, match="client of /add: destroyed"):
+    with pytest.raises(RuntimeError, match="client of /add is destroyed"):
         await client.call(Request())
 
 
 async def test_destroying_a_client_cancels_its_waits(node: Node) -> None:
-    """Whoever waits for a service would wait for ever."""
+    """Otherwise the tasks would wait for ever."""
     client = node.create_client(AddTwoInts, "add")
     waiting = asyncio.get_running_loop().create_task(client.wait_for_service())
     await settle()
@@ -464,10 +464,10 @@ async def test_a_server_that_goes_away_ends_the_call_at_once(
     assert sorted(gate.cancelled) == sorted(gate.began)
 
 
-async def test_who_is_prepared_for_silence_is_prepared_for_a_server_that_goes_away(
+async def test_code_that_handles_a_timeout_handles_a_server_that_goes_away(
     context: Context, node: Node
 ) -> None:
-    """Callers of ROS wait with a limit, as no reply would come there, and catch its end."""
+    """In ROS 2 such a call just times out, and its callers catch the TimeoutError."""
     client = node.create_client(AddTwoInts, "/add")
     async with Node("server", context=context) as server:
         service = server.create_service(AddTwoInts, "/add", Gate())
@@ -481,7 +481,7 @@ async def test_who_is_prepared_for_silence_is_prepared_for_a_server_that_goes_aw
 async def test_with_one_of_two_servers_gone_the_other_still_answers(
     context: Context, node: Node
 ) -> None:
-    """The call fails only when nobody is left."""
+    """The call fails only when no server is left."""
     gate = Gate()
     node.create_service(AddTwoInts, "/add", gate)
     client = node.create_client(AddTwoInts, "/add")
@@ -530,7 +530,7 @@ async def test_nothing_is_left_of_calls_that_ended(node: Node) -> None:
 async def test_too_many_waiting_requests_are_refused_with_an_error(
     node: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Bounded, and nobody waits for an answer that cannot come."""
+    """The queue is bounded, and no client waits for an answer that cannot come."""
     monkeypatch.setattr("aionode.endpoints.service.WAITING_REQUESTS", 2)
     gate = Gate()
     node.create_service(AddTwoInts, "add", gate)

@@ -180,7 +180,7 @@ async def test_read_only_arrays_travel_without_a_copy(node: Node) -> None:
 
 
 async def test_what_a_raw_subscription_received_can_be_published(node: Node) -> None:
-    """A relay needs not know what is in a message, nor which classes there are."""
+    """A relay need not know the content of a message, or its class."""
     raw = node.create_subscription(String, "in", raw=True)
     reader = node.create_subscription(String, "out")
     relay = node.create_publisher(String, "out", 10)
@@ -242,7 +242,7 @@ async def test_a_depth_of_zero_means_42(node: Node) -> None:
 async def test_keep_all_refuses_to_publish_when_a_reliable_reader_is_full(
     node: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Nothing is lost, and nobody gets what others could not."""
+    """Nothing is lost, and no reader gets a message that another could not take."""
     monkeypatch.setattr("aionode.endpoints.subscription.KEEP_ALL_DEPTH", 2)
     full = node.create_subscription(String, "words", qos_profile=KEEP_ALL)
     other = node.create_subscription(String, "words", qos_profile=10)
@@ -290,7 +290,7 @@ async def test_drain_waits_for_room(node: Node, monkeypatch: pytest.MonkeyPatch)
 async def test_drain_ends_when_the_full_reader_goes(
     node: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """There is nobody to wait for any more."""
+    """No reader is left to wait for."""
     monkeypatch.setattr("aionode.endpoints.subscription.KEEP_ALL_DEPTH", 1)
     reader = node.create_subscription(String, "words", qos_profile=KEEP_ALL)
     publisher = node.create_publisher(String, "words", KEEP_ALL)
@@ -342,7 +342,7 @@ async def test_a_late_volatile_reader_gets_nothing_old(node: Node) -> None:
 # Matching
 
 
-async def test_incompatible_profiles_do_not_talk_and_it_is_said_once(
+async def test_incompatible_profiles_do_not_match_and_are_reported_once(
     node: Node, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """Silence is what users of ROS 2 complain about most."""
@@ -383,7 +383,7 @@ async def test_wait_for_subscribers_is_woken_by_the_subscription(node: Node) -> 
     assert publisher.get_subscription_count() == 2
 
 
-async def test_destroying_a_publisher_cancels_whoever_waits_for_its_subscribers(
+async def test_destroying_a_publisher_cancels_waits_for_its_subscribers(
     node: Node,
 ) -> None:
     """They would wait for ever."""
@@ -407,7 +407,7 @@ async def test_publishing_another_type_is_an_error(node: Node) -> None:
 
 @pytest.mark.parametrize("listened", [True, False])
 async def test_a_value_that_does_not_fit_is_an_error(node: Node, *, listened: bool) -> None:
-    """Whether anybody listens or not, and nobody gets anything."""
+    """With and without a subscription, and none receives anything."""
     reader = node.create_subscription(Int8, "numbers") if listened else None
     publisher = node.create_publisher(Int8, "numbers", 10)
     with pytest.raises(MessageError, match=r"std_msgs/msg/Int8\.data"):
@@ -422,7 +422,7 @@ async def test_publishing_on_a_destroyed_publisher_is_an_error(node: Node) -> No
     """A RuntimeError, as in rclpy."""
     publisher = node.create_publisher(String, "words", 10)
     publisher.destroy()
-    with pytest.raises(RuntimeError, match="publisher of /words: destroyed"):
+    with pytest.raises(RuntimeError, match="publisher of /words is destroyed"):
         publisher.publish(String())
 
 
@@ -430,8 +430,8 @@ async def test_publishing_on_a_destroyed_publisher_is_an_error(node: Node) -> No
     ("arguments", "error", "text"),
     [
         ((String, "bad topic", print), InvalidTopicNameException, "must not contain characters"),
-        ((str, "words", print), TypeError, "<class 'str'> is no message class"),
-        ((AddTwoInts, "words", print), TypeError, "is no message class"),
+        ((str, "words", print), TypeError, "<class 'str'> is not a message class"),
+        ((AddTwoInts, "words", print), TypeError, "is not a message class"),
         ((String, "words", "print"), TypeError, "'print' cannot be called"),
         ((String, "words", lambda: None), CallbackSignatureError, "must take (message) or"),
         ((String, "words", lambda a, b, c: None), RuntimeError, "must take (message) or"),
@@ -471,7 +471,7 @@ async def test_an_impossible_option_is_refused(
 
 
 def faulty_node(**faults: Any) -> Node:
-    """Return a node whose messages suffer."""
+    """Return a node whose messages are lost, delayed or doubled."""
     context = Context(transport=FaultyTransport(LocalTransport(), **faults))
     return Node("node", context=context)
 
@@ -490,7 +490,7 @@ async def test_lost_messages_are_counted() -> None:
 
 
 async def test_a_delayed_message_is_what_was_published(manual_clock: Any) -> None:
-    """Not what its publisher made of it since."""
+    """And not what its publisher has changed since."""
     node = faulty_node(delay=1.0, clock=manual_clock)
     reader = node.create_subscription(Int32, "numbers")
     msg = Int32(data=1)
@@ -500,14 +500,14 @@ async def test_a_delayed_message_is_what_was_published(manual_clock: Any) -> Non
     assert (await reader.receive()).data == 1
 
 
-async def test_the_statistics_name_each_subscription_and_its_way(node: Node) -> None:
+async def test_the_statistics_name_each_subscription_and_its_route(node: Node) -> None:
     """Two of one node are told apart; what does not match gets nothing, and is not named."""
     publisher = node.create_publisher(String, "words", 10)
     readers = [node.create_subscription(String, "words") for _ in range(2)]
     node.create_subscription(Int8, "words")
 
     assert publisher.stats.routes == {
-        f"/node {reader.endpoint.gid.hex()[:8]}": "local" for reader in readers
+        f"/node {reader._reader.endpoint.gid.hex()[:8]}": "local" for reader in readers
     }
     readers[0].destroy()
     (name,) = publisher.stats.routes
@@ -519,8 +519,8 @@ async def test_the_statistics_name_each_subscription_and_its_way(node: Node) -> 
     assert publisher.stats.routes == {}
 
 
-async def test_a_faulty_transport_tells_the_way_of_the_one_within() -> None:
-    """What is lost by fate is not counted as dropped: who sends does not know."""
+async def test_a_faulty_transport_has_the_routes_of_the_one_that_it_wraps() -> None:
+    """Simulated loss is not counted as dropped: a sender does not learn of it."""
     context = Context(transport=FaultyTransport(LocalTransport(), drop=1.0))
     async with Node("node", context=context) as node:
         node.create_subscription(String, "words")
@@ -558,7 +558,7 @@ def test_an_impossible_fault_is_refused() -> None:
 async def test_reprs_tell_topic_type_profile_and_counts(
     node: Node, node_factory: Callable[..., Node]
 ) -> None:
-    """What one prints first when nothing arrives."""
+    """The first thing to print when nothing arrives."""
     node_factory("other")
     publisher = node.create_publisher(String, "words", 10)
     subscription = node.create_subscription(String, "words", lambda msg: None)

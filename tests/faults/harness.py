@@ -303,7 +303,9 @@ class Stage:
         """Send no more, and wait until all that is under way has arrived, or nothing moves."""
         for child in self.children.values():
             child.hush()
-        ends_s = time.monotonic() + QUIET_LIMIT_S
+        # A backlog that takes long to be over takes as long again to arrive, and then some.
+        limit_s = max(QUIET_LIMIT_S, 1.5 * self.case.recovery_limit_s)
+        ends_s = time.monotonic() + limit_s
         await asyncio.sleep(0.3)
         before = None
         while time.monotonic() < ends_s:

@@ -127,7 +127,7 @@ def test_the_same_definition_twice_is_no_conflict(tmp_path: Path) -> None:
 
 
 def test_two_different_definitions_of_a_type_are_an_error(tmp_path: Path) -> None:
-    """Which one is meant, nobody can know."""
+    """It is impossible to know which one is meant."""
     write(tmp_path, a__my_msgs__msg__A_msg="int8 x", b__my_msgs__msg__A_msg="int16 x")
 
     with pytest.raises(IdlError, match="my_msgs/msg/A is defined differently in"):
@@ -140,13 +140,13 @@ def test_two_different_definitions_of_a_type_are_an_error(tmp_path: Path) -> Non
         ("int8 x\nNope y\n", ":2:1: ", "no message type 'Nope' here or in aionode.interfaces"),
         ("std_msgs/Strin x", ":1:1: ", "did you mean std_msgs/msg/String?"),
         ("Header header", ":1:1: ", "did you mean std_msgs/Header?"),
-        ("A a", ":1:1: ", "my_msgs/msg/A uses my_msgs/msg/A: it would never end"),
+        ("A a", ":1:1: ", "my_msgs/msg/A uses my_msgs/msg/A: a message cannot contain itself"),
         (
             "B b",
             ":1:1: ",
-            "my_msgs/msg/A uses my_msgs/msg/B uses my_msgs/msg/A: it would never end",
+            "my_msgs/msg/A uses my_msgs/msg/B uses my_msgs/msg/A: a message cannot contain itself",
         ),
-        ("int9 x", ":1:1: ", "'int9' is no type"),
+        ("int9 x", ":1:1: ", "'int9' is not a type"),
     ],
 )
 def test_an_error_names_the_file(tmp_path: Path, text: str, place: str, problem: str) -> None:
@@ -162,9 +162,9 @@ def test_an_error_names_the_file(tmp_path: Path, text: str, place: str, problem:
 
 def test_bad_names_of_files_are_errors(tmp_path: Path) -> None:
     """They become names of classes and packages."""
-    with pytest.raises(IdlError, match="'lower' is no type name"):
+    with pytest.raises(IdlError, match="'lower' is not a valid type name"):
         load_interfaces(write(tmp_path / "a", my_msgs__msg__lower_msg=""))
-    with pytest.raises(IdlError, match="'My-msgs' is no package name"):
+    with pytest.raises(IdlError, match="'My-msgs' is not a valid package name"):
         load_interfaces(write(tmp_path / "b", **{"My-msgs__msg__A_msg": ""}))
 
 
@@ -185,7 +185,7 @@ def test_a_folder_that_is_not_there_is_an_error(tmp_path: Path) -> None:
 
 def test_a_package_that_was_not_loaded_is_an_attribute_error(workspace: Path) -> None:
     """With the packages there are."""
-    with pytest.raises(AttributeError, match="there are loaded_one, loaded_two"):
+    with pytest.raises(AttributeError, match="loaded packages: loaded_one, loaded_two"):
         load_interfaces(workspace).nope  # noqa: B018 (the access is the test)
 
 
@@ -203,5 +203,5 @@ def test_a_definition_can_be_given_as_text() -> None:
     assert definition_text(service) == "Words w\n---\n"
     with pytest.raises(InterfaceNotFoundError):
         get_interface("tutorial/msg/Words")
-    with pytest.raises(TypeError, match="not the name of a ROS type"):
+    with pytest.raises(TypeError, match="not a valid ROS type name"):
         define("Words", "string text")

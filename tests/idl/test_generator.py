@@ -171,7 +171,7 @@ def test_nothing_is_written_if_a_definition_is_wrong(packages: Path, out: Path) 
 
 @pytest.mark.skipif(not SOURCE.is_dir(), reason="ROS 2's definitions are not beside the repository")
 def test_the_shipped_modules_are_what_the_generator_writes(tmp_path: Path) -> None:
-    """Nobody edits them by hand, except for docstrings."""
+    """They are not edited by hand, except for docstrings."""
     copy = tmp_path / "aionode" / "interfaces"
     shipped = ROOT / "aionode" / "interfaces"
     shutil.copytree(shipped, copy, ignore=shutil.ignore_patterns("__pycache__"))

@@ -30,20 +30,20 @@ class Step(LifecycleNode):
         return SUCCESS
 
     def on_configure(self, state: State) -> TransitionCallbackReturn:
-        """Note it."""
+        """Record it."""
         return self.note("configure")
 
     def on_activate(self, state: State) -> TransitionCallbackReturn:
-        """Note it, and fail if the test wants that."""
+        """Record it, and fail if the test wants that."""
         self.note("activate")
         return SUCCESS if self.activates else FAILURE
 
     def on_deactivate(self, state: State) -> TransitionCallbackReturn:
-        """Note it."""
+        """Record it."""
         return self.note("deactivate")
 
     def on_cleanup(self, state: State) -> TransitionCallbackReturn:
-        """Note it."""
+        """Record it."""
         return self.note("cleanup")
 
 

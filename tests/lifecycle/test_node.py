@@ -34,7 +34,7 @@ class Managed(LifecycleNode):
         self.error: Exception | None = None
 
     async def do(self, name: str, state: State, otherwise: Any) -> TransitionCallbackReturn:
-        """Note the call, and do what the test wants."""
+        """Record the call, and do what the test wants."""
         self.calls.append((name, state.label))
         outcome = self.outcomes.get(name, otherwise)
         if isinstance(outcome, Exception):

@@ -214,7 +214,7 @@ def test_a_buffered_stream_is_written_out_line_by_line() -> None:
 
 
 def test_a_closed_stream_does_not_fail_the_caller(monkeypatch: pytest.MonkeyPatch) -> None:
-    """At the end of a process, or behind `| head`, there may be nobody to write to."""
+    """At the exit of a process, or before `| head`, the stream may have no reader."""
     stream = io.StringIO()
     monkeypatch.setattr(sys, "stderr", stream)
     monkeypatch.setattr(standard, "raiseExceptions", False)
@@ -282,7 +282,7 @@ def test_a_severity_is_found_by_name(word: str) -> None:
 @pytest.mark.parametrize("kind", [RuntimeError, ValueError, AionodeError])
 def test_an_unknown_severity_says_which_there_are(kind: type[Exception]) -> None:
     """rclpy raises RuntimeError."""  # noqa: D403
-    with pytest.raises(kind, match="'loud' is unknown; it may be UNSET, DEBUG, INFO, WARN"):
+    with pytest.raises(kind, match=r"'loud'; valid levels are UNSET, DEBUG, INFO, WARN"):
         logging.get_logging_severity_from_string("loud")
 
 
@@ -541,7 +541,7 @@ def test_an_application_that_configures_logging_keeps_its_own_format() -> None:
 
 @pytest.mark.parametrize("before", [True, False])
 def test_a_line_comes_once_after_basic_config(before: bool) -> None:
-    """The application's handler writes it, in its own format, whoever was there first."""
+    """The application's handler writes it, in its own format, whichever was installed first."""
     config = "logging.basicConfig(format='mine: %(message)s')\n"
     first = "aionode.logging.get_logger('talker').info('first')\n"
     log = "aionode.logging.get_logger('talker').info('m')\n"
@@ -554,7 +554,7 @@ def test_a_line_comes_once_after_basic_config(before: bool) -> None:
     "handler", ["logging.FileHandler('/dev/null')", "logging.NullHandler()", "high"]
 )
 def test_a_handler_that_shows_nothing_leaves_the_console_to_this_package(handler: str) -> None:
-    """Whoever logs to a file, or only errors, still sees what nodes say."""
+    """A handler for a file, or for errors only, does not hide what nodes log."""
     make = "logging.StreamHandler(); h.setLevel(40)" if handler == "high" else handler
     err = run_alone(
         f"h = {make}\nlogging.getLogger().addHandler(h)\n"

@@ -117,7 +117,7 @@ def test_arrays_are_taken_as_they_are() -> None:
 
 
 def test_the_arrays_of_a_new_message_can_be_changed() -> None:
-    """It belongs to whoever made it."""
+    """It belongs to its owner alone."""
     message = from_builtins(JointState, {"position": [1, 2]})
     message.position[0] = 5
 
@@ -138,7 +138,7 @@ def test_the_arrays_of_a_new_message_can_be_changed() -> None:
         (
             Empty,
             "x: 1",
-            "std_msgs/msg/Empty.x: no such field; std_msgs/msg/Empty has none",
+            "std_msgs/msg/Empty.x: no such field; std_msgs/msg/Empty has no fields",
         ),
         (
             Twist,
@@ -201,7 +201,7 @@ def test_a_misfit_names_its_path(cls: type[Message], text: str, error: str) -> N
 
 @pytest.mark.parametrize("text", ["{", "[1", "{data: 'x}", b"\xff"])
 def test_text_that_cannot_be_read_is_a_message_error(text: str | bytes) -> None:
-    """Whoever typed it gets one line, no traceback."""
+    """The user who typed it gets one line, no traceback."""
     for read in (from_json, from_yaml):
         with pytest.raises(MessageError, match="std_msgs/msg/String"):
             read(String, text)

@@ -99,7 +99,7 @@ def test_what_means_the_same_is_taken_in_one_form(message: Message, value: objec
         (String(data=b"hi"), "std_msgs/msg/String.data: b'hi' (bytes), needs a str"),
         (
             String(data="a\ud800"),
-            "std_msgs/msg/String.data: half a surrogate pair at index 1, which UTF-8 cannot hold",
+            "std_msgs/msg/String.data: half a surrogate pair at index 1, which UTF-8 cannot encode",
         ),
         (
             Byte(data=5),
@@ -194,10 +194,7 @@ def test_what_means_the_same_is_taken_in_one_form(message: Message, value: objec
         (Image(data=[1, 256]), "sensor_msgs/msg/Image.data[1]: 256, uint8 holds 0 to 255"),
         (
             Image(data=np.zeros((2, 2), np.uint8)),
-            (
-                "sensor_msgs/msg/Image.data: 2 dimensions, needs 1; .reshape(-1) or .tobytes() "
-                "give that"
-            ),
+            ("sensor_msgs/msg/Image.data: 2 dimensions, needs 1; use .reshape(-1) or .tobytes()"),
         ),
         (
             Image(data=np.zeros(2)),
@@ -255,7 +252,7 @@ def test_float_arrays_take_ints_and_keep_nan_and_infinity() -> None:
 
 
 def test_an_empty_array_of_any_dtype_fits() -> None:
-    """`np.array([])` is of float64, and nobody means that."""
+    """`np.array([])` is of float64, which is never intended."""
     assert snapshot(Int32MultiArray(data=np.array([]))).data.dtype == np.int32
     assert snapshot(Image(data=np.array([]))).data == b""
 

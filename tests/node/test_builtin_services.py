@@ -300,7 +300,7 @@ async def test_simulated_time_follows_the_clock_topic(context: Context, node: No
 
 
 async def test_simulated_time_can_be_switched_on_and_off(node: Node) -> None:
-    """Whoever sleeps is told that the seconds are others now."""
+    """Pending sleeps are told that the source of time has changed."""
     sleeping = asyncio.get_running_loop().create_task(node.get_clock().sleep(999))
     await settle()
     node.set_parameters([Parameter("use_sim_time", value=True)])
@@ -330,7 +330,7 @@ async def test_a_clock_message_that_holds_no_time_is_counted(
     wrong: TimeMsg,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """Anybody may publish on /clock; a node that follows it must not end for that."""
+    """Any node can publish on /clock; an invalid message must not end the nodes that follow it."""
     sim = node_factory("sim", parameter_overrides=[Parameter("use_sim_time", value=True)])
     source = node.create_publisher(ClockMsg, "/clock", QoSProfile(depth=10))
     for clock in (TimeMsg(sec=1), wrong, wrong, TimeMsg(sec=2)):
@@ -341,7 +341,7 @@ async def test_a_clock_message_that_holds_no_time_is_counted(
     assert sim.get_clock().now() == Time(seconds=2, clock_type=ClockType.ROS_TIME)
     (subscription,) = sim.subscriptions
     assert subscription.stats.errors == 2
-    assert capsys.readouterr().err.count("/clock: a message holds no time") == 1
+    assert capsys.readouterr().err.count("/clock: ignored an invalid time") == 1
 
 
 NAMES = st.sampled_from(["speed", "limit", "", "a b", "use_sim_time", "qos_overrides./x.y"])
@@ -391,7 +391,7 @@ SERVICES: dict[Any, str] = {
 @hypothesis.settings(max_examples=150, deadline=None)
 @hypothesis.given(requests=st.lists(REQUESTS, min_size=1, max_size=5), undeclared=st.booleans())
 def test_no_request_of_a_peer_ends_a_node(requests: list[Any], *, undeclared: bool) -> None:
-    """Whatever a program of somebody else asks, the node's own services answer it."""
+    """The built-in services answer any request of another program."""
 
     async def ask() -> None:
         async with (

@@ -76,7 +76,7 @@ async def test_a_callback_can_publish_in_finally(context: Context, node: Node, k
             node.create_publisher(Float64, "go", 10).publish(Float64())
         elif kind == "service":
             robot.create_service(AddTwoInts, "go", drive)
-            node.create_client(AddTwoInts, "go").begin(AddTwoInts.Request())
+            node.create_client(AddTwoInts, "go")._begin(AddTwoInts.Request())
         else:
             accept = CancelResponse.ACCEPT
             robot.create_action_server(Fibonacci, "go", drive, cancel_callback=lambda _goal: accept)
@@ -231,7 +231,7 @@ async def test_callbacks_that_do_not_end_are_named_and_given_up(
     async with asyncio.timeout(10), Node("robot", context=context) as robot:
         robot.create_timer(1e-3, stubborn)
         async with asyncio.timeout(10):
-            while not robot.callbacks.waiting:
+            while not robot._callbacks.waiting:
                 await checkpoint()
 
     err = capsys.readouterr().err

@@ -123,7 +123,7 @@ def test_a_context_serves_one_loop_after_the_other() -> None:
 async def test_a_node_that_runs_cannot_be_run_again(node: Node) -> None:
     """Two owners of one lifetime would both end it."""
     await settle()
-    with pytest.raises(RuntimeError, match="/node runs already"):
+    with pytest.raises(RuntimeError, match="/node is already running"):
         await node.run()
 
 
@@ -131,7 +131,7 @@ async def test_a_destroyed_node_cannot_run(context: Context) -> None:
     """Its entities are gone."""
     node = Node("node", context=context)
     node.destroy_node()
-    with pytest.raises(EntityDestroyedError, match="cannot be run any more"):
+    with pytest.raises(EntityDestroyedError, match="cannot run: node /node is destroyed"):
         await node.run()
 
 
@@ -159,7 +159,7 @@ def test_a_destroyed_node_refuses_new_entities(create: Callable[[Node], object])
     """The mistake is reported where it is made, not when nothing ever arrives."""
     node = Node("node", context=local_context())
     node.destroy_node()
-    with pytest.raises(RuntimeError, match="/node: destroyed, and cannot be given a"):
+    with pytest.raises(RuntimeError, match=r"cannot create [a-z]+: node /node is destroyed"):
         create(node)
 
 
@@ -197,7 +197,7 @@ async def test_cancelling_run_destroys_the_node(context: Context) -> None:
 
 
 async def test_the_clock_of_a_destroyed_node_is_destroyed(node: Node) -> None:
-    """Whoever sleeps on it is woken by cancellation."""
+    """Pending sleeps on it are cancelled."""
     clock = node.get_clock()
     node.destroy_node()
     await settle()  # callbacks that clean up may sleep
@@ -439,3 +439,22 @@ def test_numpy_is_there_before_a_callback_needs_it(module: str, *, loaded: bool)
         f"assert ('numpy' in sys.modules) is {loaded}\n"
     )
     subprocess.run([sys.executable, "-c", program], check=True)  # the text is here
+
+
+def test_a_node_whose_own_constructor_fails_leaves_its_context() -> None:
+    """A supervisor makes the next one: the failed ones must not pile up in the graph."""
+
+    class Robot(Node):
+        def __init__(self, context: Context) -> None:
+            super().__init__("robot", context=context)
+            self.create_publisher(String, "/chatter", 10)
+            raise OSError("no motor")
+
+    context = local_context()
+
+    with pytest.raises(OSError, match="no motor"):
+        Robot(context)
+
+    assert context.graph.nodes() == []
+    assert context.graph.endpoints() == []
+    assert repr(context).endswith("nodes=0>")

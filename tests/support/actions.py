@@ -32,12 +32,14 @@ class Worker:
 
     def __init__(self) -> None:
         self.begun: asyncio.Queue[Goal] = asyncio.Queue()
+        self.has_begun = asyncio.Event()
         self.may_end = asyncio.Event()
         self.cancelled: list[Goal] = []
 
     async def __call__(self, goal: Goal) -> Fibonacci.Result:
         """Wait for `may_end`, then succeed with the sequence 0 … order."""
         self.begun.put_nowait(goal)
+        self.has_begun.set()
         try:
             await self.may_end.wait()
         except asyncio.CancelledError:

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.transport._reliability import RETURN_NS, ReaderProxy, WriterHistory, WriterProxy
+from aionode.transport._reliability import FLAPPING_NS, RETURN_NS, ReaderProxy, WriterHistory
+from aionode.transport._writer_proxy import WriterProxy
 
 WRITER = b"w" * 16
 
@@ -62,7 +63,7 @@ class Wire:
         assert extra == b""
         for name in self.names:
             reader = self.history.readers.get(name)
-            if reader is not None and not reader.away_ns:
+            if reader is not None and not reader.away_until_ns:
                 self.topic[name].append((int.from_bytes(payload, "big"), payload))
 
     def resend(self, reader: ReaderProxy, entry: Any) -> None:
@@ -113,8 +114,9 @@ class Wire:
             proxy = self.proxies.get(name)
             if not lose and proxy is not None:
                 free = self.room[name] and not self.full[name]
-                if free and proxy.takes_at_once(number, len(payload)):
+                if free and number == proxy.expected:
                     self.heard[name].append(number)
+                    proxy.note_in_order(len(payload))
                 else:
                     proxy.take(number, number, len(payload))
 
@@ -337,3 +339,45 @@ def test_a_heavy_loss_is_made_good_without_sending_much_twice() -> None:
     wire.settle()
     assert wire.heard[name] == list(range(1, 5_001))
     assert resent < 3_000
+
+
+def test_a_reader_that_vanishes_again_soon_after_its_return_misses_nothing() -> None:
+    """Connections are cut and made anew for a while after a process was frozen."""
+    wire = Wire(1, keep_all=True, depth=1000)
+    (name,) = wire.names
+    wire.settle()
+    wire.publish()
+    wire.clock.ns += 10_000_000_000
+    wire.history.remove(name)
+    wire.topic[name].clear()
+    wire.publish()
+    for is_heard in (False, True):
+        wire.history.add(name, "")
+        if is_heard:
+            wire.settle()
+        wire.clock.ns += 1_000_000_000
+        wire.history.remove(name)
+        wire.topic[name].clear()
+        wire.publish()
+    wire.history.add(name, "")
+    wire.settle()
+    assert wire.heard[name] == [1, 2, 3, 4]
+    assert wire.lost_count == 0
+
+
+def test_a_reader_that_ends_soon_after_its_return_holds_nothing_up_for_long() -> None:
+    """It is not waited for as long as one that was silent before it vanished."""
+    wire = Wire(1, keep_all=True, depth=1000)
+    (name,) = wire.names
+    wire.settle()
+    wire.publish()
+    wire.clock.ns += 10_000_000_000
+    wire.history.remove(name)
+    wire.history.add(name, "")
+    wire.settle()
+    wire.history.remove(name)
+    wire.publish()
+    assert not wire.history.done
+    wire.clock.ns += FLAPPING_NS
+    wire.history.tick()
+    assert wire.history.done

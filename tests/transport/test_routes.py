@@ -14,8 +14,8 @@ from aionode.transport.zenoh._transport import ZenohTransport
 from tests.support.links import (
     Counting,
     folder,
-    manager_of,
     link_of,
+    manager_of,
     transport_of,
     two_nodes,
     writer_of,
@@ -32,8 +32,8 @@ async def test_a_subscription_of_another_context_is_reached_by_zenoh() -> None:
         publisher = nodes.a.create_publisher(Int32, "n", 10)
         await publisher.wait_for_subscribers(2)
         assert publisher.stats.routes == {
-            f"/a {readers[0].endpoint.gid.hex()[:8]}": "local",
-            f"/b {readers[1].endpoint.gid.hex()[:8]}": "zenoh",
+            f"/a {readers[0]._reader.endpoint.gid.hex()[:8]}": "local",
+            f"/b {readers[1]._reader.endpoint.gid.hex()[:8]}": "zenoh",
         }
 
 

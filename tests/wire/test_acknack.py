@@ -5,15 +5,15 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.wire._acknack import MAX_RANGES, Kind, Submessage, pack, pack_ranges, unpack
+from aionode.wire._acknack import MAX_RANGES, Submessage, SubmessageKind, pack, pack_ranges, unpack
 
 NUMBERS = st.integers(-(2**63), 2**63 - 1)
 GIDS = st.binary(min_size=16, max_size=16)
 
 
-@given(st.sampled_from(Kind), GIDS, GIDS, NUMBERS, NUMBERS, st.binary())
+@given(st.sampled_from(SubmessageKind), GIDS, GIDS, NUMBERS, NUMBERS, st.binary())
 def test_what_was_packed_is_unpacked(
-    kind: Kind, writer: bytes, reader: bytes, first: int, last: int, rest: bytes
+    kind: SubmessageKind, writer: bytes, reader: bytes, first: int, last: int, rest: bytes
 ) -> None:
     """Every kind, with whatever goes with it."""
     data = pack(kind, writer, reader, first, last, rest)
@@ -22,7 +22,7 @@ def test_what_was_packed_is_unpacked(
 
 @given(st.binary(max_size=120))
 def test_anything_else_is_none(data: bytes) -> None:
-    """Anybody may put anything on a key."""
+    """Any program may publish anything on a key."""
     said = unpack(data)
     assert said is None or pack(*said)[4:] == data[4:]
 
@@ -30,7 +30,7 @@ def test_anything_else_is_none(data: bytes) -> None:
 @given(st.lists(st.tuples(NUMBERS, NUMBERS), max_size=2 * MAX_RANGES))
 def test_an_acknack_names_so_many_ranges_at_most(ranges: list[tuple[int, int]]) -> None:
     """More are named the next time."""
-    said = unpack(pack(Kind.ACKNACK, bytes(16), bytes(16), 1, 0, pack_ranges(ranges)))
+    said = unpack(pack(SubmessageKind.ACKNACK, bytes(16), bytes(16), 1, 0, pack_ranges(ranges)))
     assert said is not None
     assert said.ranges() == ranges[:MAX_RANGES]
 
@@ -38,7 +38,7 @@ def test_an_acknack_names_so_many_ranges_at_most(ranges: list[tuple[int, int]]) 
 def test_ranges_that_were_cut_are_left_out() -> None:
     """Half a range says nothing."""
     said = unpack(
-        pack(Kind.ACKNACK, bytes(16), bytes(16), 1, 0, pack_ranges([(1, 2), (5, 6)])[:-1])
+        pack(SubmessageKind.ACKNACK, bytes(16), bytes(16), 1, 0, pack_ranges([(1, 2), (5, 6)])[:-1])
     )
     assert said is not None
     assert said.ranges() == [(1, 2)]

@@ -25,7 +25,7 @@ def test_the_bytes_are_those_of_rmw_zenoh() -> None:
 
 
 def test_the_form_of_the_first_jazzy_releases_is_read() -> None:
-    """They name each field; nobody writes that any more."""
+    """They write the name of each field; later releases do not."""
     legacy = bytes.fromhex(GOLDEN["legacy_jazzy_0.2.0_to_0.2.3"])
 
     assert attachment.unpack(legacy) == VALUES
@@ -48,7 +48,7 @@ def test_any_bytes_unpack_or_are_none(data: bytes) -> None:
 
 @given(st.integers(0, 32))
 def test_a_truncated_one_is_none(size: int) -> None:
-    """Half a gid names nobody."""
+    """Half a gid identifies no endpoint."""
     assert attachment.unpack(bytes.fromhex(GOLDEN["bytes"])[:size]) is None
 
 

@@ -80,7 +80,7 @@ def test_parsing_undoes_writing(domain: int, name: str, type_name: str, type_has
 
 @given(st.text(alphabet="0aé²_/:*%#-d ", max_size=40))
 def test_any_text_parses_or_is_none(key: str) -> None:
-    """Anybody may publish on any key: reading one never raises."""
+    """Any program may publish on any key: parsing one never raises."""
     parsed = key_expression.parse_data_key(key)
 
     assert parsed is None or parsed.name.startswith("/")

@@ -89,7 +89,7 @@ def test_tokens_are_those_of_rmw_zenoh(golden: dict[str, str]) -> None:
 
 @pytest.mark.parametrize("golden", TOKENS, ids=lambda golden: golden["key"][-24:])
 def test_gids_are_those_of_rmw_zenoh(golden: dict[str, str]) -> None:
-    """Everybody makes the same id of a token: in attachments and in `ros2 topic info -v`."""
+    """All systems derive the same id from a token, as shown by `ros2 topic info -v`."""
     assert liveliness.gid_of(golden["key"]).hex() == golden["gid"]
 
 
@@ -158,7 +158,7 @@ def test_reading_an_endpoint_undoes_writing(
 
 @given(st.lists(st.text(alphabet="0aNMPSé²%:,_ ", max_size=12), max_size=15))
 def test_any_token_is_read_or_none(chunks: list[str]) -> None:
-    """Anybody may declare anything: reading it never raises."""
+    """Any program may declare any token: parsing it never raises."""
     liveliness.parse_token("/".join([liveliness.PREFIX, *chunks]))
 
 

@@ -1,1 +1,1 @@
-"""One module for each noun: its commands, arguments and options."""
+"""One module for each noun: its commands, with their arguments and options."""

@@ -6,7 +6,9 @@ from typing import Any
 
 import click
 
-from aionode.cli._commands.completion import complete_interfaces, complete_names, complete_types_of
+from aionode.cli._commands.completion import complete_names, complete_types_of
+from aionode.cli._commands.typed_names import add_type_and_find
+from aionode.cli._support.nouns import ACTION
 from aionode.cli._support.options import (
     interfaces_option,
     json_option,
@@ -15,21 +17,17 @@ from aionode.cli._support.options import (
     stdin_text,
 )
 from aionode.cli._support.session import run_verb
-from aionode.cli._verbs.action import find, info, list_actions, send_goal, type_of_action
+from aionode.cli._verbs.action import info, send_goal
 
 __all__ = ["action"]
-
-# Commands
 
 
 @click.group()
 def action() -> None:
-    """Send goals, and see who serves which action."""
+    """Send goals; list and inspect actions."""
 
 
 action_argument = click.argument("action_name", shell_complete=complete_names("action"))
-
-type_argument = click.argument("action_type", shell_complete=complete_interfaces("action"))
 
 
 @action.command("list")
@@ -38,9 +36,10 @@ type_argument = click.argument("action_type", shell_complete=complete_interfaces
 @json_option
 @ros2_options
 def list_command(json: bool, types: bool, count: bool) -> None:
-    """List the actions that somebody serves or uses."""
+    """List the actions that have a server or a client."""
     run_verb(
-        lambda node, output: list_actions(node, types=types, count=count, output=output), json=json
+        lambda node, output: ACTION.list_names(node, types=types, count=count, output=output),
+        json=json,
     )
 
 
@@ -51,27 +50,11 @@ def list_command(json: bool, types: bool, count: bool) -> None:
 @json_option
 @ros2_options
 def info_command(json: bool, **options: Any) -> None:
-    """Print the nodes that use and serve an action."""
+    """Print the clients and servers of an action."""
     run_verb(lambda node, output: info(node, output=output, **options), json=json)
 
 
-@action.command("type")
-@action_argument
-@json_option
-@ros2_options
-def type_command(action_name: str, json: bool) -> None:
-    """Print the type of an action."""
-    run_verb(lambda node, output: type_of_action(node, action_name, output=output), json=json)
-
-
-@action.command("find")
-@type_argument
-@click.option("-c", "--count-actions", "count", is_flag=True, help="Print only how many there are.")
-@json_option
-@ros2_options
-def find_command(action_type: str, json: bool, count: bool) -> None:
-    """List the actions of one type."""
-    run_verb(lambda node, output: find(node, action_type, count=count, output=output), json=json)
+add_type_and_find(action, ACTION, "action")
 
 
 @action.command("send_goal")
@@ -80,14 +63,14 @@ def find_command(action_type: str, json: bool, count: bool) -> None:
 @click.argument("values", metavar="[GOAL]", required=False)
 @click.option("--stdin", is_flag=True, help="Read the goal from standard input.")
 @click.option("-f", "--feedback", is_flag=True, help="Print the feedback.")
-@click.option("--timeout", metavar="N", type=positive, help="Wait for a server for N seconds.")
+@click.option("--timeout", metavar="N", type=positive, help="Wait at most N seconds for a server.")
 @json_option
 @interfaces_option
 @ros2_options
 def send_goal_command(json: bool, values: str | None, stdin: bool, **options: Any) -> None:
-    """Send a goal in YAML, such as '{order: 10}', and print how it ends.
+    """Send a goal in YAML, such as '{order: 10}', and print its result.
 
-    Ctrl-C cancels the goal. The exit status is 0 if it succeeded.
+    Ctrl-C cancels the goal. The exit status is 0 if the goal succeeded.
     """
     text = stdin_text(values, stdin)
     run_verb(lambda node, output: send_goal(node, values=text, output=output, **options), json=json)

@@ -1,4 +1,4 @@
-"""Completion: the script of a shell, and the names that it completes."""
+"""Shell completion: the scripts, and the names that are offered."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from aionode.errors import AionodeError
-from aionode.graph import TOPIC_KINDS
 
 if TYPE_CHECKING:
     from aionode.node import Node
@@ -25,10 +24,10 @@ __all__ = [
 Completer = Callable[[click.Context, click.Parameter, str], list[str]]
 
 QUIET_S = 0.3
-"""How long nothing has to come before what is known is offered: somebody waits at a prompt."""
+"""How long discovery has to be quiet before names are offered, in seconds; a person is waiting."""
 
 ANSWER_S = 1.0
-"""How long a node may take to say which parameters it has; it takes milliseconds."""
+"""Timeout for a node's list of parameters, in seconds; normally it takes milliseconds."""
 
 SETUP = """\
 # Put the following into {file}:
@@ -46,7 +45,7 @@ _aionode_completion() {
             file) COMPREPLY=(); compopt -o default ;;
             plain)
                 COMPREPLY+=("$value")
-                # The name of a package, which goes on behind its slash.
+                # A package name, which continues after its slash.
                 [[ $value == */ ]] && compopt -o nospace ;;
         esac
     done
@@ -70,7 +69,7 @@ _aionode_completion() {
                 if [[ $descr != _ ]]; then
                     described+=("${key//:/\\\\:}:$descr")
                 elif [[ $key == */ ]]; then
-                    # The name of a package, which goes on behind its slash.
+                    # A package name, which continues after its slash.
                     unfinished+=("$key")
                 else
                     plain+=("$key")
@@ -89,7 +88,7 @@ else
 fi
 """
 OWN_SCRIPTS = {"bash": BASH, "zsh": ZSH}
-"""In place of click's, which put a blank behind everything. fish puts none behind a slash."""
+"""Replace click's scripts, which append a space to everything. fish appends none to a slash."""
 
 SHELLS = {
     "bash": ("~/.bashrc", 'eval "$(aionode completion bash)"'),
@@ -101,7 +100,7 @@ SHELLS = {
 @click.command()
 @click.argument("shell", type=click.Choice(list(SHELLS)))
 def completion(shell: str) -> None:
-    """Print what makes SHELL complete commands, options, types and names on the network."""
+    """Print the script with which SHELL completes commands, options, types and names."""
     from click.shell_completion import get_completion_class
 
     from aionode.cli._main import root
@@ -117,7 +116,7 @@ def completion(shell: str) -> None:
 
 
 def complete_names(what: str) -> Completer:
-    """Return what completes names on the network: ``node``, ``topic``, ``service``, ``action``."""
+    """Return the completer for names of a ``node``, ``topic``, ``service`` or ``action``."""
 
     def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
         return beginning(incomplete, now(lambda node: done(names_of(node, what))))
@@ -126,10 +125,10 @@ def complete_names(what: str) -> Completer:
 
 
 def complete_types_of(what: str, kind: str) -> Completer:
-    """Return what completes the type behind the name of a ``topic``, ``service`` or ``action``.
+    """Return the completer for the type after the name of a ``topic``, ``service`` or ``action``.
 
-    Those that the name has on the network, or all of a kind (``msg``, ``srv``, ``action``) if it
-    has none, or none begins as what is there already.
+    It offers the types that the name has on the network. If none of them matches, it offers all of
+    a kind (``msg``, ``srv``, ``action``).
     """
     any_type = complete_interfaces(kind)
 
@@ -142,7 +141,7 @@ def complete_types_of(what: str, kind: str) -> Completer:
 
 
 def complete_parameters(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
-    """Complete the names of the parameters of the node that was named before."""
+    """Complete the parameter names of the node earlier on the command line."""
     node_name = ctx.params.get("node_name")
     if not node_name:
         return []
@@ -161,14 +160,14 @@ def complete_parameters(ctx: click.Context, param: click.Parameter, incomplete: 
 
 
 def beginning(incomplete: str, names: list[str]) -> list[str]:
-    """Return the names that begin as what is there already."""
+    """Return the names that begin with `incomplete`."""
     return [name for name in names if name.startswith(incomplete)]
 
 
 def now(question: Callable[[Node], Awaitable[list[str]]]) -> list[str]:
-    """Return what the network answers at this moment; nothing after an error.
+    """Return the network's answer to a question, or nothing after an error.
 
-    There is no place for an error in the middle of a command line.
+    An error cannot be shown in the middle of a command line.
     """
 
     async def ask() -> list[str]:
@@ -186,39 +185,30 @@ def now(question: Callable[[Node], Awaitable[list[str]]]) -> list[str]:
 
 
 async def done(names: list[str]) -> list[str]:
-    """Return what is known without waiting."""
+    """Return `names`, as a coroutine."""
     return names
 
 
 def names_of(node: Node, what: str) -> list[str]:
     """Return the names of one kind that are not hidden."""
     from aionode.cli._support import lookup
-    from aionode.graph import EndpointKind
+    from aionode.cli._support.nouns import NOUNS
 
     if what == "node":
         return [info.fully_qualified_name for info in lookup.node_infos(node)]
-    if what == "service":
-        return list(lookup.names_and_types(node, EndpointKind.SERVER))
-    if what == "action":
-        return [name for name, _ in node.get_action_names_and_types()]
-    return list(lookup.names_and_types(node, *TOPIC_KINDS))
+    return list(NOUNS[what].types_by_name(node))
 
 
 def types_of(node: Node, what: str, name: str) -> list[str]:
     """Return the types of a name on the network."""
-    from aionode.cli._support import lookup
-    from aionode.graph import EndpointKind
+    from aionode.cli._support.nouns import NOUNS
 
-    if what == "action":
-        known = dict(node.get_action_names_and_types())
-    else:
-        kinds = (EndpointKind.SERVER,) if what == "service" else TOPIC_KINDS
-        known = lookup.names_and_types(node, *kinds, hidden=True)
+    known = NOUNS[what].types_by_name(node, hidden=True)
     return known.get(name if name.startswith("/") else f"/{name}", [])
 
 
 def complete_interfaces(kind: str = "") -> Completer:
-    """Return what completes type names; `kind` is ``msg``, ``srv``, ``action`` or any."""
+    """Return the completer for type names of a `kind`: ``msg``, ``srv``, ``action``, "" for all."""
 
     def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
         from aionode.interfaces import interface_names, shipped_packages

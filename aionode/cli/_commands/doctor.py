@@ -17,9 +17,9 @@ __all__ = ["doctor_command"]
 @json_option
 @ros2_options
 def doctor_command(names: tuple[str, ...], json: bool) -> None:
-    """Say what is on the network, and why two endpoints do not talk.
+    """Summarize the network, and find out why endpoints do not communicate.
 
-    NAMES of nodes, topics and services limit it to those, and show which way each publisher
-    reaches each subscription. The exit status is 1 if something does not work.
+    NAMES of nodes, topics and services limit it to those, and show by which route each publisher
+    reaches each subscription. The exit status is 1 if a problem was found.
     """
     run_verb(lambda node, output: doctor(node, names, output=output), json=json)

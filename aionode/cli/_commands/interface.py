@@ -29,7 +29,7 @@ def interface() -> None:
 
 
 def kind_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a command options for the kinds of types, and its function their names."""
+    """Give a command the options for kinds of types; its function gets the chosen kinds."""
 
     @click.option("-m", "--only-msgs", is_flag=True, help="Messages only.")
     @click.option("-s", "--only-srvs", is_flag=True, help="Services only.")
@@ -76,10 +76,12 @@ def packages_command(output: Output, kinds: tuple[str, ...]) -> None:
 @json_option
 @interfaces_option
 def show_command(type_name: str, json: bool) -> None:
-    """Print the definition of a type; - reads its name from standard input."""
+    """Print the definition of a type; if TYPE is -, its name is read from standard input."""
     if type_name == "-":
         if sys.stdin.isatty():
-            raise click.UsageError("- reads the name of a type from a pipe.")
+            raise click.UsageError(
+                "- reads the name of a type from a pipe, but standard input is a terminal."
+            )
         type_name = sys.stdin.readline().strip()
         if not type_name:
             raise CommandError("The passed value is empty: no type name came from the pipe")
@@ -88,7 +90,7 @@ def show_command(type_name: str, json: bool) -> None:
 
 @interface.command("proto")
 @click.argument("type_name", metavar="TYPE", shell_complete=complete_interfaces())
-@click.option("--no-quotes", is_flag=True, help="Print no quotes around it.")
+@click.option("--no-quotes", is_flag=True, help="Print no quotes around the values.")
 @json_option
 @interfaces_option
 def proto_command(type_name: str, no_quotes: bool, json: bool) -> None:
@@ -103,11 +105,11 @@ def proto_command(type_name: str, no_quotes: bool, json: bool) -> None:
     "--out-dir",
     required=True,
     type=click.Path(file_okay=False, path_type=Path),
-    help="Where to write to; folders are made as needed.",
+    help="Output folder; created if needed.",
 )
 @json_option
 def generate_command(path: Path, out_dir: Path, json: bool) -> None:
-    """Write the interfaces of a folder as Python modules with types and docstrings."""
+    """Generate Python modules, with types and docstrings, from a folder of definitions."""
     from aionode.idl import generate
 
     output = Output(json=json)

@@ -23,7 +23,7 @@ __all__ = ["lifecycle"]
 
 @click.group()
 def lifecycle() -> None:
-    """See and change the states of managed nodes."""
+    """Show and change the states of managed nodes."""
 
 
 node_argument = click.argument("node_name", shell_complete=complete_names("node"))
@@ -45,7 +45,7 @@ def nodes_command(json: bool, **options: Any) -> None:
 @json_option
 @ros2_options
 def get_command(json: bool, node_name: str | None, hidden: bool) -> None:
-    """Print the state of a managed node, or of each."""
+    """Print the state of one managed node, or of all."""
     run_verb(
         lambda node, output: get_state(node, node_name, output=output, hidden=hidden), json=json
     )
@@ -53,11 +53,13 @@ def get_command(json: bool, node_name: str | None, hidden: bool) -> None:
 
 @lifecycle.command("list")
 @node_argument
-@click.option("-a", "--all", "every", is_flag=True, help="List all transitions there are.")
+@click.option(
+    "-a", "--all", "every", is_flag=True, help="List all transitions, not only the available ones."
+)
 @json_option
 @ros2_options
 def list_command(json: bool, node_name: str, every: bool) -> None:
-    """List the transitions that a managed node can make now."""
+    """List the transitions that are available to a managed node now."""
     run_verb(
         lambda node, output: list_transitions(node, node_name, output=output, every=every),
         json=json,
@@ -70,5 +72,5 @@ def list_command(json: bool, node_name: str, every: bool) -> None:
 @json_option
 @ros2_options
 def set_command(json: bool, node_name: str, transition: str) -> None:
-    """Have a managed node make a transition, by its label or number."""
+    """Trigger a transition of a managed node, by its label or id."""
     run_verb(lambda node, output: set_state(node, node_name, transition, output=output), json=json)

@@ -14,7 +14,7 @@ __all__ = ["node"]
 
 @click.group()
 def node() -> None:
-    """List nodes, and what they offer and use."""
+    """List and inspect nodes."""
 
 
 @node.command("list")
@@ -23,7 +23,7 @@ def node() -> None:
 @json_option
 @ros2_options
 def list_command(json: bool, hidden: bool, count: bool) -> None:
-    """List the nodes that can be reached."""
+    """List the nodes on the network."""
     run_verb(
         lambda node, output: list_nodes(node, hidden=hidden, count=count, output=output), json=json
     )
@@ -35,5 +35,5 @@ def list_command(json: bool, hidden: bool, count: bool) -> None:
 @json_option
 @ros2_options
 def info_command(node_name: str, json: bool, hidden: bool) -> None:
-    """Print what a node publishes, subscribes to, serves and calls."""
+    """Print the topics, services and actions of a node."""
     run_verb(lambda node, output: info(node, node_name, hidden=hidden, output=output), json=json)

@@ -21,11 +21,11 @@ __all__ = ["param"]
 
 @click.group()
 def param() -> None:
-    """Read and set parameters of nodes."""
+    """Read and set the parameters of nodes."""
 
 
 def node_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a command the options that all verbs about one node have."""
+    """Give a command the options that all verbs of ``param`` have."""
     hidden = click.option(
         "--include-hidden-nodes", "hidden", is_flag=True, help="Consider hidden nodes as well."
     )
@@ -43,9 +43,13 @@ name_argument = click.argument("parameter_name", shell_complete=complete_paramet
 
 @param.command("list")
 @click.argument("node_name", required=False, shell_complete=complete_names("node"))
-@click.option("--filter", "pattern", metavar="REGEX", help="Only names that fit.")
+@click.option("--filter", "pattern", metavar="REGEX", help="Only names that match.")
 @click.option(
-    "--param-prefixes", "prefixes", metavar="PREFIX", multiple=True, help="Only names below these."
+    "--param-prefixes",
+    "prefixes",
+    metavar="PREFIX",
+    multiple=True,
+    help="Only names with this prefix.",
 )
 @click.option("--param-type", "types", is_flag=True, help="Print the types too.")
 @node_options
@@ -88,7 +92,7 @@ def delete_command(json: bool, **options: Any) -> None:
 @click.argument("parameter_names", nargs=-1, required=True, shell_complete=complete_parameters)
 @node_options
 def describe_command(json: bool, **options: Any) -> None:
-    """Print type, description and constraints of parameters."""
+    """Print the type, description and constraints of parameters."""
     run(param_verbs.describe, json, **options)
 
 
@@ -103,8 +107,10 @@ def dump_command(json: bool, **options: Any) -> None:
 @param.command("load")
 @node_argument
 @click.argument("parameter_file", type=click.Path(path_type=Path))
-@click.option("--no-use-wildcard", is_flag=True, help="Leave out what the file has for any node.")
+@click.option(
+    "--no-use-wildcard", is_flag=True, help="Ignore the file's values for wildcard nodes."
+)
 @node_options
 def load_command(json: bool, no_use_wildcard: bool, **options: Any) -> None:
-    """Set the parameters that a file has for a node."""
+    """Set the parameters of a node from a file."""
     run(param_verbs.load, json, wildcards=not no_use_wildcard, **options)

@@ -21,11 +21,11 @@ __all__ = ["router_command"]
     multiple=True,
     help="Zenoh endpoint, such as tcp/192.168.0.2:7447 (default: port 7447 of all interfaces).",
 )
-@click.option("--json", is_flag=True, help="Print where it listens as JSON.")
+@click.option("--json", is_flag=True, help="Print the endpoints as JSON.")
 def router_command(listen: tuple[str, ...], json: bool) -> None:
-    """Introduce nodes to each other across machines, as rmw_zenohd does.
+    """Connect nodes across machines, as rmw_zenohd does.
 
-    On one machine none is needed. Nodes of other machines find it through
+    On a single machine no router is needed. Nodes on other machines find it through
     ROS_STATIC_PEERS=<this machine>.
     """
     from aionode.transport._zenoh_config import network_from

@@ -19,8 +19,9 @@ __all__ = ["run_command"]
 def run_command(args: tuple[str, ...]) -> None:
     """Run node classes together in one process.
 
-    Each MODULE:CLASS is imported, from here or from what is installed, and made without arguments;
-    a file such as talker.py:Talker fits too. What follows --ros-args holds for all of them.
+    Each MODULE:CLASS is imported, from the current folder or an installed package, and created
+    without arguments; a file such as talker.py:Talker works too. What follows --ros-args applies to
+    all nodes.
     """
     from aionode.runner import run
 
@@ -28,7 +29,9 @@ def run_command(args: tuple[str, ...]) -> None:
     specs, ros_args = args[:at], args[at:]
     for spec in specs:
         if spec.startswith("-"):
-            raise click.UsageError(f"No such option '{spec}': arguments begin with {ROS_ARGS}.")
+            raise click.UsageError(
+                f"No such option '{spec}': arguments of nodes follow {ROS_ARGS}."
+            )
     if not specs:
         raise click.UsageError(f"Nothing to run: {FITS}.")
     sys.path.insert(0, str(Path.cwd()))

@@ -6,7 +6,9 @@ from typing import Any
 
 import click
 
-from aionode.cli._commands.completion import complete_interfaces, complete_names, complete_types_of
+from aionode.cli._commands.completion import complete_names, complete_types_of
+from aionode.cli._commands.typed_names import add_type_and_find
+from aionode.cli._support.nouns import SERVICE
 from aionode.cli._support.options import (
     hertz,
     hidden_option,
@@ -17,15 +19,11 @@ from aionode.cli._support.options import (
     stdin_text,
 )
 from aionode.cli._support.session import run_verb
-from aionode.cli._verbs.service import call, find, info, list_services, type_of_service
+from aionode.cli._verbs.service import call, info
 
 __all__ = ["service"]
 
 service_argument = click.argument("service_name", shell_complete=complete_names("service"))
-
-hidden_services = hidden_option("--include-hidden-services", what="services")
-
-# Commands
 
 
 @click.group()
@@ -38,12 +36,12 @@ def service() -> None:
 @click.option(
     "-c", "--count-services", "count", is_flag=True, help="Print only how many there are."
 )
-@hidden_services
+@hidden_option("--include-hidden-services", what="services")
 @json_option
 @ros2_options
 def list_command(json: bool, **options: Any) -> None:
-    """List the services that somebody serves."""
-    run_verb(lambda node, output: list_services(node, output=output, **options), json=json)
+    """List the services that have a server."""
+    run_verb(lambda node, output: SERVICE.list_names(node, output=output, **options), json=json)
 
 
 @service.command("info")
@@ -51,30 +49,11 @@ def list_command(json: bool, **options: Any) -> None:
 @json_option
 @ros2_options
 def info_command(service_name: str, json: bool) -> None:
-    """Print the type of a service, and how many serve and call it."""
+    """Print the type of a service, and the number of its clients and servers."""
     run_verb(lambda node, output: info(node, service_name, output=output), json=json)
 
 
-@service.command("type")
-@service_argument
-@json_option
-@ros2_options
-def type_command(service_name: str, json: bool) -> None:
-    """Print the type of a service."""
-    run_verb(lambda node, output: type_of_service(node, service_name, output=output), json=json)
-
-
-@service.command("find")
-@click.argument("service_type", shell_complete=complete_interfaces("srv"))
-@click.option(
-    "-c", "--count-services", "count", is_flag=True, help="Print only how many there are."
-)
-@hidden_services
-@json_option
-@ros2_options
-def find_command(service_type: str, json: bool, **options: Any) -> None:
-    """List the services of one type."""
-    run_verb(lambda node, output: find(node, service_type, output=output, **options), json=json)
+add_type_and_find(service, SERVICE, "srv")
 
 
 @service.command("call")
@@ -82,8 +61,8 @@ def find_command(service_type: str, json: bool, **options: Any) -> None:
 @click.argument("service_type", shell_complete=complete_types_of("service", "srv"))
 @click.argument("values", required=False)
 @click.option("--stdin", is_flag=True, help="Read the values from standard input.")
-@click.option("-r", "--rate", metavar="N", type=hertz, help="Call again and again, in Hz.")
-@click.option("--timeout", metavar="N", type=positive, help="Wait no longer than N seconds.")
+@click.option("-r", "--rate", metavar="N", type=hertz, help="Repeat the call, in Hz.")
+@click.option("--timeout", metavar="N", type=positive, help="Wait at most N seconds.")
 @json_option
 @interfaces_option
 @ros2_options

@@ -7,7 +7,9 @@ from typing import Any
 
 import click
 
-from aionode.cli._commands.completion import complete_interfaces, complete_names, complete_types_of
+from aionode.cli._commands.completion import complete_names, complete_types_of
+from aionode.cli._commands.typed_names import add_type_and_find
+from aionode.cli._support.nouns import TOPIC
 from aionode.cli._support.options import (
     hertz,
     hidden_option,
@@ -30,8 +32,6 @@ from aionode.cli._verbs import topic as topic_verbs
 __all__ = ["topic"]
 
 topic_argument = click.argument("topic_name", shell_complete=complete_names("topic"))
-type_argument = click.argument("message_type", shell_complete=complete_interfaces("msg"))
-hidden_topics = hidden_option("--include-hidden-topics", what="topics")
 
 
 @click.group()
@@ -42,12 +42,14 @@ def topic() -> None:
 @topic.command("list")
 @click.option("-t", "--show-types", "types", is_flag=True, help="Print the types too.")
 @click.option("-c", "--count-topics", "count", is_flag=True, help="Print only how many there are.")
-@hidden_topics
-@click.option("-v", "--verbose", is_flag=True, help="Print how many publish and subscribe.")
+@hidden_option("--include-hidden-topics", what="topics")
+@click.option(
+    "-v", "--verbose", is_flag=True, help="Print the numbers of publishers and subscribers."
+)
 @json_option
 @ros2_options
 def list_command(json: bool, **options: Any) -> None:
-    """List the topics that somebody publishes or subscribes to."""
+    """List the topics that have a publisher or a subscription."""
     run_verb(
         lambda node, output: topic_verbs.list_topics(node, output=output, **options), json=json
     )
@@ -55,47 +57,25 @@ def list_command(json: bool, **options: Any) -> None:
 
 @topic.command("info")
 @topic_argument
-@click.option("-v", "--verbose", is_flag=True, help="Print nodes, type hashes, ids and QoS too.")
+@click.option("-v", "--verbose", is_flag=True, help="Print nodes, type hashes, GIDs and QoS too.")
 @json_option
 @ros2_options
 def info_command(topic_name: str, json: bool, verbose: bool) -> None:
-    """Print the type of a topic and who uses it."""
+    """Print the type of a topic, and its publishers and subscriptions."""
     run_verb(
         lambda node, output: topic_verbs.info(node, topic_name, verbose=verbose, output=output),
         json=json,
     )
 
 
-@topic.command("type")
-@topic_argument
-@json_option
-@ros2_options
-def type_command(topic_name: str, json: bool) -> None:
-    """Print the type of a topic."""
-    run_verb(
-        lambda node, output: topic_verbs.type_of_topic(node, topic_name, output=output), json=json
-    )
-
-
-@topic.command("find")
-@type_argument
-@click.option("-c", "--count-topics", "count", is_flag=True, help="Print only how many there are.")
-@hidden_topics
-@json_option
-@ros2_options
-def find_command(message_type: str, json: bool, **options: Any) -> None:
-    """List the topics of one type."""
-    run_verb(
-        lambda node, output: topic_verbs.find(node, message_type, output=output, **options),
-        json=json,
-    )
+add_type_and_find(topic, TOPIC, "msg")
 
 
 @topic.command("echo")
 @topic_argument
 @click.argument("message_type", required=False, shell_complete=complete_types_of("topic", "msg"))
 @qos_options("sensor_data")
-@click.option("--csv", is_flag=True, help="Print all values in one line, separated by commas.")
+@click.option("--csv", is_flag=True, help="Print all values on one line, separated by commas.")
 @click.option("--field", metavar="PATH", help="Print one field, such as pose.position or name[0].")
 @click.option("-f", "--full-length", is_flag=True, help="Print arrays and strings in full.")
 @click.option(
@@ -110,14 +90,25 @@ def find_command(message_type: str, json: bool, **options: Any) -> None:
 @click.option("--no-arr", is_flag=True, help="Describe arrays instead of printing them.")
 @click.option("--no-str", is_flag=True, help="Describe strings instead of printing them.")
 @click.option("--flow-style", is_flag=True, help="Print each message in braces, on one line.")
-@click.option("--no-lost-messages", is_flag=True, help="Do not say when messages were lost.")
-@click.option("--raw", is_flag=True, help="Print the bytes as they came.")
-@click.option("--filter", "filter_text", metavar="EXPR", help="Python; m is the message.")
+@click.option("--no-lost-messages", is_flag=True, help="Do not report lost messages.")
+@click.option("--raw", is_flag=True, help="Print the serialized bytes.")
+@click.option(
+    "--filter",
+    "filter_text",
+    metavar="EXPR",
+    help="Print only messages for which this Python expression is true; m is the message.",
+)
 @click.option("--once", is_flag=True, help="Print one message and end.")
 @click.option("--timeout", metavar="N", type=positive, help="End after N seconds.")
-@click.option("-i", "--include-message-info", "with_info", is_flag=True, help="Print times too.")
+@click.option(
+    "-i",
+    "--include-message-info",
+    "with_info",
+    is_flag=True,
+    help="Print timestamps and sequence numbers too.",
+)
 @click.option("-c", "--clear", is_flag=True, help="Clear the screen before each message.")
-@click.option("-n", "--node-name", help="Name of the node that listens (default: a hidden one).")
+@click.option("-n", "--node-name", help="Name of the subscribing node (default: a hidden one).")
 @json_option
 @sim_time_option
 @interfaces_option
@@ -147,7 +138,13 @@ def echo_command(
 @click.argument("values", required=False)
 @click.option("--stdin", is_flag=True, help="Read the values from standard input.")
 @click.option(
-    "-r", "--rate", metavar="N", type=hertz, default=1.0, show_default=True, help="In Hz."
+    "-r",
+    "--rate",
+    metavar="N",
+    type=hertz,
+    default=1.0,
+    show_default=True,
+    help="Publishing rate, in Hz.",
 )
 @click.option(
     "-p", "--print", "print_nth", metavar="N", type=whole, default=1,
@@ -164,13 +161,13 @@ def echo_command(
 )  # fmt: skip
 @click.option(
     "--max-wait-time-secs", "max_wait_s", metavar="N", type=positive,
-    help="Wait for subscriptions no longer than N seconds.",
+    help="Wait at most N seconds for subscriptions.",
 )  # fmt: skip
 @click.option(
     "--keep-alive", "keep_alive_s", metavar="N", type=seconds, default=0.1,
-    show_default=True, help="Stay for N seconds after the last message.",
+    show_default=True, help="Keep the node alive for N seconds after the last message.",
 )  # fmt: skip
-@click.option("-n", "--node-name", help="Name of the node that publishes (default: a hidden one).")
+@click.option("-n", "--node-name", help="Name of the publishing node (default: a hidden one).")
 @qos_options("default")
 @json_option
 @sim_time_option
@@ -190,7 +187,7 @@ def pub_command(
 ) -> None:
     """Publish messages given in YAML, such as '{data: hello}'.
 
-    A Header may be given as auto and a Time as now: they get the time of publishing.
+    A Header given as auto and a Time given as now are set to the time of publishing.
     """
     from aionode.cli._verbs.topic_pub import pub
 
@@ -228,8 +225,13 @@ def pub_command(
 @topic.command("hz")
 @click.argument("topic_names", nargs=-1, required=True, shell_complete=complete_names("topic"))
 @window_option
-@click.option("--filter", "filter_text", metavar="EXPR", help="Count messages for which it is so.")
-@click.option("--wall-time", is_flag=True, help="Count with this machine's time, not ROS time.")
+@click.option(
+    "--filter",
+    "filter_text",
+    metavar="EXPR",
+    help="Count only messages for which this Python expression is true; m is the message.",
+)
+@click.option("--wall-time", is_flag=True, help="Measure in this machine's time, not in ROS time.")
 @json_option
 @sim_time_option
 @interfaces_option
@@ -237,7 +239,7 @@ def pub_command(
 def hz_command(
     json: bool, use_sim_time: bool, topic_names: tuple[str, ...], **options: Any
 ) -> None:
-    """Print how often messages come, once a second."""
+    """Print the rate of messages, once a second."""
     from aionode.cli._verbs.topic_measure import hz
 
     verb = functools.partial(hz, topic_names=topic_names, **options)
@@ -248,13 +250,13 @@ def hz_command(
 @topic_argument
 @click.option(
     "-w", "--window", metavar="N", type=natural, default=100, show_default=True,
-    help="Number of messages that the figures are made of.",
+    help="Number of messages in the statistics.",
 )  # fmt: skip
 @json_option
 @interfaces_option
 @ros2_options
 def bw_command(json: bool, **options: Any) -> None:
-    """Print how many bytes come, once a second."""
+    """Print the bandwidth of a topic, once a second."""
     from aionode.cli._verbs.topic_measure import bw
 
     measure(functools.partial(bw, **options), json=json)
@@ -268,14 +270,14 @@ def bw_command(json: bool, **options: Any) -> None:
 @interfaces_option
 @ros2_options
 def delay_command(json: bool, use_sim_time: bool, **options: Any) -> None:
-    """Print how old messages are when they come, by the stamp of their header."""
+    """Print the age of messages on arrival, by the stamp in their header."""
     from aionode.cli._verbs.topic_measure import delay
 
     measure(functools.partial(delay, **options), json=json, use_sim_time=use_sim_time)
 
 
 def measure(verb: Any, *, json: bool, use_sim_time: bool = False) -> None:
-    """Run a verb that prints figures until Ctrl-C."""
+    """Run a verb that prints measurements until Ctrl-C."""
     run_verb(
         lambda node, output: verb(node, output=output),
         json=json,

@@ -1,1 +1,1 @@
-"""What verbs and commands share."""
+"""Code that verbs and commands share."""

@@ -1,4 +1,4 @@
-"""The end of a command: at the time that was promised, whatever it is waiting for."""
+"""Ending the process by a deadline, whatever it is still waiting for."""
 
 from __future__ import annotations
 
@@ -13,32 +13,32 @@ __all__ = ["Deadline", "leave_if_busy"]
 
 
 class Deadline:
-    """Ends the process at a time, whatever it is waiting for then.
+    """Ends the process at a given time, whatever it is waiting for.
 
-    What has been asked for is done and printed by then. What may still wait is Zenoh, for a peer
-    that is frozen or overloaded, and nothing would be gained by waiting with it.
+    By then the work is done and its output printed. Only Zenoh may still be waiting, for a peer
+    that is frozen or overloaded, and there is no reason to wait with it.
     """
 
     def __init__(self) -> None:
         self._timer: threading.Timer | None = None
 
     def set(self, seconds: float, status: int, text: str = "") -> None:
-        """End with `status` in so many seconds, and with `text` on stderr; not as set before."""
+        """Exit with `status` in `seconds`, with `text` on stderr; replaces an earlier deadline."""
         self.cancel()
         self._timer = threading.Timer(seconds, leave, (status, text))
         self._timer.daemon = True
         self._timer.start()
 
     def cancel(self) -> None:
-        """Do nothing of the kind."""
+        """Remove the deadline."""
         if self._timer is not None:
             self._timer.cancel()
 
 
 def leave(status: int, text: str = "") -> None:
-    """End the process at once, past everything that Python and foreign threads would wait for.
+    """Exit at once, without waiting for threads or exit handlers.
 
-    All output has been flushed, and asking for that again might wait for its reader.
+    Output has been flushed already; flushing again could block on its reader.
     """
     if text and accepts(sys.stderr.fileno()):
         with contextlib.suppress(OSError):
@@ -47,9 +47,9 @@ def leave(status: int, text: str = "") -> None:
 
 
 def leave_if_busy(status: int) -> None:
-    """End the process at once if a thread is still at work, such as on closing a connection.
+    """Exit at once if a thread is still running, for example one that closes a connection.
 
-    Python would wait for it, and stop a daemon in the middle of foreign code, which aborts.
+    Python would wait for it, or stop a daemon thread inside native code, which aborts the process.
     """
     if threading.active_count() > 1:
         leave(status)

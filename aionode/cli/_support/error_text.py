@@ -1,4 +1,4 @@
-"""Errors in one line, and the exit status they stand for."""
+"""Errors in one line, and their exit status."""
 
 from __future__ import annotations
 
@@ -8,29 +8,29 @@ __all__ = ["limited", "one_line", "status_of"]
 
 
 def status_of(error: AionodeError) -> int:
-    """Return the exit status that an error stands for."""
+    """Return the exit status for an error."""
     status: int = getattr(error, "status", 1)
     return status
 
 
 MOST_CHARACTERS = 1000
-"""How long an error may be: what was given may be of any length."""
+"""Maximum length of an error text: it may quote input of any length."""
 
 
 def limited(text: str) -> str:
-    """Return a text without its middle if it is too long."""
+    """Return a text, without its middle if it is too long."""
     if len(text) <= MOST_CHARACTERS:
         return text
     return f"{text[: MOST_CHARACTERS // 2]} ... {text[-MOST_CHARACTERS // 2 :]}"
 
 
 def one_line(error: BaseException) -> str:
-    """Return what an error says, in one line, and not too long a one."""
+    """Return the text of an error on one line of limited length."""
     return limited(text_of(error))
 
 
 def text_of(error: BaseException) -> str:
-    """Return what an error says, in one line."""
+    """Return the text of an error on one line."""
     if isinstance(error, NameValidationException):
         found = error.name[error.invalid_index : error.invalid_index + 1]
         where = f", at character {error.invalid_index + 1} ({found!r})" if found else ""

@@ -1,4 +1,4 @@
-"""Listening to a topic whose type the network knows."""
+"""Subscribing to topics whose type is learned from the network."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ __all__ = ["Follower", "filter_from", "wait_for_type"]
 
 
 class Follower:
-    """Hands the messages of topics to functions, until one is done or fails.
+    """Passes the messages of topics to callbacks until one finishes or fails.
 
-    Errors of the functions come out of `finished` as they are.
+    `finished` raises the exceptions of the callbacks unchanged.
     """
 
     def __init__(self, node: Node) -> None:
@@ -36,21 +36,21 @@ class Follower:
         self,
         msg_type: type[Message],
         topic: str,
-        take: Callable[[Any, MessageInfo], None],
+        on_message: Callable[[Any, MessageInfo], None],
         qos: QoSProfile,
         *,
         raw: bool = False,
     ) -> Subscription[Any]:
-        """Call `take` with each message of `topic` until the end, or with its bytes if `raw`."""
+        """Call `on_message` with each message of `topic`, or with its bytes if `raw`."""
 
-        def take_until_end(msg: Any, info: MessageInfo) -> None:
+        def while_unfinished(msg: Any, info: MessageInfo) -> None:
             if not self._done.done():
-                take(msg, info)
+                on_message(msg, info)
 
         subscription: Subscription[Any] = self._node.create_subscription(
             msg_type,
             topic,
-            take_until_end,
+            while_unfinished,
             qos,
             raw=raw,  # type: ignore[call-overload]  # known only at run time
             on_error=self.fail,
@@ -58,20 +58,20 @@ class Follower:
         return subscription
 
     def fail(self, error: Exception, _: CallbackContext | None = None) -> None:
-        """End with an error."""
+        """Finish with an error."""
         if not self._done.done():
             self._done.set_exception(error)
 
     def finish(self) -> None:
-        """End without one."""
+        """Finish without an error."""
         if not self._done.done():
             self._done.set_result(None)
 
     async def finished(self, timeout_s: float | None = None) -> bool:
-        """Wait for the end; return False when `timeout_s` has passed before.
+        """Wait until finished; return False if `timeout_s` passes first.
 
         Raises:
-            Exception: what a function raised.
+            Exception: what a callback raised.
         """
         try:
             async with asyncio.timeout(timeout_s):
@@ -84,27 +84,28 @@ class Follower:
 async def wait_for_type(
     node: Node, topic: str, output: Output, given: str | None = None
 ) -> type[Message]:
-    """Return the class of a topic's messages, and wait for somebody to use it if nobody does.
+    """Return the class of a topic's messages, waiting for an endpoint if there is none yet.
 
     Raises:
-        CommandError: its type cannot be learnt.
+        CommandError: the type cannot be determined.
     """
     found = await lookup.topic_type(node, topic, given)
     if found is None:
         hint = lookup.close_to(topic, lookup.names_and_types(node, *TOPIC_KINDS))
         output.progress(f"WARNING: topic [{topic}] does not appear to be published yet{hint}")
-        with output.waiting(f"waiting for somebody to publish {topic}"):
+        with output.waiting(f"waiting for a publisher of {topic}"):
             await node.graph.until(lambda: bool(lookup.endpoints(node, *TOPIC_KINDS, name=topic)))
         found = await lookup.topic_type(node, topic)
-    assert found is not None  # noqa: S101  # somebody uses it
+    assert found is not None  # noqa: S101  # the topic has an endpoint now
     return found
 
 
 def filter_from(text: str | None) -> Callable[[Any], bool]:
-    """Return whether a message fits an expression of the user, in which it is called ``m``.
+    """Return the predicate of a ``--filter`` expression, in which the message is ``m``.
 
     Raises:
-        CommandError: it is no Python expression; the function raises it too, where it fails.
+        CommandError: the text is not a Python expression. The predicate raises it when evaluation
+            fails.
     """
     if text is None:
         return lambda _: True
@@ -113,12 +114,12 @@ def filter_from(text: str | None) -> Callable[[Any], bool]:
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         problem = error.msg if isinstance(error, SyntaxError) else type(error).__name__
         raise CommandError(
-            f"--filter {text!r}: no Python expression: {problem}; one such as 'm.x > 1' fits"
+            f"--filter {text!r}: not a Python expression: {problem}; expected one such as 'm.x > 1'"
         ) from error
 
     def fits(m: Any) -> bool:
         try:
-            return bool(eval(code, {"m": m}))  # noqa: S307  # the user's own, with their own rights
+            return bool(eval(code, {"m": m}))  # noqa: S307  # the user's own code
         except Exception as error:  # an expression may raise anything
             raise CommandError(f"--filter {text!r}: {type(error).__name__}: {error}") from error
 

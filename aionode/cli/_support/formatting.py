@@ -1,4 +1,4 @@
-"""Messages and endpoints as text, laid out as ros2 prints them."""
+"""Messages and endpoints as text, in the layout of ros2."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ __all__ = ["PrintOptions", "csv_line", "endpoint_text", "field_of", "names_text"
 
 @dataclass(frozen=True, slots=True)
 class PrintOptions:
-    """How much of a message is shown.
+    """How much of a message is printed.
 
     Attributes:
-        limit: How many elements of an array and characters of a string; None shows all.
-        no_arr: Whether arrays are only described.
-        no_str: Whether strings are only described.
+        limit: Maximum elements of an array and characters of a string; None prints all.
+        no_arr: Whether arrays are described instead of printed.
+        no_str: Whether strings are described instead of printed.
     """
 
     limit: int | None = None
@@ -41,7 +41,7 @@ class PrintOptions:
         }
 
     def value(self, value: Any, type_: FieldType | None = None) -> Any:
-        """Return a value as plain values; `type_` describes it where it is not shown."""
+        """Return a value as plain values; `type_` is for the description of arrays."""
         if isinstance(value, Message):
             return self.message(value)
         if isinstance(value, str):
@@ -70,7 +70,7 @@ class PrintOptions:
 
 
 def described(values: Any, type_: FieldType) -> str:
-    """Return what an array holds without showing it."""
+    """Return the description of an array: its type and length."""
     name = type_name(type_.nested) if type_.nested is not None else type_.kind
     if type_.container == "array":
         return f"<array type: {name}[{type_.size}]>"
@@ -81,7 +81,7 @@ def described(values: Any, type_: FieldType) -> str:
 def yaml_text(
     plain: object, *, flow_style: bool = False, quoted: Callable[[str], bool] | None = None
 ) -> str:
-    """Return plain values as YAML; strings that YAML or `quoted` takes for no string in quotes."""
+    """Return plain values as YAML; strings that `quoted` selects are put in quotes."""
     import yaml
 
     base: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)  # libyaml is optional
@@ -106,7 +106,7 @@ def yaml_text(
 
 
 def csv_line(plain: Any) -> str:
-    """Return all values in one line, separated by commas."""
+    """Return all values on one line, separated by commas."""
     if isinstance(plain, dict):
         return ",".join(csv_line(value) for value in plain.values())
     if isinstance(plain, list):
@@ -121,7 +121,7 @@ def field_of(msg: Message, path: str) -> tuple[Any, FieldType | None]:
     """Return the value of a field such as ``pose.position`` or ``poses[0]``, and its type.
 
     Raises:
-        CommandError: there is no such field.
+        CommandError: there is no such field or index.
     """
     value: Any = msg
     type_: FieldType | None = None
@@ -143,12 +143,12 @@ def field_of(msg: Message, path: str) -> tuple[Any, FieldType | None]:
 
 
 def names_text(names: list[str]) -> str:
-    """Return one name as it is, and several as a list."""
+    """Return a single name as it is, several as a list."""
     return names[0] if len(names) == 1 else str(names)
 
 
 def endpoint_text(endpoint: EndpointInfo) -> str:
-    """Return all that is known of a publisher or subscription, in ros2's lines."""
+    """Return the details of a publisher or subscription, in the lines of ros2."""
     profile = endpoint.qos
     depth = f" ({profile.depth})" if profile.history is HistoryPolicy.KEEP_LAST else ""
     return "\n".join(

@@ -1,4 +1,4 @@
-"""What is on the network without the command itself, and the classes of its types."""
+"""Nodes, endpoints and types on the network, without those of the command itself."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ __all__ = [
 
 
 def is_own(node: Node, info: NodeInfo) -> bool:
-    """Whether `info` is the node of the command itself."""
+    """Return whether `info` is the node of the command itself."""
     return (
         info.participant == node.context.participant
         and info.fully_qualified_name == node.get_fully_qualified_name()
@@ -39,7 +39,7 @@ def is_own(node: Node, info: NodeInfo) -> bool:
 
 
 def node_infos(node: Node, *, hidden: bool = False) -> list[NodeInfo]:
-    """Return the other nodes, by name."""
+    """Return the other nodes, sorted by name."""
     found = [
         info
         for info in node.graph.nodes()
@@ -62,7 +62,7 @@ def endpoints(
 def names_and_types(
     node: Node, *kinds: EndpointKind, hidden: bool = False, of: NodeInfo | None = None
 ) -> dict[str, list[str]]:
-    """Return the names that endpoints of other nodes use, sorted, each with its types."""
+    """Return the names of other nodes' endpoints, sorted, each with its types."""
     types: dict[str, set[str]] = {}
     for endpoint in endpoints(node, *kinds, of=of):
         if hidden or not is_hidden(endpoint.name):
@@ -74,7 +74,7 @@ def names_and_types(
 
 
 def close_to(name: str, names: Iterable[str]) -> str:
-    """Return a hint at the name that was probably meant, or nothing."""
+    """Return a hint at the name that was probably meant, or an empty string."""
     names = list(names)
     same = [known for known in names if known.rpartition("/")[2] == name.rpartition("/")[2]]
     close = same or difflib.get_close_matches(name, names, 1, 0.75)
@@ -82,8 +82,8 @@ def close_to(name: str, names: Iterable[str]) -> str:
 
 
 def unknown(text: str, name: str, names: Iterable[str], shows: str) -> CommandError:
-    """Return the error for a name that nobody uses: what was given, and where to look."""
-    hint = close_to(name, names) or f". `aionode {shows}` shows those there are"
+    """Return the error for an unknown name, with a similar one or the command that lists them."""
+    hint = close_to(name, names) or f". `aionode {shows}` lists those available"
     return CommandError(f"{text} '{name}'{hint}")
 
 
@@ -91,14 +91,14 @@ def unknown(text: str, name: str, names: Iterable[str], shows: str) -> CommandEr
 
 
 def interface_class(kind: str, name: str) -> Any:
-    """Return the class that a user named.
+    """Return the class for the type name that the user gave.
 
     Args:
         kind: ``message``, ``service`` or ``action``.
         name: Its ROS name.
 
     Raises:
-        CommandError: there is none.
+        CommandError: there is no such type.
     """
     from aionode import interfaces
 
@@ -115,15 +115,15 @@ def interface_class(kind: str, name: str) -> Any:
 
 
 async def topic_type(node: Node, topic: str, given: str | None = None) -> type[Message] | None:
-    """Return the class of a topic's messages, as those say who use it; None if nobody does.
+    """Return the class of a topic's messages according to its endpoints; None if it has none.
 
     Args:
         node: The command's node.
         topic: Full name of the topic.
-        given: What the user says it is; then nobody is asked who uses the same.
+        given: The type that the user gave; only endpoints of that type are considered.
 
     Raises:
-        CommandError: the users of the topic disagree, or the type cannot be learnt.
+        CommandError: the endpoints have several types, or the type cannot be determined.
     """
     users = endpoints(node, *TOPIC_KINDS, name=topic)
     if given is not None:
@@ -134,8 +134,8 @@ async def topic_type(node: Node, topic: str, given: str | None = None) -> type[M
     types = sorted({user.type_name for user in users})
     if len(types) > 1:
         raise CommandError(
-            f"Topic '{topic}' has more than one type: {', '.join(types)}; say which one you want "
-            "after the name of the topic"
+            f"Topic '{topic}' has more than one type: {', '.join(types)}; give one of them after "
+            "the topic name"
         )
     if not users:
         return None
@@ -144,13 +144,13 @@ async def topic_type(node: Node, topic: str, given: str | None = None) -> type[M
 
 
 async def type_of(node: Node, users: list[EndpointInfo]) -> Any:
-    """Return the class of what `users`, which all have one type, send or serve.
+    """Return the class for endpoints that all have the same type.
 
-    That is the class of aionode.interfaces if its definition is the same; otherwise one of the
-    nodes is asked for the definition.
+    That is the class of aionode.interfaces if the type hash is the same; otherwise the nodes are
+    asked for the definition.
 
     Raises:
-        CommandError: no node tells.
+        CommandError: no node describes the type.
     """
     from aionode.interfaces import get_interface
     from aionode.wire.typehash import type_hash
@@ -172,12 +172,12 @@ async def type_of(node: Node, users: list[EndpointInfo]) -> Any:
     problem = (
         f"'{name}' is not known here"
         if known is None
-        else f"'{name}' is defined differently here ({type_hash(known)}) than there "
+        else f"'{name}' has a different definition here ({type_hash(known)}) than there "
         f"({', '.join(sorted(hashes))})"
     )
     where = ", ".join(sorted({user.node.fully_qualified_name for user in users}))
     raise CommandError(
-        f"Type of '{users[0].name}': {problem}, and {where} does not describe it; name a folder "
+        f"Type of '{users[0].name}': {problem}, and {where} does not describe it; give a folder "
         "with its definition: --interfaces PATH (in Python: aionode.idl.load_interfaces)"
     )
 

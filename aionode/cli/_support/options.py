@@ -46,19 +46,19 @@ CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 json_option = click.option("--json", is_flag=True, help="Print one record per line, as JSON.")
 
 MOST_SECONDS = 1e9
-"""Thirty years, and few enough for every clock."""
+"""Upper limit of durations: thirty years, within the range of every clock."""
 
 MOST = 2**31 - 1
-"""What fits every length of a queue."""
+"""Upper limit of counts: it fits every queue length."""
 
 
 class Number(click.FloatRange):
-    """A range of floats that are numbers: no ``nan``, which is in every range for click."""
+    """A range of floats that excludes ``nan``, which click accepts in every range."""
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> float:
-        """Return the number."""
+        """Return the number; fail if it is ``nan`` or out of range."""
         number: float = super().convert(value, param, ctx)
         if math.isnan(number):
             self.fail(f"{value!r} is not a number.", param, ctx)
@@ -72,13 +72,13 @@ seconds = Number(min=0, max=MOST_SECONDS)
 """A number of seconds."""
 
 hertz = Number(min=1 / MOST_SECONDS, max=1e9)
-"""A rate whose period every clock has."""
+"""A rate whose period is within the range of every clock."""
 
 natural = click.IntRange(min=1, max=MOST)
-"""How many, at least one."""
+"""A count of at least one."""
 
 whole = click.IntRange(min=0, max=MOST)
-"""How many, or none."""
+"""A count, possibly zero."""
 
 timeout_option = click.option(
     "--timeout",
@@ -86,7 +86,7 @@ timeout_option = click.option(
     type=positive,
     default=1.0,
     show_default=True,
-    help="Wait for the node for at most N seconds.",
+    help="Wait at most N seconds for the node.",
 )
 
 window_option = click.option(
@@ -96,17 +96,17 @@ window_option = click.option(
     type=natural,
     default=10_000,
     show_default=True,
-    help="Number of messages that the figures are made of.",
+    help="Number of messages in the statistics.",
 )
 
 
 def hidden_option(*names: str, what: str) -> Callable[[CommandT], CommandT]:
-    """Return the option that lets hidden `what` be seen as well."""
+    """Return the option that includes hidden `what`."""
     return click.option(*names, "hidden", is_flag=True, help=f"Consider hidden {what} as well.")
 
 
 def ros2_options(command: CommandT) -> CommandT:
-    """Accept options of ros2 that mean nothing here, so that its users' scripts run."""
+    """Accept ros2's options that have no meaning here, so that existing scripts run."""
     for name in ("--no-daemon", "--spin-time"):
         is_flag = name == "--no-daemon"
         command = click.option(name, hidden=True, is_flag=is_flag, expose_value=False)(command)
@@ -114,7 +114,7 @@ def ros2_options(command: CommandT) -> CommandT:
 
 
 sim_time_option = click.option(
-    "-s", "--use-sim-time", is_flag=True, help="Take the time from /clock, as a simulation has it."
+    "-s", "--use-sim-time", is_flag=True, help="Take the time from /clock, as in a simulation."
 )
 
 
@@ -122,7 +122,7 @@ sim_time_option = click.option(
 
 
 def interfaces_option(command: CommandT) -> CommandT:
-    """Let the user name folders of interface definitions; they are loaded before the command."""
+    """Add the option for folders of interface definitions, loaded before the command runs."""
     return click.option(
         "--interfaces",
         metavar="PATH",
@@ -131,14 +131,14 @@ def interfaces_option(command: CommandT) -> CommandT:
         type=click.Path(exists=True, file_okay=False, path_type=Path),
         expose_value=False,
         callback=load_interface_folders,
-        help="Folder with .msg, .srv and .action files of your own; also $AIONODE_INTERFACES.",
+        help="Folder with your own .msg, .srv and .action files; also $AIONODE_INTERFACES.",
     )(command)
 
 
 def load_interface_folders(
     ctx: click.Context, param: click.Parameter, value: tuple[Path, ...]
 ) -> None:
-    """Load the interfaces of some folders."""
+    """Load the interfaces of the given folders."""
     if value:
         from aionode.idl import load_interfaces
 
@@ -147,10 +147,10 @@ def load_interface_folders(
 
 
 def stdin_text(values: str | None, stdin: bool) -> str:
-    """Return the values as given, or read them from standard input.
+    """Return the values as given, or read from standard input.
 
     Raises:
-        click.UsageError: both were given.
+        click.UsageError: values and ``--stdin`` were both given.
     """
     if not stdin:
         return "{}" if values is None else values
@@ -163,7 +163,7 @@ def stdin_text(values: str | None, stdin: bool) -> str:
 
 
 def qos_options(preset: str) -> Callable[[CommandT], CommandT]:
-    """Return the options for a QoS profile that begins as `preset`."""
+    """Return the options for a QoS profile that starts from `preset`."""
 
     def short_keys(kind: Any) -> click.Choice[str]:
         return click.Choice([k for k in kind.short_keys() if k != "unknown"], case_sensitive=False)
@@ -172,7 +172,7 @@ def qos_options(preset: str) -> Callable[[CommandT], CommandT]:
         click.option(
             "--qos-profile",
             type=short_keys(QoSPresetProfiles),
-            help=f"Preset to begin with (default: {preset}).",
+            help=f"Preset to start from (default: {preset}).",
         ),
         click.option("--qos-depth", type=whole, help="Length of the queue."),
         click.option("--qos-history", type=short_keys(HistoryPolicy)),
@@ -191,9 +191,9 @@ def qos_options(preset: str) -> Callable[[CommandT], CommandT]:
 
 
 def qos_from(preset: str, options: dict[str, Any]) -> QoSProfile | None:
-    """Take the options of `qos_options` out of `options` and return the profile they make.
+    """Remove the options of `qos_options` from `options` and return their profile.
 
-    None if the user gave none of them.
+    Returns None if the user gave none of them.
     """
     given = {
         name: options.pop(f"qos_{name}")

@@ -1,7 +1,7 @@
 """What a command prints: text for people, or with ``--json`` one record per line for programs.
 
-Data goes to stdout, and what is said about it to stderr. Each item is flushed, so that a pipe
-shows it at once.
+Data goes to stdout; warnings and progress go to stderr. Each item is flushed, so that a pipe gets
+it at once.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ __all__ = ["Output", "unwritable"]
 
 
 class Output:
-    """Where a verb prints to.
+    """The output streams of a verb.
 
     Args:
-        stdout: Where data goes.
-        stderr: Where warnings go.
+        stdout: The stream for data; default: sys.stdout.
+        stderr: The stream for warnings; default: sys.stderr.
         json: Whether to print records instead of text.
 
     Attributes:
@@ -47,13 +47,13 @@ class Output:
 
     @property
     def is_terminal(self) -> bool:
-        """Whether a person reads the data as it comes."""
+        """Whether data is printed as text on a terminal."""
         return not self.json and self._stdout.isatty()
 
     def item(self, text: str, record: object) -> None:
         """Print one item of data: `text`, or `record` in one line of JSON.
 
-        A float that JSON does not have is a word there: ``NaN``, ``Infinity``, ``-Infinity``.
+        Floats that JSON cannot represent become strings: ``NaN``, ``Infinity``, ``-Infinity``.
         """
         if self.json:
             self._write(msgspec.json.encode(json_safe(record)).decode())
@@ -61,7 +61,7 @@ class Output:
             self._write(text)
 
     def json_line(self, text: str) -> None:
-        """Print a record that is JSON already."""
+        """Print a record that is already encoded as JSON."""
         self._write(text)
 
     def text(self, text: str = "") -> None:
@@ -70,19 +70,19 @@ class Output:
             self._write(text)
 
     def raw(self, text: str) -> None:
-        """Print a text for people as it is, without a new line; nothing with ``--json``."""
+        """Print text for people without a newline; nothing with ``--json``."""
         if not self.json:
             self._print(text)
 
     def progress(self, text: str) -> None:
-        """Say what is being waited for: on stdout as ros2 does, on stderr with ``--json``."""
+        """Print what is being waited for: on stdout as ros2 does, on stderr with ``--json``."""
         if self.json:
             self.warn(text)
         else:
             self._write(text)
 
     def warn(self, text: str) -> None:
-        """Print a line on stderr, if that can be written to: there is no other place for it."""
+        """Print a line on stderr; dropped if stderr cannot be written to."""
         try:
             self._stderr.write(f"{text}\n")
             self._stderr.flush()
@@ -96,7 +96,7 @@ class Output:
         try:
             self._stdout.write(text)
             self._stdout.flush()
-        except BrokenPipeError:  # its reader has enough, and knows it
+        except BrokenPipeError:  # the reader went away on purpose
             raise
         except OSError as error:
             discard(self._stdout)
@@ -104,7 +104,7 @@ class Output:
 
     @contextlib.contextmanager
     def waiting(self, text: str) -> Iterator[None]:
-        """Show on a terminal, for as long as it takes, what is being waited for; else nothing."""
+        """Show a spinner with `text` while waiting, if the output is a terminal."""
         if self.json or not (self._stdout.isatty() and self._stderr.isatty()):
             yield
             return
@@ -115,7 +115,7 @@ class Output:
 
     @contextlib.contextmanager
     def live(self) -> Iterator[Any]:
-        """Give a function that shows a rich table in place of the one before."""
+        """Yield a function that displays a rich table in place of the previous one."""
         from rich.console import Console
         from rich.live import Live
 
@@ -124,18 +124,18 @@ class Output:
 
 
 def unwritable(error: OSError) -> str:
-    """Return what to say when the answer could not be printed."""
-    return f"stdout cannot be written to: {error.strerror}; the answer is incomplete"
+    """Return the error text for output that could not be written."""
+    return f"cannot write to stdout: {error.strerror}; the output is incomplete"
 
 
 def json_safe(plain: Any) -> Any:
-    """Return plain values in which words stand for the floats that JSON does not have."""
+    """Return plain values, with strings for the floats that JSON cannot represent."""
     if isinstance(plain, float):
         return plain if math.isfinite(plain) else NOT_FINITE[str(plain)]
     if isinstance(plain, dict):
         return {key: json_safe(value) for key, value in plain.items()}
     if isinstance(plain, list):
-        # All of a list are of one kind, and those of numbers can be long.
+        # The elements of a list have one type, and lists of numbers can be long: one is checked.
         simple = not plain or isinstance(plain[0], int | str)
         return plain if simple else [json_safe(value) for value in plain]
     return plain

@@ -1,4 +1,4 @@
-"""Parameters as text, in ros2's words, and as plain values."""
+"""Parameters as text in the words of ros2, as records, and as parameter files."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ LABELS = (
 
 
 def plain(parameter: Parameter) -> Any:
-    """Return a value for people and YAML: bytes as numbers."""
+    """Return the value of a parameter for printing and YAML: bytes become numbers."""
     value = parameter.value
     if isinstance(value, list | tuple | bytes):
         return [item[0] if isinstance(item, bytes) else item for item in value]
@@ -59,7 +59,7 @@ def plain(parameter: Parameter) -> Any:
 
 
 def description(descriptor: ParameterDescriptor) -> list[str]:
-    """Return what is known of a parameter, in ros2's lines."""
+    """Return the description of a parameter in the lines of ros2."""
     lines = [f"Parameter name: {descriptor.name}", f"  Type: {TYPE_NAMES[descriptor.type]}"]
     if descriptor.description:
         lines.append(f"  Description: {descriptor.description}")
@@ -77,12 +77,12 @@ def description(descriptor: ParameterDescriptor) -> list[str]:
 
 
 def ranges_of(descriptor: ParameterDescriptor) -> list[Any]:
-    """Return the ranges that a value has to be in: one at most."""
+    """Return the range of a numeric parameter, or nothing."""
     return [*descriptor.floating_point_range, *descriptor.integer_range]
 
 
 def descriptor_record(node_name: str, descriptor: ParameterDescriptor) -> dict[str, Any]:
-    """Return what is known of a parameter as plain values."""
+    """Return the description of a parameter as plain values."""
     ranges = ranges_of(descriptor)
     return {
         "node": absolute(node_name),
@@ -99,18 +99,18 @@ def descriptor_record(node_name: str, descriptor: ParameterDescriptor) -> dict[s
 
 
 def file_form(parameters: Iterable[Parameter]) -> dict[str, Any]:
-    """Return parameters as a parameter file holds them: sorted, nested where names have dots."""
+    """Return parameters in the form of a parameter file: sorted, nested where names have dots."""
     values: dict[str, Any] = {}
-    # Of `a` and `a.b` the first comes first, and keeps the second one's name in one piece.
+    # `a` sorts before `a.b`; then `a.b` cannot be nested below it and keeps its dotted name.
     for parameter in sorted(parameters, key=attrgetter("name")):
         insert(values, parameter.name, plain(parameter))
     return ordered(values)
 
 
 def file_text(record: dict[str, Any]) -> str:
-    """Return what is in a parameter file as its text: strings are strings by its own rules, too.
+    """Return the text of a parameter file, quoting strings that its rules would read as numbers.
 
-    Those differ from YAML's: ``INF`` is a number, for example.
+    These rules differ from YAML's: ``INF`` is a number, for example.
     """
     from aionode.arguments._parameter_yaml import parse_scalar
 
@@ -118,7 +118,7 @@ def file_text(record: dict[str, Any]) -> str:
 
 
 def insert(values: dict[str, Any], name: str, value: Any) -> None:
-    """Put a value under its name, the parts of which are keys one below the other."""
+    """Insert a value; the dotted parts of its name become nested keys."""
     first, dot, rest = name.partition(".")
     if dot and isinstance(values.get(first, {}), dict):
         insert(values.setdefault(first, {}), rest, value)
@@ -127,7 +127,7 @@ def insert(values: dict[str, Any], name: str, value: Any) -> None:
 
 
 def ordered(values: dict[str, Any]) -> dict[str, Any]:
-    """Return the same mapping with its keys sorted, inner ones too."""
+    """Return the mapping with keys sorted at every level."""
     return {
         key: ordered(value) if isinstance(value, dict) else value
         for key, value in sorted(values.items())

@@ -1,6 +1,7 @@
-"""Which way each publisher reaches each subscription, as far as it can be told from outside.
+"""By which route each publisher reaches each subscription, as seen by another process.
 
-A process knows it exactly: `publisher.stats.routes`. Others see who is linked, and who could be.
+The publishing process knows exactly: `publisher.stats.routes`. Other processes only see which
+processes are linked and which could be.
 """
 
 from __future__ import annotations
@@ -9,14 +10,14 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from aionode.cli._support.diagnosis import Finding
 from aionode.graph import EndpointKind
-from aionode.transport.base import LinkStatus
-from aionode.transport.ipc import Advertisement, can_link
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from aionode.graph import EndpointInfo
     from aionode.node import Node
+    from aionode.transport.base import LinkStatus
+    from aionode.transport.ipc import Advertisement
 
 __all__ = ["Pair", "link_findings", "pairs_of", "query_links"]
 
@@ -42,7 +43,7 @@ class Pair(NamedTuple):
         publisher: The publisher.
         subscription: The subscription.
         route: ``local``, ``link`` or ``zenoh``.
-        reason: Why it is Zenoh, in a few words.
+        reason: Why the route is ``zenoh``; empty otherwise.
     """
 
     publisher: EndpointInfo
@@ -59,17 +60,17 @@ class Pair(NamedTuple):
         )
 
     def text(self) -> str:
-        """Return it in a line for people."""
-        publisher, handler_for = self.nodes
+        """Return the pair as a line of text."""
+        publisher, subscription = self.nodes
         reason = f" ({self.reason})" if self.reason else ""
-        return f"{publisher} -> {handler_for} on {self.publisher.name}: {self.route}{reason}"
+        return f"{publisher} -> {subscription} on {self.publisher.name}: {self.route}{reason}"
 
     def record(self) -> dict[str, str]:
-        """Return it for programs."""
-        publisher, handler_for = self.nodes
+        """Return the pair as a record for ``--json``."""
+        publisher, subscription = self.nodes
         return {
             "publisher": publisher,
-            "subscription": handler_for,
+            "subscription": subscription,
             "topic": self.publisher.name,
             "way": self.route,
             "reason": self.reason,
@@ -77,7 +78,9 @@ class Pair(NamedTuple):
 
 
 async def query_links(node: Node) -> LinkStatus:
-    """Return who is linked, and who could be."""
+    """Return which processes are linked, and which could be."""
+    from aionode.transport.base import LinkStatus
+
     asked = [await transport.link_status() for transport in node.context.transports]
     return LinkStatus(
         set().union(*(links.advertisements for links in asked)),
@@ -86,47 +89,51 @@ async def query_links(node: Node) -> LinkStatus:
 
 
 def pairs_of(endpoints: Iterable[EndpointInfo], links: LinkStatus) -> list[Pair]:
-    """Return each publisher with each subscription that it reaches, by topic."""
+    """Return each publisher with each subscription that it reaches, sorted by topic."""
+    from aionode.transport.ipc import Advertisement
+
     endpoints = sorted(endpoints, key=lambda end: (end.name, end.node.fully_qualified_name))
     advertisements = {
         advertisement.participant: advertisement
         for text in links.advertisements
         if (advertisement := Advertisement.parse(text))
     }
-    handlers: dict[str, list[EndpointInfo]] = {}
+    subscriptions: dict[str, list[EndpointInfo]] = {}
     for endpoint in endpoints:
         if endpoint.kind is EndpointKind.SUBSCRIPTION:
-            handlers.setdefault(endpoint.name, []).append(endpoint)
+            subscriptions.setdefault(endpoint.name, []).append(endpoint)
     return [
-        Pair(publisher, handler_for, *route(publisher, handler_for, links, advertisements))
+        Pair(publisher, subscription, *route(publisher, subscription, links, advertisements))
         for publisher in endpoints
         if publisher.kind is EndpointKind.PUBLISHER
-        for handler_for in handlers.get(publisher.name, ())
-        if publisher.matches(handler_for)
+        for subscription in subscriptions.get(publisher.name, ())
+        if publisher.matches(subscription)
     ]
 
 
 def route(
     publisher: EndpointInfo,
-    handler_for: EndpointInfo,
+    subscription: EndpointInfo,
     links: LinkStatus,
     advertisements: Mapping[str, Advertisement],
 ) -> tuple[str, str]:
-    """Return which way messages take, and why if there may be a better one."""
-    if publisher.node.participant == handler_for.node.participant:
+    """Return the route of messages, and the reason if it is Zenoh."""
+    from aionode.transport.ipc import can_link
+
+    if publisher.node.participant == subscription.node.participant:
         return "local", ""
     if not can_link(publisher):
         return "zenoh", "it keeps messages for late subscriptions"
-    if frozenset((publisher.node.participant, handler_for.node.participant)) in links.pairs:
+    if frozenset((publisher.node.participant, subscription.node.participant)) in links.pairs:
         return "link", ""
-    return "zenoh", why_unlinked(publisher, handler_for, advertisements)
+    return "zenoh", why_unlinked(publisher, subscription, advertisements)
 
 
 def why_unlinked(
-    publisher: EndpointInfo, handler_for: EndpointInfo, advertisements: Mapping[str, Advertisement]
+    publisher: EndpointInfo, subscription: EndpointInfo, advertisements: Mapping[str, Advertisement]
 ) -> str:
-    """Return why the processes of two endpoints are not linked, as far as they tell."""
-    nodes = (publisher.node, handler_for.node)
+    """Return why the processes of two endpoints are not linked, judging by their advertisements."""
+    nodes = (publisher.node, subscription.node)
     one, other = (advertisements.get(node.participant) for node in nodes)
     if one is None or other is None:
         silent = [n.fully_qualified_name for n in nodes if n.participant not in advertisements]
@@ -139,7 +146,7 @@ def why_unlinked(
 
 
 def link_findings(pairs: Iterable[Pair]) -> list[Finding]:
-    """Return who could be linked and is not, once for each two processes."""
+    """Return a finding for each two processes that could be linked and are not."""
     found: dict[frozenset[str], Finding] = {}
     for pair in pairs:
         if pair.reason not in HINTS:

@@ -23,32 +23,32 @@ if TYPE_CHECKING:
 __all__ = ["make_node", "run_verb"]
 
 INTERRUPTED = 130
-"""The exit status of a program that Ctrl-C ended before it was done, as shells know it."""
+"""The exit status of a program that Ctrl-C interrupted, by the convention of shells."""
 
 CLOSE_S = 0.9
-"""How long a command that has printed its answer may take to end, in seconds."""
+"""How long a command may take to exit after it has printed its answer, in seconds."""
 
 STOP_S = 3.5
-"""How long it may take after a signal: a goal is cancelled meanwhile, which the server answers."""
+"""How long it may take to exit after a signal, in seconds; time for the server to cancel a goal."""
 
 QUIET_S = 2.0
-"""How long nothing has to come before what is known counts as all there is, in seconds.
+"""How long discovery has to be quiet before it counts as complete, in seconds.
 
-Zenoh has been seen to pause for so long between the first of 3000 endpoints and the rest.
+Zenoh has been seen to pause this long between the first of 3000 endpoints and the rest.
 """
 
 PROGRESS_S = 1.0
-"""How often a command says what it is waiting for, in seconds."""
+"""How often a command reports what it is waiting for, in seconds."""
 
 UNLIMITED_MS = 3_600_000.0
-"""How long a command may block its own loop: nothing else runs there, and terminals are slow."""
+"""Callback budget of a command: nothing else runs in its loop, and terminals are slow."""
 
 
 def make_node(
     context: Context | None = None, node_name: str | None = None, *, use_sim_time: bool = False
 ) -> Node:
-    """Return the node of a command: hidden, and with nothing that others could use."""
-    # Imported when a command runs: its help needs none of this.
+    """Return the node of a command: hidden, and without services or logs of its own."""
+    # Imported when a command runs; its help does not need them.
     from aionode.node import Node
     from aionode.parameter import Parameter
 
@@ -78,15 +78,15 @@ def run_verb(
     Args:
         verb: Called with a running node and the output; it may return an exit status.
         json: Whether to print records.
-        node_name: Name of the node; a hidden one without it.
-        use_sim_time: Whether the node's time is that of ``/clock``.
-        endless: Whether Ctrl-C is the usual end, with status 0, and not an interruption (130).
-        busy: Whether many messages are expected, so that the faster loop is worth its import.
-        asks: Whether its answer is made of what is on the network, and all of that is waited for.
+        node_name: Name of the node; default: a hidden name.
+        use_sim_time: Whether the node takes its time from ``/clock``.
+        endless: Whether Ctrl-C is the normal end, with status 0, and not an interruption (130).
+        busy: Whether many messages are expected, which makes the faster loop worth its import.
+        asks: Whether the verb needs a complete graph, so that discovery is awaited first.
 
     Raises:
-        click.exceptions.Exit: always, with the status.
-        AionodeError: the command cannot do what was asked.
+        click.exceptions.Exit: always, with the exit status.
+        AionodeError: the verb failed.
     """
     from aionode.runner import best_loop_factory
 
@@ -122,20 +122,20 @@ def run_verb(
 
 
 async def wait_until_known(node: Node, output: Output) -> None:
-    """Wait until all who can be reached have said what there is; say so if it takes long.
+    """Wait until discovery is complete, and report progress if that takes long.
 
-    As long as something comes it is waited for. If somebody does not answer, there is a warning
-    that the answer may be incomplete.
+    It waits as long as something new arrives. If a peer does not answer, it warns that the output
+    may be incomplete.
     """
     transports = node.context.transports
     asked = asyncio.gather(*(transport.all_known(QUIET_S) for transport in transports))
     while not (await asyncio.wait((asked,), timeout=PROGRESS_S))[0]:
         count = len(node.graph.nodes()) + len(node.graph.endpoints())
-        output.warn(f"Waiting for what there is to be known: {count} nodes and endpoints so far")
+        output.warn(f"Waiting for discovery: {count} nodes and endpoints so far")
     if not all(await asked):
         output.warn(
-            "WARNING: somebody who can be reached has not said what there is (frozen, overloaded "
-            "or far away?): this may be incomplete"
+            "WARNING: a reachable peer has not answered (frozen, overloaded or far away?): "
+            "this may be incomplete"
         )
 
 
@@ -148,8 +148,8 @@ def run_until_stopped(
 
     Args:
         work: Cancelled at the first signal.
-        loop_factory: Makes the event loop; asyncio's own without it.
-        on_stop: Called at the first signal, whatever the loop is doing.
+        loop_factory: Creates the event loop; default: asyncio's own.
+        on_stop: Called at the first signal, even while the loop is blocked.
 
     Raises:
         BaseException: what `work` raised; the first error where it raised several.
@@ -191,7 +191,7 @@ async def stoppable(
 
 
 def first_error(group: BaseExceptionGroup[BaseException]) -> BaseException:
-    """Return the error of a group that tells most: one of aionode's own if there is one."""
+    """Return the most informative error of a group: one of aionode's own if there is one."""
     known, _ = group.split((AionodeError, BrokenPipeError))
     error: BaseException = known or group
     while isinstance(error, BaseExceptionGroup):

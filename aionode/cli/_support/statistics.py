@@ -1,6 +1,6 @@
-"""Figures about a stream of messages: how often, how many bytes, how old.
+"""Statistics of a stream of messages: rate, bandwidth, age.
 
-They take numbers and give numbers; nothing is received or printed here.
+Pure computation: nothing is received or printed here.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True)
 class Spread:
-    """Of some durations in nanoseconds: mean, extremes, population deviation, number."""
+    """Mean, extremes, population standard deviation and count of durations in nanoseconds."""
 
     mean: float
     low: int
@@ -42,26 +42,26 @@ def spread_of(values: Sequence[int]) -> Spread:
 
 
 class Window:
-    """The newest durations, and whether there is one that was not looked at yet."""
+    """The newest durations, and whether any has been added since the last `spread`."""
 
     def __init__(self, size: int) -> None:
         self._values: deque[int] = deque(maxlen=size)
         self._fresh = False
 
     def add(self, value_ns: int) -> None:
-        """Take one duration; the oldest goes when there are too many."""
+        """Add a duration; the oldest is dropped when the window is full."""
         self._values.append(value_ns)
         self._fresh = True
 
     def clear(self) -> bool:
-        """Forget all; return whether there were any."""
+        """Drop all durations; return whether there were any."""
         had = bool(self._values)
         self._values.clear()
         self._fresh = False
         return had
 
     def spread(self) -> Spread | None:
-        """Return the spread, or None if nothing came since the last look."""
+        """Return the spread, or None if nothing was added since the last call."""
         if not self._fresh:
             return None
         self._fresh = False
@@ -76,7 +76,7 @@ class Intervals(Window):
         self._last_ns: int | None = None
 
     def arrive(self, now_ns: int) -> bool:
-        """Note a message; return whether time went backwards, and all was forgotten."""
+        """Record a message; return whether time went backwards, which resets the window."""
         last_ns, self._last_ns = self._last_ns, now_ns
         if last_ns is None:
             return False
@@ -88,7 +88,7 @@ class Intervals(Window):
 
 @dataclass(frozen=True, slots=True)
 class Throughput:
-    """Bytes per second of some messages, and their sizes in bytes."""
+    """Bytes per second of the messages in a window, and their sizes in bytes."""
 
     bytes_per_s: float
     count: int
@@ -104,14 +104,14 @@ class Bandwidth:
         self._messages: deque[tuple[int, int]] = deque(maxlen=size)
 
     def arrive(self, now_ns: int, size_bytes: int) -> None:
-        """Note a message."""
+        """Record a message."""
         self._messages.append((now_ns, size_bytes))
 
     def rate(self, now_ns: int) -> Throughput | None:
         """Return the rate since the oldest message; None with less than two.
 
-        The oldest one began the time that is counted, so its own bytes are not. The time ends with
-        the newest one, or with `now_ns` as soon as the next one is overdue.
+        The oldest message starts the measured time, so its own bytes do not count. The time ends
+        with the newest message, or at `now_ns` once the next one is overdue.
         """
         if len(self._messages) < 2:
             return None
@@ -127,7 +127,7 @@ class Bandwidth:
 
 
 def size_texts(bytes_per_s: float, *sizes: float) -> list[str]:
-    """Return rate and sizes as text, all in the unit that suits the rate."""
+    """Return the rate and sizes as text, all in the unit that suits the rate."""
     if bytes_per_s < 1e3:
         return [f"{size:.0f} B" for size in (bytes_per_s, *sizes)]
     unit, divisor = ("KB", 1e3) if bytes_per_s < 1e6 else ("MB", 1e6)

@@ -1,7 +1,7 @@
-"""Types that are not known here, as the nodes that use them describe them.
+"""Types without a local definition, built from the descriptions of the nodes that use them.
 
-A node that offers ``~/get_type_description`` tells what its types consist of; classes are made of
-that, and are right if they have the hash that the graph says.
+A node with ``~/get_type_description`` describes its types. A class built from a description is
+accepted if it has the type hash that the graph shows.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["fetch_type", "type_from"]
 
 ANSWER_S = 2.0
-"""How long a node may take to describe a type; it takes milliseconds."""
+"""Timeout for a type description, in seconds; normally it takes milliseconds."""
 
 KINDS = {
     1: "message",
@@ -47,7 +47,7 @@ PLACEHOLDER = "structure_needs_at_least_one_member"
 
 
 async def fetch_type(node: Node, user: EndpointInfo) -> Any | None:
-    """Return the class of what `user` sends or serves, or None if its node does not tell."""
+    """Return the class of an endpoint's type, or None if its node does not describe it."""
     from aionode.interfaces.type_description_interfaces.srv import GetTypeDescription
     from aionode.wire.typehash import type_hash
 
@@ -59,7 +59,7 @@ async def fetch_type(node: Node, user: EndpointInfo) -> Any | None:
     try:
         response: Any = await client.call(request, timeout_sec=ANSWER_S)
     except AionodeError:
-        return None  # it is one of several ways to learn the type, and the caller says what else
+        return None  # the caller reports it, with the other ways to provide the type
     finally:
         client.destroy()
     if not response.successful:
@@ -67,7 +67,7 @@ async def fetch_type(node: Node, user: EndpointInfo) -> Any | None:
     try:
         made = type_from(response.type_description)
     except (LookupError, TypeError, ValueError, RecursionError):
-        return None  # no type can be made of what the node says
+        return None  # the description is invalid
     return made if type_hash(made) == user.type_hash else None
 
 
@@ -75,7 +75,7 @@ def type_from(description: Any) -> Any:
     """Return the message or service class that a ``TypeDescription`` describes.
 
     Raises:
-        LookupError, TypeError, ValueError, RecursionError: it describes no possible type.
+        LookupError, TypeError, ValueError, RecursionError: the description is invalid.
     """
     main = description.type_description
     parts = {part.type_name: part for part in (main, *description.referenced_type_descriptions)}
@@ -93,7 +93,7 @@ def type_from(description: Any) -> Any:
 
 
 def message(name: str, parts: dict[str, Any], made: dict[str, type[Message]]) -> type[Message]:
-    """Return the class of one message, made at the first call."""
+    """Return the class of one message, created on the first call."""
     if name not in made:
         annotations = {
             field.name: Annotated[Any, field_type(field.type, parts, made)]
@@ -111,7 +111,7 @@ def message(name: str, parts: dict[str, Any], made: dict[str, type[Message]]) ->
 
 
 def field_type(type_: Any, parts: dict[str, Any], made: dict[str, type[Message]]) -> FieldType:
-    """Return the type of a field, whose number says both what it holds and how many."""
+    """Return the type of a field; its `type_id` encodes both kind and container."""
     container, kind = divmod(type_.type_id, 48)
     nested = message(type_.nested_type_name, parts, made) if kind == 1 else None
     return FieldType(

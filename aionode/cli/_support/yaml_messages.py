@@ -15,17 +15,17 @@ if TYPE_CHECKING:
 __all__ = ["Filler", "message_from_yaml"]
 
 DEEPEST = 100
-"""So many values may lie in each other."""
+"""Maximum nesting depth of values."""
 
 HEADER = "std_msgs/msg/Header"
 TIME = "builtin_interfaces/msg/Time"
 
 
 def plain_values(text: str, what: str) -> dict[str, Any]:
-    """Return what YAML says, as plain values.
+    """Return the mapping in a YAML text as plain values.
 
     Raises:
-        CommandError: it is no YAML, or no mapping.
+        CommandError: the text is not valid YAML, or not a mapping.
     """
     import yaml
 
@@ -33,10 +33,10 @@ def plain_values(text: str, what: str) -> dict[str, Any]:
         expect_shallow(text, what)
         documents = [each for each in yaml.load_all(text, loader()) if each is not None]
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-        # Of PyYAML's constructors and of Python: `!!int` with nothing behind it, a number of too
-        # many digits, half a character.
+        # From PyYAML's constructors and Python: an empty `!!int`, a number with too many
+        # digits, a lone surrogate.
         raise CommandError(
-            f"The passed value is no YAML: {shortened(text)}: {error}; {what} fits"
+            f"The passed value is not valid YAML: {shortened(text)}: {error}; expected {what}"
         ) from error
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
@@ -45,26 +45,27 @@ def plain_values(text: str, what: str) -> dict[str, Any]:
             where = " at its end"
         problem = getattr(error, "problem", None) or str(error).splitlines()[0]
         raise CommandError(
-            f"The passed value is no YAML: {shortened(text)}{where}: {problem}; {what} fits"
+            f"The passed value is not valid YAML: {shortened(text)}{where}: {problem}; "
+            f"expected {what}"
         ) from error
     if len(documents) > 1:
         raise CommandError(
-            f"The passed value has {len(documents)} YAML documents: {shortened(text)}; one fits"
+            f"The passed value has {len(documents)} YAML documents: {shortened(text)}; expected one"
         )
-    # What `topic echo` prints ends in three dashes, behind which another document could begin.
+    # `topic echo` prints three dashes after a message, which begin another, empty document.
     values = documents[0] if documents else {}
     if not isinstance(values, dict):
         raise CommandError(
             "The passed value needs to be a dictionary in YAML format: "
-            f"{shortened(text)} is a {type(values).__name__}; {what} fits"
+            f"{shortened(text)} is a {type(values).__name__}; expected {what}"
         )
     return values
 
 
 def expect_shallow(text: str, what: str) -> None:
-    """Raise CommandError if values lie deeper in each other than those of any message.
+    """Raise CommandError if values are nested deeper than those of any message.
 
-    libyaml calls itself for each of them, and ends the process at some ten thousand.
+    libyaml recurses for each level, and crashes the process at about ten thousand.
     """
     import yaml
 
@@ -76,13 +77,13 @@ def expect_shallow(text: str, what: str) -> None:
         depth -= isinstance(event, yaml.CollectionEndEvent)
         if depth > DEEPEST:
             raise CommandError(
-                f"The passed value is too deep: {shortened(text)} has more than {DEEPEST} brackets "
-                f"in each other; {what} fits"
+                f"The passed value is nested too deeply: {shortened(text)} has more than {DEEPEST} "
+                f"levels; expected {what}"
             )
 
 
 def loader() -> Any:
-    """Return PyYAML's safe loader, except that dates are strings: no field of ROS holds a date."""
+    """Return PyYAML's safe loader, but with dates as strings: no ROS field holds a date."""
     import yaml
 
     base = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml is optional
@@ -94,28 +95,28 @@ def loader() -> Any:
 
 
 def shortened(text: str) -> str:
-    """Return a text in quotes and on one line, and not too much of it."""
+    """Return the beginning of a text, quoted and on one line."""
     limit = 60
     return repr(text if len(text) <= limit else f"{text[:limit]}...")
 
 
 def example_of(msg_type: type[Message]) -> str:
-    """Return values that fit a type, in YAML."""
+    """Return an example of values for a type, in YAML."""
     names = [field.name for field in fields(msg_type)]
     return f"'{{{names[0]}: ...}}'" if names else "'{}'"
 
 
 def message_from_yaml(msg_type: type[Message], text: str) -> Message:
-    """Return the message that a user typed.
+    """Return the message for values typed in YAML.
 
     Raises:
-        CommandError: it does not fit the type.
+        CommandError: the values do not fit the type.
     """
     return made(msg_type, plain_values(text, example_of(msg_type)))
 
 
 def made(msg_type: type[Message], values: dict[str, Any]) -> Message:
-    """Return the message that plain values make."""
+    """Return the message with the given field values."""
     try:
         msg = from_builtins(msg_type, values)
         check(msg)
@@ -125,7 +126,7 @@ def made(msg_type: type[Message], values: dict[str, Any]) -> Message:
 
 
 class Filler:
-    """Makes messages from YAML in which a Header may be ``auto`` and a Time ``now``.
+    """Creates messages from YAML in which a Header may be ``auto`` and a Time ``now``.
 
     Raises:
         CommandError: the text does not fit the type.
@@ -138,7 +139,7 @@ class Filler:
         self._message = made(msg_type, values)
 
     def message(self, now: Time) -> Message:
-        """Return the message, stamped with `now` where that was asked for."""
+        """Return the message, with `now` in every field given as ``auto`` or ``now``."""
         for stamp in self._stamps:
             stamp(self._message, now.to_msg())
         return self._message
@@ -146,7 +147,7 @@ class Filler:
     def _strip(
         self, msg_type: type[Message], values: dict[str, Any], path: tuple[str, ...]
     ) -> None:
-        """Take every ``auto`` and ``now`` out of `values`, and note where they were."""
+        """Replace every ``auto`` and ``now`` in `values`, and remember their fields."""
         for field in fields(msg_type):
             nested, value = field.type.nested, values.get(field.name)
             if nested is None or field.type.container != "single":
@@ -163,7 +164,7 @@ class Filler:
 
 
 def setter(path: tuple[str, ...]) -> Callable[[Any, Any], None]:
-    """Return what sets the field at `path` of a message."""
+    """Return a function that sets the field at `path` of a message."""
 
     def set_field(msg: Any, value: Any) -> None:
         for name in path[:-1]:

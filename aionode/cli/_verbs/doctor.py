@@ -1,4 +1,4 @@
-"""``aionode doctor``: what is on the network, and why two endpoints do not talk."""
+"""``aionode doctor``: a summary of the network, and why endpoints do not communicate."""
 
 from __future__ import annotations
 
@@ -24,26 +24,27 @@ if TYPE_CHECKING:
 __all__ = ["doctor", "network_findings"]
 
 PROBE_S = 0.2
-"""How long a router on this machine may take to accept a connection; it takes 0.1 ms."""
+"""Timeout for a router on this machine to accept a connection, in seconds; it takes 0.1 ms."""
 
 DOMAINS_S = 1.0
-"""How long nodes of other domains are looked for if there are none of this one."""
+"""How long to look for nodes of other domains if this one has none, in seconds."""
 
 DOMAINS_AGAIN_S = 0.02
+"""How often to look for them, in seconds."""
 
 ZENOH = "rmw_zenoh_cpp"
 
 
 async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> int:
-    """Print what is on the network and what looks wrong; return 1 if something does not work.
+    """Print a summary of the network and its problems; return 1 if there is a problem, else 0.
 
     Args:
         node: The command's node.
-        names: Look only at these nodes, topics and services, and show which way messages take.
+        names: Consider only these nodes, topics and services, and show the routes of messages.
         output: Where to print.
 
     Raises:
-        CommandError: one of the names is not there.
+        CommandError: one of the names does not exist.
     """
     network = node.context.network
     has_router = await answers(network.router_port)
@@ -94,7 +95,7 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
 
 
 def summary(record: Mapping[str, Any], router_port: int) -> list[str]:
-    """Return what is on the network in a few lines."""
+    """Return the summary of the network as lines of text."""
     router = "answers" if record["router"] else "none"
     return [
         f"Domain: {record['domain_id']}",
@@ -110,12 +111,12 @@ def summary(record: Mapping[str, Any], router_port: int) -> list[str]:
 
 
 def count(endpoints: Sequence[EndpointInfo], *kinds: EndpointKind) -> int:
-    """Return how many names the endpoints of some kinds use."""
+    """Return the number of distinct names of endpoints of some kinds."""
     return len({endpoint.name for endpoint in endpoints if endpoint.kind in kinds})
 
 
 def chosen(node: Node, names: Sequence[str]) -> tuple[list[NodeInfo], list[EndpointInfo]]:
-    """Return nodes and endpoints; only those that have, or belong to, one of `names` if given."""
+    """Return the nodes and endpoints that the names select; without names, all of them."""
     nodes = lookup.node_infos(node)
     endpoints = [e for e in lookup.endpoints(node) if not e.node.name.startswith("_")]
     if not names:
@@ -124,7 +125,7 @@ def chosen(node: Node, names: Sequence[str]) -> tuple[list[NodeInfo], list[Endpo
     known = {one.fully_qualified_name for one in nodes} | {one.name for one in endpoints}
     for name in sorted(wanted - known):
         raise lookup.unknown("No node, topic or service", name, known, "node list")
-    # A partner may have another name, so whoever looks like one stays in.
+    # A counterpart may be misspelled, so endpoints with similar names are kept.
     of_nodes = {one.name for one in endpoints if one.node.fully_qualified_name in wanted}
     near = {
         name
@@ -138,17 +139,17 @@ def chosen(node: Node, names: Sequence[str]) -> tuple[list[NodeInfo], list[Endpo
 
 
 def full_names(names: Sequence[str]) -> set[str]:
-    """Return names as they are in the graph."""
+    """Return the names with their leading slash."""
     return {name if name.startswith("/") else f"/{name}" for name in names}
 
 
 async def other_domains(node: Node, *, patient: bool) -> list[int]:
-    """Return the domains of nodes that can be reached but not heard, as far as is known.
+    """Return the other domains in which reachable nodes have been seen.
 
     Args:
         node: The command's node.
-        patient: Whether to look for a second: where nothing else is seen, they are the news, and
-            on a busy machine it takes time.
+        patient: Whether to keep looking for `DOMAINS_S`. Where this domain is empty, other domains
+            are the likely explanation, and on a busy machine finding them takes time.
     """
     ends_ns = perf_ns() + int(DOMAINS_S * 1e9)
     while True:
@@ -161,7 +162,7 @@ async def other_domains(node: Node, *, patient: bool) -> list[int]:
 
 
 async def answers(port: int) -> bool:
-    """Whether somebody listens on a port of this machine."""
+    """Return whether a port of this machine accepts connections."""
     try:
         async with asyncio.timeout(PROBE_S):
             _, writer = await asyncio.open_connection("127.0.0.1", port)
@@ -179,7 +180,7 @@ def network_findings(
     domains: Sequence[int],
     alone: bool,
 ) -> list[Finding]:
-    """Return what keeps nodes from being found at all."""
+    """Return the findings about settings that prevent discovery."""
     found = []
     if domains:
         others = ", ".join(map(str, domains))
@@ -187,9 +188,9 @@ def network_findings(
             Finding(
                 "problem" if alone else "hint",
                 "domain",
-                f"there are nodes in domain {others}, and this is domain {network.domain_id}: "
-                "they do not hear each other",
-                f"ROS_DOMAIN_ID={domains[0]} for those that should",
+                f"there are nodes in domain {others}, but this is domain {network.domain_id}: "
+                "domains do not communicate",
+                f"set ROS_DOMAIN_ID={domains[0]}",
             )
         )
     wide = network.discovery_range
@@ -198,8 +199,8 @@ def network_findings(
             Finding(
                 "problem",
                 "discovery range",
-                "it is OFF, so nobody is looked for",
-                "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST or SUBNET",
+                "it is OFF, so no other nodes are discovered",
+                "set ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST or SUBNET",
             )
         )
     elif wide is DiscoveryRange.SYSTEM_DEFAULT and not has_router:
@@ -207,7 +208,7 @@ def network_findings(
             Finding(
                 "problem",
                 "router",
-                "others are found through a router only, and none answers on port "
+                "nodes are discovered only through a router, and none answers on port "
                 f"{network.router_port}",
                 "start one: aionode router, or ros2 run rmw_zenoh_cpp rmw_zenohd",
             )
@@ -217,15 +218,16 @@ def network_findings(
             Finding(
                 "hint",
                 "discovery range",
-                "nobody is on this machine, and other machines are not looked for",
-                "ROS_STATIC_PEERS=<host>, ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET, or a router",
+                "there are no nodes on this machine, and other machines are not searched",
+                "set ROS_STATIC_PEERS=<host> or ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET, or start a "
+                "router",
             )
         )
     return [*found, *rmw_findings(environ)]
 
 
 def rmw_findings(environ: Mapping[str, str]) -> list[Finding]:
-    """Return what is wrong with the ROS 2 nodes that are started from here."""
+    """Return a finding if ROS 2 nodes started from this environment use another RMW."""
     rmw = environ.get("RMW_IMPLEMENTATION", "")
     if rmw in {"", ZENOH}:
         return []
@@ -233,7 +235,7 @@ def rmw_findings(environ: Mapping[str, str]) -> list[Finding]:
         Finding(
             "hint",
             "RMW_IMPLEMENTATION",
-            f"it is {rmw}, so ROS 2 nodes started from here are not heard",
-            f"RMW_IMPLEMENTATION={ZENOH}",
+            f"it is {rmw}, so ROS 2 nodes started in this environment cannot be reached",
+            f"set RMW_IMPLEMENTATION={ZENOH}",
         )
     ]

@@ -38,7 +38,7 @@ def package(package_name: str, *, output: Output, kinds: tuple[str, ...] = tuple
 
 
 def packages(*, output: Output, kinds: tuple[str, ...] = tuple(KINDS)) -> None:
-    """Print the names of the packages that have types of these kinds."""
+    """Print the names of the packages with types of these kinds."""
     from aionode.interfaces import interface_names
 
     for name in all_packages():
@@ -59,7 +59,7 @@ def of_kinds(names: tuple[str, ...], kinds: tuple[str, ...]) -> list[str]:
 
 
 def show(type_name: str, *, output: Output) -> None:
-    """Print the definition of a type, with those of the types in it, indented."""
+    """Print the definition of a type, with the definitions of nested types indented."""
     from aionode.idl import definition_text
     from aionode.interfaces import get_interface
 
@@ -71,7 +71,7 @@ def show(type_name: str, *, output: Output) -> None:
 
 
 def proto(type_name: str, *, output: Output, quotes: bool = True) -> None:
-    """Print the default values of a type in YAML, to be filled in for pub and call."""
+    """Print the default values of a type in YAML, as a template for ``pub`` and ``call``."""
     from aionode.interfaces import get_interface
     from aionode.message import ActionType, ServiceType, to_builtins, to_yaml
 

@@ -24,13 +24,13 @@ RequestT = TypeVar("RequestT", bound=Message)
 ResponseT = TypeVar("ResponseT", bound=Message)
 
 ANSWER_S = 10.0
-"""How long a node may take to answer what needs no work."""
+"""Timeout for answers that need no work of the node, in seconds."""
 
 # Verbs
 
 
 def managed_nodes(node: Node, *, hidden: bool = False) -> list[str]:
-    """Return the full names of the managed nodes: those that serve `get_state`."""
+    """Return the full names of the managed nodes: those with a `get_state` service."""
     names = {
         server.node.fully_qualified_name
         for server in lookup.endpoints(node, EndpointKind.SERVER)
@@ -56,7 +56,7 @@ async def list_nodes(
 async def get_state(
     node: Node, node_name: str | None, *, output: Output, hidden: bool = False
 ) -> None:
-    """Print the state of one managed node, or of each.
+    """Print the state of one managed node, or of all.
 
     Raises:
         CommandError: there is no such node.
@@ -76,11 +76,11 @@ async def get_state(
 async def list_transitions(
     node: Node, node_name: str, *, output: Output, every: bool = False
 ) -> None:
-    """Print the transitions that a managed node can make now, or all that there are.
+    """Print the transitions that are available to a managed node now, or all that exist.
 
     Raises:
         CommandError: there is no such node.
-        RequestTimeoutError: it does not answer.
+        RequestTimeoutError: the node does not answer.
     """
     name = known(node, node_name)
     for one in await transitions(node, name, every=every):
@@ -97,12 +97,10 @@ async def list_transitions(
 
 
 async def set_state(node: Node, node_name: str, transition: str, *, output: Output) -> None:
-    """Have a managed node make a transition, named by its label or number.
-
-    It waits as long as the transition takes.
+    """Trigger a transition of a managed node, given by its label or id, and wait for its end.
 
     Raises:
-        CommandError: there is no such node or transition, or the node refused or failed.
+        CommandError: there is no such node or transition, or the transition failed.
     """
     name = known(node, node_name)
     available = await transitions(node, name)
@@ -115,7 +113,7 @@ async def set_state(node: Node, node_name: str, transition: str, *, output: Outp
         None,
     )
     if chosen is None and transition == "shutdown":
-        chosen = Transition(label=transition)  # cancels what the node is doing, and is not listed
+        chosen = Transition(label=transition)  # available in every state, but not listed
     if chosen is None:
         lines = [f"- {one.transition.label} [{one.transition.id}]" for one in available]
         raise CommandError("\n".join(["Unknown transition requested, available ones are:", *lines]))
@@ -132,7 +130,7 @@ def known(node: Node, node_name: str) -> str:
     Raises:
         CommandError: there is no such node.
     """
-    name = node_name if node_name.startswith("/") else f"/{node_name}"
+    name = lookup.absolute(node_name)
     names = managed_nodes(node, hidden=True)
     if name not in names:
         raise CommandError(f"Node not found{lookup.close_to(name, names)}")
@@ -154,6 +152,6 @@ async def ask(
     srv_type: ServiceClass[RequestT, ResponseT],
     request: RequestT,
 ) -> ResponseT:
-    """Ask a service of a managed node that answers at once."""
+    """Call a service of a managed node that answers at once."""
     client = node.create_client(srv_type, f"{name}/{service}")
     return await client.call(request, timeout_sec=ANSWER_S)

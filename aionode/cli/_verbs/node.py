@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from aionode._node.graph import actions_among
 from aionode.cli._support import lookup
-from aionode.cli._support.lookup import absolute
 from aionode.graph import EndpointKind
 
 if TYPE_CHECKING:
@@ -38,8 +37,12 @@ async def list_nodes(
 
 
 async def info(node: Node, node_name: str, *, output: Output, hidden: bool = False) -> None:
-    """Print what a node publishes, subscribes to, serves and calls."""
-    name = absolute(node_name)
+    """Print the topics, services and actions of a node.
+
+    Raises:
+        CommandError: there is no such node.
+    """
+    name = lookup.absolute(node_name)
     nodes = lookup.node_infos(node, hidden=True)
     times = Counter(one.fully_qualified_name for one in nodes)
     if not times[name]:
@@ -62,12 +65,12 @@ async def info(node: Node, node_name: str, *, output: Output, hidden: bool = Fal
 
 
 def key(title: str) -> str:
-    """Return the name of a heading in a record."""
+    """Return the record key for a heading."""
     return title.lower().replace(" ", "_")
 
 
 def offers_of(node: Node, found: NodeInfo, *, hidden: bool) -> dict[str, Offer]:
-    """Return what a node offers and uses, under ros2's headings."""
+    """Return the topics, services and actions of a node, under the headings of ros2."""
 
     def offer(kind: EndpointKind) -> Offer:
         return lookup.names_and_types(node, kind, hidden=hidden, of=found)

@@ -34,20 +34,20 @@ if TYPE_CHECKING:
 __all__ = ["delete", "describe", "dump", "get", "list_parameters", "load", "set_parameter"]
 
 ANSWER_S = 5.0
-"""How long a node may take to answer; it takes milliseconds."""
+"""Timeout for the parameter services of a node, in seconds; normally they take milliseconds."""
 
 
-# The node that is asked
+# The node
 
 
 @asynccontextmanager
 async def parameters_of(
     node: Node, node_name: str, timeout_s: float, *, hidden: bool = False
 ) -> AsyncIterator[AsyncParameterClient]:
-    """Give a client of a node's parameters, waiting for the node for `timeout_s` at most.
+    """Yield a client for the parameters of a node, waiting at most `timeout_s` for the node.
 
     Raises:
-        CommandError: there is no such node, or it offers no parameters, or it does not answer.
+        CommandError: there is no such node, it has no parameter services, or it does not answer.
     """
     from aionode.parameter_client import AsyncParameterClient
 
@@ -57,24 +57,24 @@ async def parameters_of(
     try:
         if not await client.wait_for_services(timeout_s):
             raise CommandError(
-                f"Node '{name}' offers no parameters: its parameter services did not come in "
-                f"{timeout_s:g} s (made with start_parameter_services=False?)"
+                f"Node '{name}' has no parameter services (none within {timeout_s:g} s); was it "
+                "created with start_parameter_services=False?"
             )
         async with asyncio.timeout(ANSWER_S):
             yield client
     except TimeoutError as error:
         raise CommandError(
-            f"Node '{name}' did not answer about its parameters in {ANSWER_S:g} s: is it blocked?"
+            f"Node '{name}' did not answer within {ANSWER_S:g} s; is its event loop blocked?"
         ) from error
     finally:
         client.destroy()
 
 
 async def wait_for_node(node: Node, name: str, timeout_s: float, *, hidden: bool) -> None:
-    """Wait until there is a node of this name.
+    """Wait until a node of this name exists.
 
     Raises:
-        CommandError: none came in `timeout_s`.
+        CommandError: none appeared within `timeout_s`.
     """
 
     def names() -> list[str]:
@@ -89,7 +89,7 @@ async def wait_for_node(node: Node, name: str, timeout_s: float, *, hidden: bool
 
 
 async def not_declared(client: AsyncParameterClient, wanted: Sequence[str]) -> CommandError:
-    """Return the error for parameters that a node does not have."""
+    """Return the error for parameters that are not declared or have no value."""
     known = (await client.list_parameters()).names
     missing = next((name for name in wanted if name not in known), None)
     if missing is None:
@@ -115,7 +115,7 @@ async def list_parameters(
     """Print the names of the parameters of one node, or of all; return the exit status.
 
     Raises:
-        CommandError: there is no such node, or it offers no parameters, or `pattern` is none.
+        CommandError: there is no such node, it has no parameter services, or `pattern` is invalid.
     """
     fits = pattern_from(pattern)
     if node_name is not None:
@@ -155,21 +155,22 @@ async def list_parameters(
 
 
 def offers_parameters(node: Node, name: str) -> bool:
-    """Whether a node has parameter services now."""
+    """Return whether a node has parameter services now."""
     return node.graph.count(EndpointKind.SERVER, f"{name}/list_parameters") > 0
 
 
 def pattern_from(pattern: str | None) -> Callable[[str], bool]:
-    """Return whether a name fits a regular expression.
+    """Return a predicate for names that match a regular expression.
 
     Raises:
-        CommandError: it is none.
+        CommandError: the regular expression is invalid.
     """
     try:
         compiled = re.compile(pattern or "")
     except (re.error, OverflowError, RecursionError) as error:
         raise CommandError(
-            f"--filter {pattern!r}: no regular expression: {error}; one such as 'camera.*' fits"
+            f"--filter {pattern!r}: not a regular expression: {error}; expected one such as "
+            "'camera.*'"
         ) from error
     return lambda name: compiled.match(name) is not None
 
@@ -222,7 +223,7 @@ async def set_parameter(
 
     Raises:
         CommandError: there is no such node.
-        ParameterFileError: the value is no YAML.
+        ParameterFileError: the value is not valid YAML.
     """
     from aionode.parameter import Parameter
 
@@ -239,10 +240,12 @@ async def set_parameter(
 
 
 def parameter_value(text: str) -> Any:
-    """Return a value as a message; what only looks like YAML gone wrong is refused.
+    """Return the message for a value in YAML.
+
+    `get_parameter_value` would store text with an unclosed bracket or quote as a string.
 
     Raises:
-        ParameterFileError: brackets or quotes do not fit.
+        ParameterFileError: brackets or quotes are not balanced.
     """
     from aionode.arguments import parse_value
     from aionode.parameter import get_parameter_value
@@ -262,7 +265,7 @@ def message_of(name: str, value: Any) -> Any:
 def print_result(
     output: Output, result: SetParametersResult, words: tuple[str, str], record: dict[str, Any]
 ) -> int:
-    """Print what became of a change, and return the exit status."""
+    """Print the result of a change, and return the exit status."""
     reason = f": {result.reason}" if result.reason else ""
     text = f"{words[0] if result.successful else words[1]}{reason}"
     if output.json:
@@ -307,10 +310,10 @@ async def describe(
     hidden: bool = False,
     timeout: float = 1.0,
 ) -> None:
-    """Print type, description and constraints of parameters.
+    """Print the type, description and constraints of parameters.
 
     Raises:
-        CommandError: there is no such node, or one of the parameters is not there.
+        CommandError: there is no such node or parameter.
     """
     async with parameters_of(node, node_name, timeout, hidden=hidden) as client:
         found = await client.describe_parameters(parameter_names)
@@ -336,7 +339,11 @@ async def dump(
 
 
 async def get_all(client: AsyncParameterClient, names: list[str]) -> list[Parameter]:
-    """Return the parameters that have a value; one without would make the answer empty."""
+    """Return the parameters that have a value.
+
+    A node answers a request that includes a parameter without a value with an empty list; then each
+    parameter is requested alone.
+    """
     found = await client.get_parameters(names)
     if found or not names:
         return found
@@ -354,11 +361,11 @@ async def load(
     hidden: bool = False,
     timeout: float = 1.0,
 ) -> int:
-    """Set the parameters that a file has for a node; return the exit status.
+    """Set the parameters of a node from a file; return the exit status.
 
     Raises:
-        CommandError: there is no such node, or the file has nothing for it.
-        ParameterFileError: the file cannot be read.
+        CommandError: there is no such node.
+        ParameterFileError: the file cannot be read, or has no parameters for the node.
     """
     from aionode.arguments import matching_parameters, read_parameter_file
 
@@ -367,8 +374,10 @@ async def load(
     wanted = [rule for rule in rules if wildcards or "*" not in rule.node]
     values = matching_parameters(wanted, name)
     if not values:
-        given = ", ".join(dict.fromkeys(rule.node for rule in rules)) or "nothing"
-        raise ParameterFileError(str(parameter_file), 0, f"nothing for {name}; it has {given}")
+        given = ", ".join(dict.fromkeys(rule.node for rule in rules)) or "no node"
+        raise ParameterFileError(
+            str(parameter_file), 0, f"no parameters for {name}, only for {given}"
+        )
     async with parameters_of(node, name, timeout, hidden=hidden) as client:
         declared = (await client.list_parameters()).names
         present = await get_all(client, [key for key in values if key in declared])
@@ -376,10 +385,10 @@ async def load(
         parameters = [like(before.get(key), key, value) for key, value in values.items()]
         results = await client.set_parameters(parameters)
     for one, result in zip(parameters, results, strict=True):
-        # What `dump` writes has read-only parameters too, and loading it changes none of them.
+        # `dump` includes read-only parameters; loading the same value of one is not a failure.
         if not result.successful and before.get(one.name) == one:
             result.successful = True
-            result.reason = "it has this value already"
+            result.reason = "it already has this value"
     return max(
         print_result(
             output,
@@ -392,9 +401,9 @@ async def load(
 
 
 def like(before: Parameter | None, name: str, value: Any) -> Parameter:
-    """Return a parameter with a value of a file, in the type that it has now where YAML has none.
+    """Return a parameter with a value from a file, keeping its type where YAML cannot express it.
 
-    That is so for bytes, which a file has as integers, and for an empty list.
+    That concerns bytes, which a file holds as integers, and empty lists.
     """
     from aionode.parameter import Parameter, ParameterType
 
@@ -407,7 +416,7 @@ def like(before: Parameter | None, name: str, value: Any) -> Parameter:
 
 
 def is_bytes(value: Any) -> bool:
-    """Whether a value is a list of numbers that fit bytes."""
+    """Return whether a value is a list of integers from 0 to 255."""
     return isinstance(value, list) and all(
         isinstance(each, int) and not isinstance(each, bool) and 0 <= each < 256 for each in value
     )

@@ -1,4 +1,4 @@
-"""``aionode run``: node classes composed into one process, without code."""
+"""``aionode run``: finding the node classes to run in one process."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ __all__ = ["FITS", "ROS_ARGS", "node_maker"]
 
 ROS_ARGS = "--ros-args"
 
-FITS = "MODULE:CLASS fits, such as my_robot.nodes:Talker or talker.py:Talker"
+FITS = "expected MODULE:CLASS, such as my_robot.nodes:Talker or talker.py:Talker"
 
 
 def node_maker(spec: str) -> Callable[[], Any]:
-    """Return the class or function that ``module:name`` or ``file.py:name`` stands for.
+    """Return the class or function named by ``module:name`` or ``file.py:name``.
 
-    The name may be left out if the module has just one node class of its own.
+    The name may be left out if the module defines exactly one node class.
 
     Raises:
-        CommandError: there is no such module, or nothing of that name that makes a node.
+        CommandError: there is no such module, or it has no node class or function of that name.
     """
     source, _, name = spec.partition(":")
     module = module_of(source, spec)
@@ -39,9 +39,9 @@ def node_maker(spec: str) -> Callable[[], Any]:
         made = getattr(made, part, None)
     if not callable(made) or (isinstance(made, type) and not issubclass(made, Node)):
         known = ", ".join(node_classes(module)) or "none"
-        what = "nothing of that name" if made is None else "no node class, and no function"
+        what = "nothing of that name" if made is None else "neither a node class nor a function"
         raise CommandError(f"{spec}: {what} in {source}; its node classes: {known}")
-    return made  # type: ignore[no-any-return]  # callable was asked above
+    return made  # type: ignore[no-any-return]  # checked to be callable above
 
 
 def module_of(source: str, spec: str) -> ModuleType:
@@ -55,14 +55,14 @@ def module_of(source: str, spec: str) -> ModuleType:
     except ModuleNotFoundError as error:
         if error.name is None or not f"{source}.".startswith(f"{error.name}."):
             raise CommandError(
-                f"{spec}: {source} needs {error.name}, which is not there"
+                f"{spec}: {source} needs {error.name}, which is not installed"
             ) from error
         where = f"here ({Path.cwd()}) or installed"
         raise CommandError(f"{spec}: no module {error.name} {where}; {FITS}") from error
 
 
 def module_in_file(path: Path, spec: str) -> ModuleType:
-    """Return the module that a file makes; it may import its neighbours, as a program may."""
+    """Return the module in a file; like a program, it may import modules beside it."""
     if not path.is_file():
         raise CommandError(f"{spec}: no file {path} here ({Path.cwd()}); {FITS}")
     loaded = sys.modules.get(path.stem)
@@ -92,10 +92,10 @@ def node_classes(module: ModuleType) -> dict[str, type[Node]]:
 
 
 def only_node_class(module: ModuleType, spec: str) -> type[Node]:
-    """Return the one node class of a module."""
+    """Return the only node class of a module."""
     known = node_classes(module)
     if len(known) != 1:
         raise CommandError(
-            f"{spec}: say which class: {spec}:NAME; there are {', '.join(known) or 'none'}"
+            f"{spec}: give a class, as {spec}:NAME; its node classes: {', '.join(known) or 'none'}"
         )
     return next(iter(known.values()))

@@ -1,4 +1,4 @@
-"""What topics there are: the verbs list, info, type and find of ``aionode topic``."""
+"""The verbs list and info of ``aionode topic``."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.cli._support import lookup
 from aionode.cli._support.formatting import endpoint_text, names_text
+from aionode.cli._support.nouns import TOPIC
 from aionode.graph import TOPIC_KINDS, EndpointKind
 
 if TYPE_CHECKING:
     from aionode.cli._support.output import Output
-    from aionode.errors import CommandError
     from aionode.graph import EndpointInfo
     from aionode.node import Node
 
-__all__ = ["find", "info", "list_topics", "type_of_topic"]
+__all__ = ["info", "list_topics"]
 
 
 async def list_topics(
@@ -26,8 +26,8 @@ async def list_topics(
     hidden: bool = False,
     verbose: bool = False,
 ) -> None:
-    """Print every topic that somebody publishes or subscribes to."""
-    found = lookup.names_and_types(node, *TOPIC_KINDS, hidden=hidden)
+    """Print every topic that has a publisher or a subscription."""
+    found = TOPIC.types_by_name(node, hidden=hidden)
     if count:
         output.item(str(len(found)), {"topics": len(found)})
         return
@@ -60,7 +60,7 @@ def verbose_text(
     found: dict[str, list[str]],
     numbers: dict[str, dict[EndpointKind, int]],
 ) -> str:
-    """Return the topics that have endpoints of one kind, with their number."""
+    """Return the topics with endpoints of one kind, and how many."""
     text = f"{title} topics:\n"
     for name, types in found.items():
         if number := numbers[name][kind]:
@@ -70,12 +70,16 @@ def verbose_text(
 
 
 async def info(node: Node, topic_name: str, *, output: Output, verbose: bool = False) -> None:
-    """Print the type of a topic and who uses it."""
-    name = node.resolve_topic_name(topic_name)
+    """Print the type of a topic, and its publishers and subscriptions.
+
+    Raises:
+        CommandError: the topic does not exist.
+    """
+    name = TOPIC.resolve(node, topic_name)
     publishers = lookup.endpoints(node, EndpointKind.PUBLISHER, name=name)
     subscriptions = lookup.endpoints(node, EndpointKind.SUBSCRIPTION, name=name)
     if not (publishers or subscriptions):
-        raise unknown_topic(node, "Unknown topic", topic_name)
+        raise TOPIC.unknown(node, topic_name)
     types = sorted({user.type_name for user in (*publishers, *subscriptions)})
     if output.json:
         output.item("", info_record(name, types, publishers, subscriptions, verbose=verbose))
@@ -96,7 +100,7 @@ def info_record(
     *,
     verbose: bool,
 ) -> dict[str, Any]:
-    """Return what is known of a topic as plain values."""
+    """Return the record of a topic."""
     record: dict[str, Any] = {"name": name, "types": types}
     for word, users in (("publishers", publishers), ("subscriptions", subscriptions)):
         record[word] = [endpoint_record(user) for user in users] if verbose else len(users)
@@ -104,7 +108,7 @@ def info_record(
 
 
 def endpoint_record(user: EndpointInfo) -> dict[str, Any]:
-    """Return an endpoint as plain values; times in nanoseconds."""
+    """Return the record of an endpoint; times are in nanoseconds."""
     profile = user.qos
     return {
         "node": user.node.fully_qualified_name,
@@ -122,32 +126,3 @@ def endpoint_record(user: EndpointInfo) -> dict[str, Any]:
             "liveliness_lease_duration_ns": profile.liveliness_lease_duration.nanoseconds,
         },
     }
-
-
-async def type_of_topic(node: Node, topic_name: str, *, output: Output) -> None:
-    """Print the type of a topic."""
-    name = node.resolve_topic_name(topic_name)
-    types = lookup.names_and_types(node, *TOPIC_KINDS, hidden=True).get(name)
-    if types is None:
-        raise unknown_topic(node, "Unknown topic", topic_name)
-    for one in types:
-        output.item(one, {"name": name, "type": one})
-
-
-async def find(
-    node: Node, message_type: str, *, output: Output, count: bool = False, hidden: bool = False
-) -> None:
-    """Print the topics of one type."""
-    found = lookup.names_and_types(node, *TOPIC_KINDS, hidden=hidden)
-    names = [name for name, types in found.items() if message_type in types]
-    if count:
-        output.item(str(len(names)), {"topics": len(names)})
-        return
-    for name in names:
-        output.item(name, {"name": name, "types": found[name]})
-
-
-def unknown_topic(node: Node, text: str, topic_name: str) -> CommandError:
-    """Return the error for a topic that nobody uses."""
-    names = lookup.names_and_types(node, *TOPIC_KINDS, hidden=True)
-    return lookup.unknown(text, topic_name, names, "topic list")

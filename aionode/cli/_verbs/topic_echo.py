@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["echo"]
 
 DEPTH = 1000
-"""How many messages wait to be printed at most, where the user does not say."""
+"""Default queue depth: how many messages may wait to be printed."""
 
 CLEAR = "\x1b[H\x1b[2J"
 
@@ -54,13 +54,13 @@ async def echo(
 ) -> int:
     """Print each message of a topic; return the exit status.
 
-    The profile is, unless given, the strongest that every publisher of this moment offers.
+    The default profile is the strongest that all current publishers offer.
 
     Raises:
-        CommandError: the type cannot be learnt, or `field` or `filter_text` does not fit.
+        CommandError: the type cannot be determined, or `field` or `filter_text` is invalid.
     """
     if field is not None and not field.strip("."):
-        raise CommandError(f"Invalid field value '{field}': a path such as pose.position fits")
+        raise CommandError(f"Invalid field value '{field}': expected a path such as pose.position")
     name = node.resolve_topic_name(topic_name)
     publishers = lookup.endpoints(node, EndpointKind.PUBLISHER, name=name)
     msg_type = await lookup.topic_type(node, name, message_type)
@@ -76,7 +76,7 @@ async def echo(
     follower = Follower(node)
     lost = 0
 
-    def take(msg: Any, info: MessageInfo) -> None:
+    def on_message(msg: Any, info: MessageInfo) -> None:
         nonlocal lost
         if not no_lost_messages and subscription.stats.lost > lost:
             print_lost(output, subscription, lost)
@@ -90,10 +90,10 @@ async def echo(
             follower.finish()
 
     profile = qos or strongest(publishers, output)
-    subscription = follower.follow(msg_type, name, take, profile, raw=raw)
+    subscription = follower.follow(msg_type, name, on_message, profile, raw=raw)
     if not await follower.finished(timeout) and not subscription.stats.received:
         output.warn(
-            f"No message on '{name}' in {timeout:g} s; "
+            f"No message on '{name}' within {timeout:g} s; "
             f"publishers: {len(lookup.endpoints(node, EndpointKind.PUBLISHER, name=name))}"
         )
         return 1
@@ -101,16 +101,17 @@ async def echo(
 
 
 def no_type(node: Node, name: str) -> CommandError:
-    """Return the error for a topic that nobody uses."""
+    """Return the error for a topic without endpoints."""
     hint = lookup.close_to(name, lookup.names_and_types(node, *TOPIC_KINDS, hidden=True))
     return CommandError(
-        f"Could not determine the type for the passed topic '{name}': nobody uses it{hint or '.'} "
-        f"To wait for it, give its type: aionode topic echo {name} std_msgs/msg/String"
+        f"Could not determine the type for the passed topic '{name}': it has no "
+        f"publisher or subscription{hint or '.'} To wait for it, give its type: aionode topic echo "
+        f"{name} std_msgs/msg/String"
     )
 
 
 def print_lost(output: Output, subscription: Subscription[Any], before: int) -> None:
-    """Say that the publisher sent messages that did not arrive."""
+    """Report messages that were published but did not arrive."""
     total = subscription.stats.lost
     output.warn(
         f"A message was lost!!!\n\ttotal count change:{total - before}\n\ttotal count: {total}---"
@@ -118,7 +119,7 @@ def print_lost(output: Output, subscription: Subscription[Any], before: int) -> 
 
 
 def strongest(publishers: Sequence[EndpointInfo], output: Output) -> QoSProfile:
-    """Return the strongest profile that all `publishers` offer, and say where they differ."""
+    """Return the strongest profile that all `publishers` offer; warn where they differ."""
     profile = qos_profile_sensor_data.replace(depth=DEPTH)
     if not publishers:
         return profile
@@ -150,7 +151,7 @@ def strongest(publishers: Sequence[EndpointInfo], output: Output) -> QoSProfile:
 
 @dataclass(frozen=True, slots=True)
 class Printer:
-    """Prints messages in one of the forms that a user can ask for."""
+    """Prints messages in the form that the options select."""
 
     output: Output
     print_options: PrintOptions
@@ -159,13 +160,13 @@ class Printer:
     flow_style: bool = False
 
     def part_of(self, msg: Any) -> Any:
-        """Return what of the message is printed: all, or one field."""
+        """Return the part of a message that is printed: all of it, or one field."""
         if self.field is None or not isinstance(msg, Message):
             return msg
         return field_of(msg, self.field)[0]
 
     def show(self, msg: Any, info: MessageInfo | None) -> None:
-        """Print one message; `info` before it, if given."""
+        """Print one message, preceded by `info` if given."""
         if not isinstance(msg, Message):
             self._show_raw(bytes(msg), info)
             return
@@ -199,7 +200,7 @@ class Printer:
 
 
 def times(info: MessageInfo) -> dict[str, int]:
-    """Return what ros2 shows of a message's info; times in nanoseconds since 1970."""
+    """Return the parts of a message's info that ros2 prints; times in nanoseconds since 1970."""
     return {
         "source_timestamp": info["source_timestamp"],
         "received_timestamp": info["received_timestamp"],

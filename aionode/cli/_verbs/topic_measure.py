@@ -1,8 +1,8 @@
 """``aionode topic hz``, ``bw`` and ``delay``.
 
-Messages are counted as they arrive, not when there is time to look at them, and none is decoded
-unless its content is asked for. So the figures are right at rates at which printing would not be.
-What comes in the first moments is not counted: connecting delays it.
+Messages are timed on arrival, not when they are processed, and decoded only if their content is
+needed, so the results hold at rates too high for printing. Messages of the first moments are not
+counted: connecting delays them.
 """
 
 from __future__ import annotations
@@ -34,14 +34,15 @@ if TYPE_CHECKING:
 __all__ = ["bw", "delay", "hz"]
 
 DEPTH = 10_000
-"""How many messages may wait to be counted: a second of the fastest topics."""
+"""Queue depth: one second of the fastest topics."""
 
 PRINT_PERIOD_S = 1.0
 
 CONNECTING_S = 0.3
-"""How long a new subscription may be given messages late, and then several at once.
+"""How long messages may reach a new subscription late and in bursts, in seconds.
 
-Publishers of other processes are found, and go over to a link, meanwhile; it takes 0.1 s.
+During this time publishers of other processes are discovered and switch to a link, which normally
+takes 0.1 s.
 """
 
 QOS = qos_profile_sensor_data.replace(depth=DEPTH)
@@ -49,7 +50,7 @@ QOS = qos_profile_sensor_data.replace(depth=DEPTH)
 HZ_HEADER = ("topic", "rate", "min_delta", "max_delta", "std_dev", "window")
 
 
-# How often
+# Rate
 
 
 async def hz(
@@ -61,17 +62,17 @@ async def hz(
     filter_text: str | None = None,
     wall_time: bool = False,
 ) -> None:
-    """Print how often messages come, once a second, until cancelled.
+    """Print the rate of messages, once a second, until cancelled.
 
     Raises:
-        CommandError: the type of a topic cannot be learnt, or the filter does not fit.
+        CommandError: the type of a topic cannot be determined, or the filter is invalid.
     """
     fits = filter_from(filter_text)
     names = [node.resolve_topic_name(name) for name in topic_names]
     intervals = {name: Intervals(window) for name in names}
     follower = Follower(node)
 
-    def take(name: str, msg: Any, info: MessageInfo) -> None:
+    def on_message(name: str, msg: Any, info: MessageInfo) -> None:
         if filter_text is not None and not fits(msg):
             return
         if intervals[name].arrive(arrival_ns(node, info, wall_time=wall_time)):
@@ -84,14 +85,14 @@ async def hz(
             output.text(f"Subscribed to [{name}]")
         subscriptions.append(
             follow_connected(
-                node, follower, msg_type, name, partial(take, name), raw=filter_text is None
+                node, follower, msg_type, name, partial(on_message, name), raw=filter_text is None
             )
         )
     dropped = Dropped(subscriptions, output)
     shown: dict[str, Spread] = {}
 
-    def look(show: Callable[[dict[str, Spread]], None]) -> None:
-        dropped.tell()
+    def report(show: Callable[[dict[str, Spread]], None]) -> None:
+        dropped.warn()
         new = {name: spread for name in names if (spread := intervals[name].spread())}
         shown.update(new)
         if new:
@@ -99,10 +100,10 @@ async def hz(
 
     if len(names) > 1 and output.is_terminal:
         with output.live() as update:
-            await every_second(node, follower, partial(look, lambda s: update(hz_table(s))))
+            await every_second(node, follower, partial(report, lambda s: update(hz_table(s))))
     else:
         show = partial(print_rate if len(names) == 1 else print_rates, output)
-        await every_second(node, follower, partial(look, show))
+        await every_second(node, follower, partial(report, show))
 
 
 def follow_connected(
@@ -110,23 +111,23 @@ def follow_connected(
     follower: Follower,
     msg_type: type[Message],
     name: str,
-    take: Callable[[Any, MessageInfo], None],
+    on_message: Callable[[Any, MessageInfo], None],
     *,
     raw: bool,
 ) -> Subscription[Any]:
-    """Call `take` with each message that comes when publishers have been connected."""
-    others = len(node.context.transports) > 1  # beside this process itself
+    """Call `on_message` with each message that arrives after publishers have been connected."""
+    others = len(node.context.transports) > 1  # beyond this process
     begins_ns = node.context.time_base.system_ns() + int(CONNECTING_S * 1e9) * others
 
-    def take_connected(msg: Any, info: MessageInfo) -> None:
+    def when_connected(msg: Any, info: MessageInfo) -> None:
         if info["received_timestamp"] >= begins_ns:
-            take(msg, info)
+            on_message(msg, info)
 
-    return follower.follow(msg_type, name, take_connected, QOS, raw=raw)
+    return follower.follow(msg_type, name, when_connected, QOS, raw=raw)
 
 
 def arrival_ns(node: Node, info: MessageInfo, *, wall_time: bool = True) -> int:
-    """Return when a message came, in ROS time if that is not this machine's."""
+    """Return when a message arrived, in ROS time if that is simulated."""
     clock = node.get_clock()
     if not wall_time and getattr(clock, "ros_time_is_active", False):
         return clock.now().nanoseconds
@@ -134,21 +135,21 @@ def arrival_ns(node: Node, info: MessageInfo, *, wall_time: bool = True) -> int:
 
 
 class Dropped:
-    """Says when messages came faster than they could be counted."""
+    """Warns when messages arrived faster than they could be counted."""
 
     def __init__(self, subscriptions: list[Subscription[Any]], output: Output) -> None:
         self._subscriptions = subscriptions
         self._output = output
-        self._told = 0
+        self._reported = 0
 
-    def tell(self) -> None:
-        """Warn if there are new ones."""
+    def warn(self) -> None:
+        """Warn if more messages have been dropped since the last warning."""
         dropped = sum(subscription.stats.dropped for subscription in self._subscriptions)
-        if dropped > self._told:
+        if dropped > self._reported:
             self._output.warn(
-                f"{dropped} messages came too fast to be counted: the real figures are higher"
+                f"{dropped} messages arrived too fast to be counted: the real rates are higher"
             )
-            self._told = dropped
+            self._reported = dropped
 
 
 async def every_second(node: Node, follower: Follower, show: Callable[[], None]) -> None:
@@ -158,7 +159,7 @@ async def every_second(node: Node, follower: Follower, show: Callable[[], None])
 
 
 def hz_values(spread: Spread) -> tuple[str, str, str, str, str]:
-    """Return rate in Hz, extremes and deviation in seconds, and number of intervals."""
+    """Return the rate in Hz, extremes and deviation in seconds, and the number of intervals."""
     rate = 1e9 / spread.mean if spread.mean else 0.0
     return (
         f"{rate:.3f}",
@@ -170,7 +171,7 @@ def hz_values(spread: Spread) -> tuple[str, str, str, str, str]:
 
 
 def hz_record(name: str, spread: Spread) -> dict[str, Any]:
-    """Return the figures of one topic as plain values."""
+    """Return the record of one topic."""
     return {
         "topic": name,
         "rate_hz": 1e9 / spread.mean if spread.mean else 0.0,
@@ -182,7 +183,7 @@ def hz_record(name: str, spread: Spread) -> dict[str, Any]:
 
 
 def print_rate(output: Output, shown: dict[str, Spread]) -> None:
-    """Print the figures of the only topic."""
+    """Print the statistics of the only topic."""
     ((name, spread),) = shown.items()
     rate, low, high, deviation, count = hz_values(spread)
     output.item(
@@ -192,7 +193,7 @@ def print_rate(output: Output, shown: dict[str, Spread]) -> None:
 
 
 def print_rates(output: Output, shown: dict[str, Spread]) -> None:
-    """Print the figures of several topics."""
+    """Print the statistics of several topics."""
     output.text(table_text(HZ_HEADER, [(n, *hz_values(s)) for n, s in shown.items()]))
     if output.json:
         for name, spread in shown.items():
@@ -200,7 +201,7 @@ def print_rates(output: Output, shown: dict[str, Spread]) -> None:
 
 
 def hz_table(shown: dict[str, Spread]) -> Any:
-    """Return the figures as a rich table."""
+    """Return the statistics as a rich table."""
     from rich.table import Table
 
     table = Table(*HZ_HEADER)
@@ -209,29 +210,29 @@ def hz_table(shown: dict[str, Spread]) -> Any:
     return table
 
 
-# How many bytes
+# Bandwidth
 
 
 async def bw(node: Node, topic_name: str, *, output: Output, window: int = 100) -> None:
-    """Print how many bytes come, once a second, until cancelled.
+    """Print the bandwidth of a topic, once a second, until cancelled.
 
     Raises:
-        CommandError: the type of the topic cannot be learnt.
+        CommandError: the type of the topic cannot be determined.
     """
     name = node.resolve_topic_name(topic_name)
     msg_type = await wait_for_type(node, name, output)
     bandwidth = Bandwidth(window)
     follower = Follower(node)
 
-    def take(data: bytes, info: MessageInfo) -> None:
+    def on_message(data: bytes, info: MessageInfo) -> None:
         bandwidth.arrive(info["received_timestamp"], len(data))
 
-    subscription = follow_connected(node, follower, msg_type, name, take, raw=True)
+    subscription = follow_connected(node, follower, msg_type, name, on_message, raw=True)
     dropped = Dropped([subscription], output)
     output.text(f"Subscribed to [{name}]")
 
     def show() -> None:
-        dropped.tell()
+        dropped.warn()
         rate = bandwidth.rate(node.context.time_base.system_ns())
         if rate is None:
             return
@@ -252,31 +253,31 @@ async def bw(node: Node, topic_name: str, *, output: Output, window: int = 100) 
     await every_second(node, follower, show)
 
 
-# How old
+# Age
 
 
 async def delay(node: Node, topic_name: str, *, output: Output, window: int = 10_000) -> None:
-    """Print how old messages are by the stamp of their header, once a second, until cancelled.
+    """Print the age of messages by the stamp in their header, once a second, until cancelled.
 
     Raises:
-        CommandError: the type cannot be learnt, or its messages have no header.
+        CommandError: the type cannot be determined, or it has no header.
     """
     name = node.resolve_topic_name(topic_name)
     msg_type = await wait_for_type(node, name, output)
     if not has_header(msg_type):
         raise CommandError(
             f"Topic '{name}': {type_name(msg_type)} has no field header of std_msgs/msg/Header, "
-            "so how old its messages are cannot be told"
+            "so the age of its messages is unknown"
         )
     delays = Window(window)
     follower = Follower(node)
 
-    def take(msg: Any, info: MessageInfo) -> None:
-        # Not as a `Time`, which cannot be before 1970; a stamp on the network can.
+    def on_message(msg: Any, info: MessageInfo) -> None:
+        # Not converted to `Time`, which rejects times before 1970; a received stamp may be one.
         stamp_ns = msg.header.stamp.sec * 1_000_000_000 + msg.header.stamp.nanosec
         delays.add(arrival_ns(node, info, wall_time=False) - stamp_ns)
 
-    follow_connected(node, follower, msg_type, name, take, raw=False)
+    follow_connected(node, follower, msg_type, name, on_message, raw=False)
 
     def show() -> None:
         spread = delays.spread()
@@ -300,7 +301,7 @@ async def delay(node: Node, topic_name: str, *, output: Output, window: int = 10
 
 
 def has_header(msg_type: Any) -> bool:
-    """Whether messages say when they were made."""
+    """Return whether messages of a type have a stamped header."""
     return any(
         field.name == "header"
         and field.type.nested is not None

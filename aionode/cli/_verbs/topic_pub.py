@@ -36,7 +36,7 @@ async def pub(
     keep_alive_s: float = 0.1,
     qos: QoSProfile | None = None,
 ) -> None:
-    """Publish a message again and again, or `times` times, and print what is published.
+    """Publish a message repeatedly and print what is published.
 
     Args:
         node: The command's node.
@@ -44,16 +44,16 @@ async def pub(
         message_type: ROS name of its type.
         output: Where to print.
         values: The message in YAML.
-        rate: How often, in Hz.
-        print_nth: Print every so many messages; 0 prints none.
-        times: How often; 0 does not end.
-        wait_for: How many subscriptions to wait for before.
-        max_wait_s: How long to wait for them at most, in seconds.
-        keep_alive_s: How long to stay after the last message, in seconds.
+        rate: Publishing rate, in Hz.
+        print_nth: Print every n-th message; 0 prints none.
+        times: Number of messages; 0 publishes until cancelled.
+        wait_for: Number of subscriptions to wait for first.
+        max_wait_s: Maximum time to wait for them, in seconds; None is unlimited.
+        keep_alive_s: How long to keep the node alive after the last message, in seconds.
         qos: Profile of the publisher.
 
     Raises:
-        CommandError: type or values do not fit, or too few subscriptions came.
+        CommandError: the type or values are invalid, or too few subscriptions appeared.
         InvalidTopicNameException: the name is invalid.
     """
     name = node.resolve_topic_name(topic_name)
@@ -93,7 +93,11 @@ async def wait_for_subscriptions(
     max_wait_s: float | None,
     output: Output,
 ) -> None:
-    """Wait until `wanted` subscriptions are matched."""
+    """Wait until `wanted` subscriptions match.
+
+    Raises:
+        CommandError: fewer matched within `max_wait_s`.
+    """
     if publisher.get_subscription_count() >= wanted:
         return
     text = f"Waiting for at least {wanted} matching subscription(s)..."
@@ -106,5 +110,5 @@ async def wait_for_subscriptions(
         raise CommandError(
             f"Timed out waiting for subscribers of '{publisher.topic_name}': expected {wanted}, "
             f"but only got {publisher.get_subscription_count()} in {max_wait_s:g} s; "
-            "--wait-matching-subscriptions 0 does not wait"
+            "use --wait-matching-subscriptions 0 to publish without waiting"
         ) from None

@@ -1,1 +1,1 @@
-"""The machinery behind every endpoint: queue, callbacks, entry in the graph. Private."""
+"""What all endpoints are built from: queue, callback runner, graph entry."""

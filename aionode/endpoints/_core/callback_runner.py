@@ -1,8 +1,7 @@
 """Running callbacks: measured, fair to the rest of the loop, and with a policy for errors.
 
-Every callback of every entity runs through `CallbackRunner`, and every queue is emptied by
-`consume`, or passed by with a `InlineRunner`; there is no other place that decides what happens
-around a callback.
+Every callback of every entity runs through `CallbackRunner`, and `consume` hands it what is queued;
+no other place decides what happens around a callback.
 """
 
 from __future__ import annotations
@@ -20,7 +19,6 @@ from aionode.errors import CallbackCancelledError, CallbackSignatureError, brief
 
 if TYPE_CHECKING:
     from aionode.endpoints._core.entity import Entity
-    from aionode.endpoints._core.inline_runner import InlineRunner
     from aionode.endpoints._core.message_queue import MessageQueue
     from aionode.endpoints.stats import CallbackStats
     from aionode.logging import RcutilsLogger
@@ -40,7 +38,7 @@ T = TypeVar("T")
 
 
 REPORT_INTERVAL_NS = 1_000_000_000
-"""How often at most one entity's slow callbacks are reported."""
+"""The shortest time between two reports of slow callbacks of one entity."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,18 +66,18 @@ class CallbackRunner:
         callback: A function or coroutine function.
         context: The entity, for errors and reports.
         stats: Where counts and durations go.
-        on_error: What becomes of an exception: see `fail`.
+        on_error: What to do with an exception: see `fail`.
         offload: Whether a sync callback runs in a thread.
         budget_ns: How long a callback may block the loop before that is reported.
         logger: The node's logger.
-        waiting: The callbacks of the node that have begun and wait for something.
+        waiting: The callbacks of the node that have started and are suspended; shared with it.
 
     Raises:
-        TypeError: `callback` or `on_error` is of a wrong kind.
-        ValueError: `on_error` is an unknown word, or a coroutine function is to be offloaded.
+        TypeError: `on_error` is neither a string nor a function.
+        ValueError: `on_error` is an unknown string, or a coroutine function is to be offloaded.
 
     Attributes:
-        is_sync: Whether a call is expected to end without a wait, in the loop's own thread.
+        is_sync: Whether a call is expected to finish at once, in the loop's own thread.
     """
 
     def __init__(
@@ -122,31 +120,23 @@ class CallbackRunner:
         self._last_report_ns = -REPORT_INTERVAL_NS
 
     def run(self, *args: Any) -> Coroutine[Any, Any, None] | None:
-        """Run the callback, errors and all; return what is left to await, None if nothing is.
+        """Run the callback and handle its errors; return what is left to await, or None.
 
         Raises:
-            Exception: what the callback raised, where `on_error` says so.
+            Exception: what the callback raised, if `on_error` is ``"raise"``.
         """
-        if self._offload:
-            return self._finish(_Offloaded(self, args))
-        # `enter` written out: a call less for each message
-        began_ns = perf_ns()
         try:
-            outcome = self.callback(*args)
+            entered = self.enter(*args)
         except Exception as error:  # noqa: BLE001  # the policy decides, see `fail`
-            self._record_sync(perf_ns() - began_ns)
             self.fail(error)
             return None
-        if outcome is not None and isinstance(outcome, Awaitable):
-            return self._finish(_Measured(self, outcome))
-        self._record_sync(perf_ns() - began_ns)
-        return None
+        return self._finish(entered) if is_unfinished(entered) else None
 
     def receive(self, entered_ns: int, *args: Any) -> Coroutine[Any, Any, None] | None:
-        """Do `run` for a message that arrived at `entered_ns`; count it, and what it waited.
+        """Do `run` for a message that arrived at `entered_ns`; count it, and record its wait.
 
         Raises:
-            Exception: what the callback raised, where `on_error` says so.
+            Exception: what the callback raised, if `on_error` is ``"raise"``.
         """
         stats = self.stats
         stats.received += 1
@@ -154,7 +144,8 @@ class CallbackRunner:
         if self._offload:
             stats.queue_wait.record(began_ns - entered_ns)
             return self._finish(_Offloaded(self, args))
-        # `run` written out, so that one call records everything, after the callback.
+        # `run` written out, with one record for wait and duration: 2.2 µs instead of 5.1 µs for a
+        # message with an empty callback (the best of 9 times 200 000 calls of each in turn).
         try:
             outcome = self.callback(*args)
         except Exception as error:  # noqa: BLE001  # the policy decides, see `fail`
@@ -166,7 +157,7 @@ class CallbackRunner:
             stats.queue_wait.record(began_ns - entered_ns)
             return self._finish(_Measured(self, outcome))
         took_ns = perf_ns() - began_ns
-        stats.record_call(began_ns - entered_ns, took_ns)
+        stats._record_call(began_ns - entered_ns, took_ns)
         if took_ns > self.budget_ns:
             self.report_blocking(took_ns)
         return None
@@ -178,7 +169,7 @@ class CallbackRunner:
             self.fail(error)
 
     def enter(self, *args: Any) -> Any:
-        """Run the callback up to its first wait; the result goes into `outcome`.
+        """Run the callback up to its first await; pass the result to `outcome`.
 
         Raises:
             Exception: what a sync callback raised.
@@ -197,10 +188,10 @@ class CallbackRunner:
         return outcome
 
     async def outcome(self, entered: Any) -> Any:
-        """Return the result of a callback that was entered, waiting for it where needed.
+        """Return the result of a callback that `enter` started, awaiting it if necessary.
 
         Raises:
-            CallbackCancelledError: something that the callback waited for was cancelled.
+            CallbackCancelledError: something that the callback awaited was cancelled.
             Exception: what the callback raised.
         """
         if not is_unfinished(entered):
@@ -211,7 +202,8 @@ class CallbackRunner:
             task = asyncio.current_task()
             if task is not None and task.cancelling():
                 raise
-            # Nobody cancelled this task: it would end without a word, and its entity with it.
+            # This task was not cancelled: without an error it would end silently, and with it
+            # its entity.
             raise CallbackCancelledError(self._context.subject) from error
 
     async def call(self, *args: Any) -> Any:
@@ -219,10 +211,10 @@ class CallbackRunner:
         return await self.outcome(self.enter(*args))
 
     def fail(self, error: Exception) -> None:
-        """Apply the policy for errors: count, then raise it, log it, or hand it on.
+        """Apply the policy for errors: count it, then raise it, log it, or pass it to `on_error`.
 
         Raises:
-            Exception: `error` itself with ``on_error="raise"``.
+            Exception: `error` itself, if `on_error` is ``"raise"``.
         """
         self.stats.errors += 1
         if self._on_error == "raise":
@@ -236,16 +228,16 @@ class CallbackRunner:
 
     @property
     def subject(self) -> str:
-        """What is called, such as ``subscription of /chatter (callback on_text)``."""
+        """The entity and its callback, such as ``subscription of /chatter (callback on_text)``."""
         return self._context.subject
 
     def _record_sync(self, took_ns: int) -> None:
-        self.stats.record_took(took_ns)
+        self.stats._record_took(took_ns)
         if took_ns > self.budget_ns:
             self.report_blocking(took_ns)
 
     def report_blocking(self, took_ns: int) -> None:
-        """Warn that the loop was blocked too long, once per second at most."""
+        """Warn that the loop was blocked for too long, at most once per second."""
         now_ns = perf_ns()
         if now_ns - self._last_report_ns < REPORT_INTERVAL_NS:
             return
@@ -266,7 +258,8 @@ class Callbacks:
         node: Full name of the node.
         logger: Its logger.
         budget_ns: How long a callback may block the loop before that is reported.
-        waiting: Those that have begun and wait for something; each says as a string what it is.
+        waiting: The callbacks that have started and are suspended; ``str()`` of each names it.
+            Each adds itself when it starts and removes itself when it ends.
     """
 
     node: str
@@ -283,14 +276,14 @@ class Callbacks:
         on_error: OnError,
         offload: bool,
     ) -> CallbackRunner:
-        """Return what runs `callback` for `entity`.
+        """Return the runner of `callback` for `entity`.
 
         Raises:
-            TypeError: `on_error` is of a wrong kind.
-            ValueError: `on_error` is an unknown word, or a coroutine function is to be offloaded.
+            TypeError: `on_error` is neither a string nor a function.
+            ValueError: `on_error` is an unknown string, or a coroutine function is to be offloaded.
         """
         name = getattr(callback, "__qualname__", repr(callback))
-        subject = f"{entity.subject} (callback {name})"
+        subject = f"{entity._subject} (callback {name})"
         return CallbackRunner(
             callback,
             CallbackContext(self.node, subject, entity),
@@ -304,16 +297,16 @@ class Callbacks:
 
 
 class _Measured:
-    """A callback that can wait: notes the longest stretch between two waits."""
+    """An async callback: measures the longest stretch between two awaits."""
 
     __slots__ = ("_awaitable", "_runner")
 
     def __init__(self, runner: CallbackRunner, awaitable: Awaitable[Any]) -> None:
         self._runner = runner
-        self._awaitable: Any = awaitable  # None once it was begun
+        self._awaitable: Any = awaitable  # None once started
 
     def __del__(self) -> None:
-        # The task was cancelled before it came to this: nobody will await it.
+        # The task was cancelled before it got here, so this is never awaited.
         awaitable = self._awaitable
         if awaitable is not None:
             give_up = getattr(awaitable, "close", None) or getattr(awaitable, "cancel", None)
@@ -335,7 +328,7 @@ class _Measured:
             while True:
                 step_ns = perf_ns()
                 try:
-                    # asyncio only ever sends None into a coroutine, or throws into it.
+                    # asyncio only ever sends None to a coroutine, or throws into it.
                     waits_for = next(steps) if thrown is None else steps.throw(thrown)
                 finally:
                     longest_ns = max(longest_ns, perf_ns() - step_ns)
@@ -355,7 +348,7 @@ class _Measured:
 
 
 class _Offloaded:
-    """A sync callback on its way into a thread."""
+    """A sync callback that runs in a thread."""
 
     __slots__ = ("_args", "_runner")
 
@@ -383,7 +376,7 @@ class _Offloaded:
 
 
 def is_unfinished(entered: object) -> bool:
-    """Whether `CallbackRunner.outcome` has to wait for what `CallbackRunner.enter` returned."""
+    """Return whether `CallbackRunner.outcome` has to await what `CallbackRunner.enter` returned."""
     return isinstance(entered, _Measured | _Offloaded)
 
 
@@ -393,20 +386,19 @@ def is_unfinished(entered: object) -> bool:
 async def consume(
     message_queue: MessageQueue[T],
     handle: Callable[[int, T], Coroutine[Any, Any, None] | None],
-    concurrent: bool | int,  # a number, where True and False are numbers too
-    inline_runner: InlineRunner[T] | None = None,
+    concurrent: bool | int,  # an int is a number of callbacks, not a truth value
+    *,
+    inline: bool = False,
 ) -> None:
     """Hand everything that arrives in `message_queue` to `handle`, until cancelled.
 
     `handle` runs what can run at once and returns what is left to await, if anything. With
-    `concurrent` that runs beside the next items: in a TaskGroup, any number at once or at most so
-    many, while the others wait in the inbox. Without it, a `inline_runner` past the inbox is open
-    while there is nothing to do.
+    `concurrent` that runs beside the next items in a TaskGroup, any number at once or at most the
+    given number, while the others stay queued. Without it, `inline` lets items
+    bypass the queue while it is empty, see `MessageQueue`; not for coroutine functions.
     """
     if concurrent is False:
-        await _consume_in_order(
-            message_queue, handle, message_queue if inline_runner is None else inline_runner
-        )
+        await _consume_in_order(message_queue, handle, inline=inline)
     else:
         limit = None if concurrent is True else concurrent
         async with asyncio.TaskGroup() as tasks:
@@ -416,11 +408,12 @@ async def consume(
 async def _consume_in_order(
     message_queue: MessageQueue[T],
     handle: Callable[[int, T], Coroutine[Any, Any, None] | None],
-    signal: MessageQueue[T] | InlineRunner[T],
+    *,
+    inline: bool,
 ) -> None:
-    queue = message_queue.items  # asking the inbox itself costs a call for each item
+    queue = message_queue.items  # `len(message_queue)` is one more call for each item
     while True:
-        await signal.wait()
+        await (message_queue.wait_inline(handle) if inline else message_queue.wait())
         turn_ends_ns = perf_ns() + SLICE_NS
         while queue:
             rest = handle(*message_queue.pop())
@@ -465,17 +458,17 @@ def _is_async(callback: Callable[..., Any]) -> bool:
 
 
 def accepts(callback: Callable[..., Any], *counts: int, subject: str, wanted: str) -> int:
-    """Return the first of `counts` that `callback` can be called with, as positional arguments.
+    """Return the first of `counts` positional arguments that `callback` can be called with.
 
     Raises:
-        TypeError: `callback` cannot be called at all.
-        CallbackSignatureError: it takes another number of arguments; `wanted` says what fits.
+        TypeError: `callback` is not callable.
+        CallbackSignatureError: it takes another number of arguments; the text names `wanted`.
     """
     if not callable(callback):
         raise TypeError(f"{subject}: {brief(callback)} cannot be called; give a function {wanted}")
     try:
         signature = inspect.signature(callback)
-    except ValueError:  # a builtin that does not tell
+    except ValueError:  # a builtin without a signature
         return counts[0]
     for count in counts:
         try:
@@ -491,7 +484,7 @@ def checked_concurrency(concurrent: bool | int, subject: str) -> bool | int:  # 
     """Return `concurrent` if it is False, True or a positive number.
 
     Raises:
-        TypeError: it is something else.
+        TypeError: it is neither a bool nor an int.
         ValueError: it is a number below 1.
     """
     if isinstance(concurrent, bool):

@@ -1,4 +1,7 @@
-"""What all entities of a node have in common: an owner, a task, and an end."""
+"""What all entities of a node have in common: an owner, a task, and an end.
+
+What has an underscore here is for the node and for subclasses; users see the rest.
+"""
 
 from __future__ import annotations
 
@@ -16,11 +19,11 @@ __all__ = ["EndStage", "Entity"]
 
 
 class EndStage(IntEnum):
-    """The steps in which a node ends; the entities of each are destroyed, the newest first.
+    """The steps in which a node ends; in each, its entities are destroyed, newest first.
 
     Attributes:
-        CALLBACKS: What calls callbacks; they are cancelled, and waited for before the next step.
-        GOALS: What cancels goals; the servers' answers are waited for before the next step.
+        CALLBACKS: Entities with callbacks, which are cancelled; the next step waits for their end.
+        GOALS: Entities that cancel goals; the next step waits for the servers' answers.
         LAST: What callbacks may use until they have ended: publishers, clients, rates.
     """
 
@@ -32,48 +35,50 @@ class EndStage(IntEnum):
 class Entity:
     """Base of everything that a node creates.
 
-    The node starts `run` in its TaskGroup, at once if it runs already, or when it begins to.
-    Destroying an entity cancels that task and gives the entity back to its node.
+    The node starts `_run` in its TaskGroup, at once if the node is running, or when it starts.
+    Destroying an entity cancels that task and removes the entity from its node.
+
+    Args:
+        subject: What it is, for errors and logs, such as ``publisher of /chatter``.
+        stage: When it is destroyed as its node ends.
 
     Attributes:
-        subject: What it is, for errors and logs, such as ``publisher of /chatter``.
         destroyed: Whether it was destroyed.
-        stage: When it is destroyed as its node ends.
     """
 
     def __init__(self, subject: str, stage: EndStage = EndStage.CALLBACKS) -> None:
-        self.subject = subject
-        self.stage = stage
+        self._subject = subject
+        self._stage = stage
         self.destroyed = False
         self._task: asyncio.Task[None] | None = None
         self._on_destroy: Callable[[Entity], None] | None = None
 
-    def adopt(self, on_destroy: Callable[[Entity], None]) -> None:
-        """Name the owner, who is told of the end. Called once, by the node."""
+    def _adopt(self, on_destroy: Callable[[Entity], None]) -> None:
+        """Set what is called when the entity is destroyed. Called once, by the node."""
         self._on_destroy = on_destroy
 
-    def start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:
-        """Begin to work, in a task of `tasks`, and return that if there is one. For the node."""
-        work = self.run()
+    def _start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:
+        """Start `_run` as a task of `tasks`; return it, or None if there is no work."""
+        work = self._run()
         if work is not None:
             try:
-                self._task = tasks.create_task(work, name=self.subject)
+                self._task = tasks.create_task(work, name=self._subject)
             except RuntimeError:
                 # The node is failing already; it will destroy the entity in a moment.
                 work.close()
                 raise
         return self._task
 
-    def run(self) -> Coroutine[Any, Any, None] | None:
-        """Return the work of the entity as a coroutine; None where there is none."""
+    def _run(self) -> Coroutine[Any, Any, None] | None:
+        """Return the work of the entity as a coroutine, or None."""
         return None
 
     def destroy(self) -> None:
-        """End the entity: it sends, receives and calls nothing any more. Twice is allowed."""
+        """End the entity: it sends, receives and calls nothing any more. May be called twice."""
         if self.destroyed:
             return
         self.destroyed = True
-        # A callback that failed has cancelled the others already; once more would break off what
+        # A failed callback has already cancelled the others; cancelling again would interrupt what
         # they do in `finally`.
         if self._task is not None and not self._task.cancelling():
             self._task.cancel()
@@ -84,7 +89,7 @@ class Entity:
     def _close(self) -> None:
         """Release what the entity holds; called once, by `destroy`."""
 
-    def refuse_if_destroyed(self, action: str = "used") -> None:
+    def _refuse_if_destroyed(self, action: str = "") -> None:
         """Raise EntityDestroyedError after `destroy`."""
         if self.destroyed:
-            raise EntityDestroyedError(self.subject, action)
+            raise EntityDestroyedError(self._subject, action)

@@ -1,4 +1,4 @@
-"""What rclpy's ``*_async`` methods return: work of an entity as a future."""
+"""What rclpy's ``*_async`` methods return: the result of an entity's work as a future."""
 
 from __future__ import annotations
 
@@ -17,26 +17,26 @@ T = TypeVar("T")
 
 
 class Futures:
-    """Does work of one entity in tasks of its node, and gives its outcome as futures.
+    """Runs work of one entity in tasks of its node, and returns the results as futures.
 
-    What is begun before the node runs waits for that. What its owner's end leaves undone is
-    cancelled.
+    Work submitted before the node runs starts with the node. `close` cancels what is unfinished.
 
     Args:
-        subject: Whose work it is, for names of tasks and errors.
+        subject: The entity, for the names of tasks and for errors.
     """
 
     def __init__(self, subject: str) -> None:
         self._subject = subject
         self._tasks: asyncio.TaskGroup | None = None
         self._closed = False
+        # The unfinished futures, each with its work until that is started.
         self._open: dict[asyncio.Future[Any], Coroutine[Any, Any, Any] | None] = {}
 
     def begin(self, work: Coroutine[Any, Any, T]) -> asyncio.Future[T]:
-        """Return the outcome of `work` as a future; cancelling the future cancels the work.
+        """Return the result of `work` as a future; cancelling the future cancels the work.
 
         Raises:
-            RuntimeError: no event loop runs, so nothing could complete the future.
+            RuntimeError: no event loop is running, so nothing could complete the future.
         """
         try:
             future: asyncio.Future[T] = asyncio.get_running_loop().create_future()
@@ -56,20 +56,20 @@ class Futures:
         return future
 
     def start(self, tasks: asyncio.TaskGroup) -> None:
-        """Begin what waits, and from now on all else at once. Called when the node runs."""
+        """Start all submitted work; from now on work starts at once. Called when the node runs."""
         self._tasks = tasks
         for future in list(self._open):
             self._start(future)
 
     def close(self) -> None:
-        """Cancel what is under way, and from now on all else at once."""
+        """Cancel all unfinished work; from now on work is cancelled at once."""
         self._closed = True
         for future in list(self._open):
             future.cancel(f"{self._subject}: destroyed")
 
     def _start(self, future: asyncio.Future[Any]) -> None:
         work = self._open[future]
-        assert work is not None  # noqa: S101  # nothing is begun twice
+        assert work is not None  # noqa: S101  # nothing is started twice
         assert self._tasks is not None  # noqa: S101  # the node runs
         self._open[future] = None
         outcome = complete(future, work)
@@ -89,13 +89,13 @@ class Futures:
 
 
 async def complete(future: asyncio.Future[T], work: Coroutine[Any, Any, T]) -> None:
-    """Do `work`, and give its outcome to `future`, errors and all."""
+    """Await `work`, and set its result or its exception on `future`."""
     try:
         outcome = await work
     except asyncio.CancelledError:
         future.cancel()
         raise
-    except Exception as error:  # noqa: BLE001  # whoever has the future gets it
+    except Exception as error:  # noqa: BLE001  # raised to those who await the future
         if not future.done():
             future.set_exception(error)
     else:
@@ -104,10 +104,10 @@ async def complete(future: asyncio.Future[T], work: Coroutine[Any, Any, T]) -> N
 
 
 class Unasked(Coroutine[Any, Any, T]):
-    """A question as a coroutine: it has an answer once it is awaited, and no truth value before.
+    """A coroutine that returns a truth value, and that raises if it is tested without an await.
 
-    rclpy's programs ask ``while not client.wait_for_service(timeout_sec=1.0):``. A plain coroutine
-    is true, so that the loop would end at once and the service be taken for available.
+    Programs for rclpy contain ``while not client.wait_for_service(timeout_sec=1.0):``. A plain
+    coroutine is true, so that loop would end at once, as if the service were available.
     """
 
     __slots__ = ("_name", "_work")
@@ -120,7 +120,7 @@ class Unasked(Coroutine[Any, Any, T]):
         return f"<{self._name}(), not awaited>"
 
     def __bool__(self) -> bool:
-        """Say what is missing.
+        """Refuse: the await is missing.
 
         Raises:
             TypeError: always.
@@ -152,7 +152,7 @@ class Unasked(Coroutine[Any, Any, T]):
 def asks(
     method: Callable[P, Coroutine[Any, Any, T]],
 ) -> Callable[P, Coroutine[Any, Any, T]]:
-    """Make a coroutine method whose answer is a truth value say so when it is not awaited."""
+    """Make testing the coroutine of `method` without an await raise; see `Unasked`."""
 
     @wraps(method)
     def asking(*args: P.args, **kwargs: P.kwargs) -> Coroutine[Any, Any, T]:

@@ -1,4 +1,4 @@
-"""What ties an entity to its node: its entry in the graph, and the node's way of calling back."""
+"""What ties an entity to its node: its entry in the graph, and how the node runs callbacks."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class GraphEntry:
     Attributes:
         endpoint: The endpoint.
         callbacks: How its node runs callbacks.
-        affinity: Where its node runs.
+        affinity: The event loop that its node runs in.
     """
 
     def __init__(
@@ -31,17 +31,18 @@ class GraphEntry:
         self.callbacks = callbacks
         self.affinity = affinity
         self._graph = graph
+        # What `until` waits for: changes of the graph, each until it is done.
         self._waits: set[asyncio.Future[None]] = set()
         self._closed = False
 
     def open(self) -> None:
-        """Enter the endpoint into the graph. Called when its transports know it."""
+        """Add the endpoint to the graph. Called once it is announced to the transports."""
         self._graph.add_endpoint(self.endpoint)
 
     def close(self) -> None:
-        """Take the endpoint out of the graph, and cancel every `until`."""
+        """Remove the endpoint from the graph, and cancel every `until`."""
         self._closed = True
-        for wait in list(self._waits):  # first, as the change below would wake them
+        for wait in list(self._waits):  # first, since the change below wakes them
             wait.cancel(f"{self.endpoint.kind.value} of {self.endpoint.name}: destroyed")
         self._graph.remove_endpoint(self.endpoint)
 
@@ -64,14 +65,14 @@ class GraphEntry:
         )
 
     async def until(self, condition: Callable[[], bool]) -> None:
-        """Wait until `condition()` is true; it is asked again when the graph changes.
+        """Wait until `condition()` is true; it is checked again whenever the graph changes.
 
         Raises:
-            CancelledError: the endpoint was closed meanwhile.
+            CancelledError: the endpoint was closed during the wait.
         """
         while not condition():
             if self._closed:
-                # A change in the same turn as `close` had ended the wait already.
+                # A change in the same iteration of the loop had ended the wait before `close`.
                 raise asyncio.CancelledError(f"{self.endpoint.name}: destroyed")
             wait = self._graph.changed()
             self._waits.add(wait)

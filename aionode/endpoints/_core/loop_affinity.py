@@ -1,4 +1,4 @@
-"""Where a node runs, for calls that come from elsewhere."""
+"""Which event loop and thread a node runs in, for calls from other threads."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 __all__ = ["LoopAffinity"]
 
 PATIENCE_S = 1.0
-"""How long a thread waits before it looks whether the event loop is there at all."""
+"""How often a waiting thread checks whether the event loop has been closed."""
 
 
 class LoopAffinity:
@@ -31,21 +31,21 @@ class LoopAffinity:
         self._loop: asyncio.AbstractEventLoop | None = None
 
     def attach(self) -> None:
-        """Note that the node runs in the loop that runs now."""
+        """Record the running loop and its thread as those of the node."""
         self._loop = asyncio.get_running_loop()
         self.thread = get_ident()
 
     def detach(self) -> None:
-        """Note that it runs no longer."""
+        """Forget them: the node has stopped."""
         self._loop = None
         self.thread = 0
 
     def is_other_thread(self) -> bool:
-        """Whether the node runs in another thread than this one."""
+        """Return whether the node runs in a thread other than this one."""
         return self.thread not in (0, get_ident())
 
     def call(self, action: Callable[[], object]) -> None:
-        """Do `action` in the thread of the loop: soon from elsewhere, else at once."""
+        """Run `action` in the loop's thread: at once if this is it, else soon."""
         loop = self._loop
         if loop is None or not self.is_other_thread():
             action()
@@ -54,7 +54,7 @@ class LoopAffinity:
             loop.call_soon_threadsafe(action)
 
     def wait_for(self, action: Callable[..., None], *args: Any) -> None:
-        """Do `action` in the thread of the loop, and wait until it is done. From elsewhere only.
+        """Run `action` in the loop's thread, and wait until it is done. From other threads only.
 
         Raises:
             Exception: what `action` raised.
@@ -69,7 +69,7 @@ class LoopAffinity:
         def act() -> None:
             try:
                 action(*args)
-            except Exception as error:  # noqa: BLE001  # raised in the thread that asked
+            except Exception as error:  # noqa: BLE001  # raised in the calling thread
                 done.set_exception(error)
             else:
                 done.set_result(None)

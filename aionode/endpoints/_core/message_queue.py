@@ -7,9 +7,10 @@ from collections import deque
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from aionode.clock import perf_ns
+from aionode.endpoints._core.inline_call import InlineCall
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Coroutine
 
     from aionode.endpoints.stats import CallbackStats
 
@@ -18,34 +19,56 @@ __all__ = ["MessageQueue"]
 T = TypeVar("T")
 
 
-class MessageQueue(Generic[T]):
-    """Holds what has arrived and was not yet taken: ordered, bounded, counted.
+class MessageQueue(InlineCall, Generic[T]):
+    """A bounded FIFO queue.
 
-    With KEEP_LAST a full inbox drops its oldest item, with KEEP_ALL it refuses the newest; both are
+    With KEEP_LAST a full queue drops its oldest item, with KEEP_ALL it refuses the newest; both are
     counted in `stats.dropped`. Putting never waits and needs no running loop.
+
+    Items may also bypass it: while its consumer waits in `wait_inline`, `take_inline` handles an
+    item within the event that brought it. Waking the consumer instead takes one more iteration of
+    the loop and a step of a task, which is much of the cost of a message. The order stays: once an
+    item is queued or the consumer has been woken, nothing bypasses the queue, and the consumer
+    finishes what an inline callback left before it takes the next item. This is part of the queue,
+    and not an object of its own, because there is a queue for each subscription.
 
     Attributes:
         depth: How many items it holds at most.
-        keep_all: Whether a full one refuses the newest item.
+        keep_all: Whether it refuses the newest item when full.
         stats: Where dropped items are counted.
-        items: What is queued, with the `perf_ns` of their arrival, to be looked at only.
+        items: What is queued, with the `perf_ns` of its arrival. Read only.
     """
 
-    __slots__ = ("_readers", "_writers", "depth", "items", "keep_all", "stats")
+    __slots__ = (
+        "_handle",
+        "_inline_waiter",
+        "_readers",
+        "_writers",
+        "depth",
+        "items",
+        "keep_all",
+        "stats",
+    )
 
     def __init__(self, depth: int, stats: CallbackStats, *, keep_all: bool = False) -> None:
+        super().__init__()
         self.depth = depth
         self.keep_all = keep_all
         self.stats = stats
         self.items: deque[tuple[int, T]] = deque()
+        # Those that wait for an item and for room; emptied when they are woken.
         self._readers: list[asyncio.Future[None]] = []
         self._writers: list[asyncio.Future[None]] = []
+        # What the consumer waits for in `wait_inline`, and what handles items meanwhile. The waiter
+        # is None while the consumer does not wait, and during an inline callback.
+        self._inline_waiter: asyncio.Future[None] | None = None
+        self._handle: Callable[[int, T], Coroutine[object, object, None] | None] | None = None
 
     def __len__(self) -> int:
         return len(self.items)
 
     def put(self, item: T) -> None:
-        """Add `item`, and wake whoever waits for it."""
+        """Add `item`, and wake the readers."""
         queue = self.items
         if len(queue) >= self.depth:
             self.stats.dropped += 1
@@ -64,31 +87,22 @@ class MessageQueue(Generic[T]):
         return entry
 
     def has_room(self) -> bool:
-        """Whether an item can be added without losing one that should be kept."""
+        """Return whether an item can be added without losing one that should be kept."""
         return not self.keep_all or len(self.items) < self.depth
 
     async def wait(self) -> None:
-        """Wait until there is an item, or until woken by `wake`. Cancelling loses nothing."""
+        """Wait for an item, or for `wake`. Cancelling loses nothing."""
         if not self.items:
-            waiter = self.expect()
+            waiter = asyncio.get_running_loop().create_future()
+            self._readers.append(waiter)
             try:
                 await waiter
             finally:
-                self.forget(waiter)
-
-    def expect(self) -> asyncio.Future[None]:
-        """Return a future that is done when the next item comes, or by `wake`."""
-        waiter = asyncio.get_running_loop().create_future()
-        self._readers.append(waiter)
-        return waiter
-
-    def forget(self, waiter: asyncio.Future[None]) -> None:
-        """Note that nobody waits for what `expect` returned any more."""
-        if waiter in self._readers:
-            self._readers.remove(waiter)
+                if waiter in self._readers:
+                    self._readers.remove(waiter)
 
     async def wait_for_room(self) -> None:
-        """Wait until there is room, or until woken by `wake`."""
+        """Wait for room, or for `wake`."""
         if not self.has_room():
             waiter = asyncio.get_running_loop().create_future()
             self._writers.append(waiter)
@@ -112,9 +126,52 @@ class MessageQueue(Generic[T]):
         return unread
 
     def wake(self) -> None:
-        """Wake everyone who waits, on either side: the entity is being destroyed."""
+        """Wake all readers and writers: the entity is being destroyed."""
         _wake(self._readers)
         _wake(self._writers)
+
+    # Past the queue
+
+    async def wait_inline(
+        self, handle: Callable[[int, T], Coroutine[object, object, None] | None]
+    ) -> None:
+        """Do `wait` for the consumer, and let `take_inline` call `handle` meanwhile.
+
+        Raises:
+            BaseException: what a callback raised.
+        """
+        if not self.items:
+            self.prepare()
+            self._handle = handle
+            await self.after(self._until_woken())
+
+    async def _until_woken(self) -> None:
+        waiter = self._inline_waiter = asyncio.get_running_loop().create_future()
+        self._readers.append(waiter)
+        try:
+            await waiter
+        finally:
+            self._inline_waiter = None
+            if waiter in self._readers:
+                self._readers.remove(waiter)
+
+    def take_inline(self, item: T, inline_deadline_ns: int) -> bool:
+        """Handle `item` now, if that is possible before `inline_deadline_ns`; else return False."""
+        waiter = self._inline_waiter
+        if waiter is None or waiter.done():
+            return False
+        now_ns = perf_ns()
+        if now_ns >= inline_deadline_ns:
+            return False
+        self._inline_waiter = None
+        try:
+            done = self.run(self._handle, now_ns, item)  # type: ignore[arg-type]  # set to wait
+        finally:
+            self._inline_waiter = waiter
+        # The callback itself may have woken or cancelled the consumer.
+        if not done and not waiter.done():
+            waiter.set_result(None)
+        return True
 
 
 def _wake(waiters: list[asyncio.Future[None]]) -> None:

@@ -1,4 +1,4 @@
-"""Saying once, and with the reason, that two endpoints of one name do not talk."""
+"""Warning once, and with the reason, that two endpoints of one name cannot communicate."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from aionode.graph import TOPIC_KINDS, EndpointKind
 from aionode.logging import get_logger
 from aionode.names import logger_name
-from aionode.qos import incompatibilities, incompatible_qos_text
+from aionode.qos import incompatible_qos_text
 
 if TYPE_CHECKING:
     from aionode.graph import EndpointInfo, Graph
@@ -16,9 +16,9 @@ __all__ = ["MismatchReport"]
 
 
 class MismatchReport:
-    """Compares each endpoint that appears with those of this context that it should talk to.
+    """Compares each endpoint that appears with its counterparts in this context.
 
-    A pair of this context is reported when the second of the two appears, so each pair once.
+    A pair within this context is reported when the second of the two appears, so only once.
     """
 
     def __init__(self, graph: Graph, participant: str) -> None:
@@ -27,7 +27,7 @@ class MismatchReport:
         graph.on_endpoint(self.examine)
 
     def examine(self, new: EndpointInfo) -> None:
-        """Report every mismatch that `new` brings."""
+        """Log every mismatch between `new` and the endpoints of its name."""
         for known in self._graph.endpoints(new.kind.opposite, name=new.name):
             own, other = (known, new) if self._is_own(known) else (new, known)
             if not self._is_own(own):
@@ -41,33 +41,29 @@ class MismatchReport:
 
 
 def mismatch_text(own: EndpointInfo, other: EndpointInfo) -> str | None:
-    """Return why `own` and `other` do not talk, and what would help; None if they talk."""
+    """Return why `own` and `other` cannot communicate, and what to change; None if they can."""
     where = f"{'topic' if own.kind in TOPIC_KINDS else 'service'} '{own.name}'"
     peer = f"{other.kind.value} of node {other.node.fully_qualified_name}"
-    if own.type_name != other.type_name:
+    found = own.compare(other)
+    if found is None:
+        return None
+    if found.aspect == "type":
         return (
             f"{where}: the {peer} has type {other.type_name}, this {own.kind.value} "
             f"{own.type_name}. They will not hear each other; use one type, or another name"
         )
-    if own.type_hash != other.type_hash:
+    if found.aspect == "definition":
         return (
             f"{where}: the {peer} has another definition of {other.type_name} "
             f"({other.type_hash}, here {own.type_hash}). They will not hear each other; use the "
             "same version of the interface package on both sides"
         )
-    if own.kind not in TOPIC_KINDS:
-        return None
-    offers, asks = (own, other) if own.kind is EndpointKind.PUBLISHER else (other, own)
-    found = incompatibilities(offers.qos, asks.qos)
-    if not found:
-        return None
-    text = incompatible_qos_text(
-        own.name, found[-1].kind, publisher=other.kind is EndpointKind.PUBLISHER
-    )
-    reasons = "; ".join(incompatibility.reason for incompatibility in found)
     if own.node.participant != other.node.participant:
         return (
-            f"{where}: QoS of the {peer} is incompatible ({reasons}). Messages pass all the same "
-            "over rmw_zenoh, but would not over DDS"
+            f"{where}: QoS of the {peer} is incompatible ({found.reason}). Messages pass all the "
+            "same over rmw_zenoh, but would not over DDS"
         )
-    return f"{text} ({reasons})"
+    text = incompatible_qos_text(
+        own.name, found.policy, publisher=other.kind is EndpointKind.PUBLISHER
+    )
+    return f"{text} ({found.reason})"

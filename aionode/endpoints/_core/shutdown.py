@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["Ending"]
 
 NOTICE_S = 0.3
-"""After how long the log says what the end of a node waits for, in seconds of the machine."""
+"""After how long the log says what the end of a node waits for, in seconds of real time."""
 
 CALLBACKS_S = 5.0
 """How long the end of a node waits for its callbacks."""
@@ -28,13 +28,13 @@ ANSWERS_S = 1.0
 class Ending:
     """Ends a node so that its callbacks can clean up.
 
-    Whatever calls callbacks is destroyed at once, and the callbacks are cancelled. Publishers,
-    clients and the clock live until these have ended: a robot is stopped in ``finally``.
+    Entities with callbacks are destroyed at once, and their callbacks are cancelled. Publishers,
+    clients and the clock stay until these have ended: a robot is stopped in ``finally``.
 
     Args:
-        entities: Those of the node, in the order of their creation; a destroyed one leaves them.
-        callbacks: How they are run; knows those that have not ended.
-        leave: Called when everything is destroyed; ends what belongs to the node itself.
+        entities: The entities of the node, oldest first; it removes those that are destroyed.
+        callbacks: How the node runs callbacks; knows those that have not ended.
+        leave: Called when everything is destroyed; ends the node itself.
     """
 
     def __init__(
@@ -45,15 +45,16 @@ class Ending:
         self._leave = leave
         self._stage = 0
         self._begun = False
+        # Tasks that run callbacks, and answers to cancel requests: each until it is done.
         self._running: set[asyncio.Future[Any]] = set()
         self._answers: set[asyncio.Future[Any]] = set()
 
     def watch(self, task: asyncio.Task[None]) -> None:
-        """Do not go on from the first step before `task` is done: it runs callbacks."""
+        """Let the first step last until `task` is done: it runs callbacks."""
         self._hold(task, self._running)
 
     def expect(self, answer: asyncio.Future[Any]) -> None:
-        """Do not destroy clients before `answer` is done: it is that of a request to stop."""
+        """Keep the clients until `answer`, to a cancel request, is done."""
         self._hold(answer, self._answers)
 
     def _hold(self, future: asyncio.Future[Any], among: set[asyncio.Future[Any]]) -> None:
@@ -65,7 +66,7 @@ class Ending:
         future.add_done_callback(done)
 
     def begin(self) -> None:
-        """Destroy what calls callbacks; what is left follows as soon as it may."""
+        """Destroy the entities with callbacks; the others follow in their turn."""
         self._begun = True
         self._destroy(EndStage.CALLBACKS)
         self._go_on()
@@ -73,7 +74,7 @@ class Ending:
     def _destroy(self, stage: EndStage) -> None:
         self._stage = stage + 1
         for entity in reversed(list(self._entities)):
-            if entity.stage <= stage:
+            if entity._stage <= stage:
                 entity.destroy()
 
     def _go_on(self) -> None:
@@ -86,10 +87,10 @@ class Ending:
             self._leave()
 
     async def wait(self) -> None:
-        """Return when everything has ended, after some seconds at most.
+        """Return when everything has ended, after `CALLBACKS_S` and `ANSWERS_S` at most.
 
-        What it waits for long is named in the log. What has not ended then is cancelled once more,
-        and loses its publishers and clients.
+        Callbacks that take long to end are named in the log. Those that still run after the limit
+        are cancelled once more, and lose their publishers and clients.
         """
         logger = self._callbacks.logger
         if self._running:

@@ -1,4 +1,4 @@
-"""Policies that are accepted, announced to others, and without effect here."""
+"""QoS policies that are accepted and announced to others, but have no effect here."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ __all__ = ["policies_without_effect"]
 
 
 def policies_without_effect(profile: QoSProfile, *, sends: bool) -> list[str]:
-    """Return the policies of `profile` that nothing watches or enforces, such as ``deadline=1 s``.
+    """Return the policies of `profile` that are not enforced, such as ``deadline=1 s``.
 
     Args:
         profile: What the user asked for.
-        sends: Whether the endpoint is one that lifespan is a promise of.
+        sends: Whether the endpoint is a publisher, which lifespan applies to.
     """
     policies = [f"{name}={duration_text(value)}" for name, value in durations(profile, sends=sends)]
     if profile.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC:
@@ -28,7 +28,7 @@ def policies_without_effect(profile: QoSProfile, *, sends: bool) -> list[str]:
 
 
 def durations(profile: QoSProfile, *, sends: bool) -> list[tuple[str, Duration]]:
-    """Return the durations that somebody has set."""
+    """Return the durations of `profile` that the user has set."""
     given = [
         ("deadline", profile.deadline),
         ("liveliness_lease_duration", profile.liveliness_lease_duration),

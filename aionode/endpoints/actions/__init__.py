@@ -1,1 +1,1 @@
-"""Action servers and clients; their public names are in `aionode.action`."""
+"""Action servers and clients; the public names are in `aionode.action`."""

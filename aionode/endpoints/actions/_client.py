@@ -1,4 +1,4 @@
-"""Action clients: they send goals, and tell what becomes of them."""
+"""Action clients: they send goals, and report their progress and results."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ from aionode.qos import (
 )
 
 if TYPE_CHECKING:
+    from aionode.endpoints.actions._node import ActionNode
     from aionode.message import ActionClass
-    from aionode.node import Node
 
 __all__ = ["ActionClient"]
 
@@ -47,22 +47,22 @@ ResultT = TypeVar("ResultT", bound=Message)
 FeedbackT = TypeVar("FeedbackT", bound=Message)
 
 ANSWER_LIMIT_S = 1.0
-"""How long an answer is waited for that should come at once, in seconds of the machine."""
+"""The longest wait for an answer that should come at once, in seconds of real time."""
 
 UNLIMITED = 2**63 - 1
 
 LAST_FEEDBACK_S = 0.02
-"""How long feedback is listened for after the result came from another process, in seconds.
+"""How long to wait for feedback after a result from another process, in seconds.
 
-Zenoh lets a reply overtake the samples before it: in 3 to 7 of 100 goals that sent feedback just
-before their end it came after the result, by less than a millisecond.
+In Zenoh a reply may overtake the samples before it: of 100 goals that sent feedback just before
+their end, in 3 to 7 it came after the result, by less than a millisecond.
 """
 
 TURNS_FOR_FEEDBACK = 10
-"""For how many turns of the loop what has arrived may wait in the queue of a subscription."""
+"""After how many iterations of the loop the feedback that has arrived has left its queue."""
 
 FEEDBACK_QOS = QoSProfile(depth=1000)
-"""The feedback of all goals shares a queue: ten of them may get as much at once as one keeps."""
+"""All goals share one queue of feedback, with room for what ten goals keep."""
 
 
 class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
@@ -72,7 +72,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
 
         client = ActionClient(node, Fibonacci, "fibonacci")
         await client.wait_for_server()
-        result = await client.call(Fibonacci.Goal(order=5))      # the whole in one, or
+        result = await client.call(Fibonacci.Goal(order=5))      # all in one, or step by step
 
         goal = await client.send_goal(Fibonacci.Goal(order=5))
         async for feedback in goal:
@@ -80,9 +80,9 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         outcome = await goal.result()
 
     Args:
-        node: Whose it is.
+        node: The node that it belongs to.
         action_type: An action class.
-        action_name: Name of the action; a relative one gets the node's namespace.
+        action_name: Name of the action; relative names are in the node's namespace.
         goal_service_qos_profile: Profile of the service that takes goals.
         result_service_qos_profile: Profile of the service that gives results.
         cancel_service_qos_profile: Profile of the service that takes cancel requests.
@@ -94,14 +94,14 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         action_name: The full name of the action.
 
     Raises:
-        TypeError: an argument is of a wrong kind.
+        TypeError: an argument has the wrong type.
         InvalidTopicNameException: `action_name` is invalid (a ValueError).
         EntityDestroyedError: the node was destroyed (a RuntimeError).
     """
 
     def __init__(
         self,
-        node: Node,
+        node: ActionNode,
         action_type: ActionClass[GoalT, ResultT, FeedbackT],
         action_name: str,
         *,
@@ -118,12 +118,14 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         self._check = checker(self.action_type.Goal)
         self._graph = node.graph
         self._participant = node.context.participant
+        # Goals from when they are sent until they end, by id.
         self._goals: dict[bytes, ClientGoalHandle[ResultT, FeedbackT]] = {}
         self._accepted: MessageQueue[Any] = MessageQueue(UNLIMITED, CallbackStats(), keep_all=True)
+        # What tasks of the user wait for here, to be cancelled with the client.
         self._waits: set[asyncio.Future[Any]] = set()
-        self._futures = Futures(self.subject)
-        self._withdrawals: dict[Withdrawal, None] = {}
-        self._expect_at_end = node.expect_at_end
+        self._futures = Futures(self._subject)
+        self._withdrawals: dict[Withdrawal, None] = {}  # those that have not ended
+        self._expect_at_end = node._expect_at_end
 
         impl = self.action_type.Impl
         hidden = f"{self.action_name}/_action"
@@ -169,7 +171,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         except BaseException:
             self._close_parts()
             raise
-        node.add_entity(self)
+        node._add_entity(self)
 
     def _part(self, part: Any) -> Any:
         self._parts.append(part)
@@ -184,7 +186,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
     # The server
 
     def server_is_ready(self) -> bool:
-        """Whether a server is matched now, with all its three services and two topics."""
+        """Return whether a server is matched now, with its three services and two topics."""
         return bool(
             self._send_goal.service_is_ready()
             and self._cancel_goal.service_is_ready()
@@ -198,16 +200,16 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         """Wait until a server is matched.
 
         Args:
-            timeout_sec: How long at most, in seconds; None waits for ever.
+            timeout_sec: The longest wait in seconds; None waits for ever.
 
         Returns:
-            True when a server is there, False when `timeout_sec` has passed.
+            True once a server is matched, False if none was within `timeout_sec`.
 
         Raises:
-            EntityDestroyedError: the client was destroyed before.
-            CancelledError: the client was destroyed while it waited.
+            EntityDestroyedError: the client was already destroyed (a RuntimeError).
+            CancelledError: the client was destroyed during the wait.
         """
-        self.refuse_if_destroyed()
+        self._refuse_if_destroyed()
         try:
             async with asyncio.timeout(timeout_sec):
                 while not self.server_is_ready():
@@ -217,17 +219,17 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         return True
 
     async def _change(self) -> None:
-        """Wait until endpoints come or go.
+        """Wait until endpoints appear or disappear.
 
         Raises:
-            CancelledError: the client was destroyed meanwhile.
+            CancelledError: the client was destroyed during the wait.
         """
         wait = self._graph.changed()
         self._waits.add(wait)
         wait.add_done_callback(self._waits.discard)
         await wait
-        if self.destroyed:  # in the same moment as the change, too late to cancel the wait
-            raise asyncio.CancelledError(f"{self.subject}: destroyed")
+        if self.destroyed:  # just after the change had ended the wait
+            raise asyncio.CancelledError(f"{self._subject}: destroyed")
 
     # Goals
 
@@ -238,25 +240,25 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
     ) -> ResultT:
         """Send `goal`, wait for its end, and return the result message.
 
-        Cancelling cancels the goal, by `asyncio.timeout` too; see `ClientGoalHandle`.
+        Cancelling it, for example by `asyncio.timeout`, cancels the goal; see `ClientGoalHandle`.
 
         Args:
             goal: An instance of ``action_type.Goal``.
             feedback_callback: Called with each feedback message, as in rclpy: the feedback itself
-                is its field ``feedback``. Sync or async.
+                is in its field ``feedback``. Sync or async.
 
         Raises:
-            GoalRejectedError: the server did not accept the goal.
-            GoalAbortedError: the server gave the goal up; with what is known of the reason.
-            GoalCanceledError: the goal was canceled by a request that was not the caller's.
-            GoalLostError: the server went away, or forgot the goal.
+            GoalRejectedError: the server rejected the goal.
+            GoalAbortedError: the server aborted the goal; carries the reason, if known.
+            GoalCanceledError: the goal was canceled by a request of another client.
+            GoalLostError: the server went away, or no longer knows the goal.
             TypeError, MessageError, ServiceError, EntityDestroyedError, CancelledError: as
                 `send_goal`.
         """
         handle = await self.send_goal(goal, feedback_callback)
         outcome = await handle.result()
         if feedback_callback is not None:
-            await handle.heard_out()
+            await handle._wait_for_feedback()
         if outcome.status is GoalStatus.SUCCEEDED:
             return outcome.result
         if outcome.status is GoalStatus.CANCELED:
@@ -273,25 +275,24 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         feedback_callback: Callable[[Any], Any] | None = None,
         goal_uuid: Any = None,
     ) -> ClientGoalHandle[ResultT, FeedbackT]:
-        """Send `goal`, and return its handle when the server has accepted it.
+        """Send `goal`, and return its handle once the server has accepted it.
 
-        Without a server nothing answers, so `wait_for_server` first, or limit the wait with
-        `asyncio.timeout`. Cancelling cancels the goal, whether the server has accepted it by then,
-        accepts it later, or never.
+        Without a server no answer comes, so use `wait_for_server` first, or limit the wait with
+        `asyncio.timeout`. Cancelling cancels the goal, even if the server accepts it later.
 
         Args:
-            goal: An instance of ``action_type.Goal``; it may be changed after the call began.
+            goal: An instance of ``action_type.Goal``; it may be changed once the call has begun.
             feedback_callback: Called with each feedback message, as in rclpy: the feedback itself
-                is its field ``feedback``. Sync or async. Without it, iterate over the handle.
-            goal_uuid: The id as unique_identifier_msgs/msg/UUID; a random one without it.
+                is in its field ``feedback``. Sync or async. Without it, iterate over the handle.
+            goal_uuid: The id as unique_identifier_msgs/msg/UUID; by default a random one.
 
         Raises:
-            GoalRejectedError: the server did not accept the goal.
+            GoalRejectedError: the server rejected the goal.
             TypeError: `goal` is of another type.
             MessageError: a value does not fit its field.
             ServiceError: the server's goal_callback failed, or the server went away.
-            EntityDestroyedError: the client was destroyed before (a RuntimeError).
-            CancelledError: the client was destroyed meanwhile.
+            EntityDestroyedError: the client was already destroyed (a RuntimeError).
+            CancelledError: the client was destroyed during the wait.
         """
         handle = await self._send(goal, feedback_callback, goal_uuid)
         if not handle.accepted:
@@ -306,92 +307,92 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
     ) -> asyncio.Future[ClientGoalHandle[ResultT, FeedbackT]]:
         """Send `goal`, and return a future of its handle, as in rclpy.
 
-        A goal that is refused is a handle whose `accepted` is False, as there. For all else see
-        `send_goal`, and `Client.call_async` for the future.
+        For a rejected goal the handle's `accepted` is False, as in rclpy. See `send_goal` for the
+        rest, and `Client.call_async` for the future.
 
         Raises:
             EntityDestroyedError: the client was destroyed (a RuntimeError).
-            RuntimeError: no event loop runs.
+            RuntimeError: no event loop is running.
         """
-        self.refuse_if_destroyed("given a goal")
+        self._refuse_if_destroyed("send goal")
         return self._futures.begin(self._send(goal, feedback_callback, goal_uuid))
 
-    def in_future(self, work: Coroutine[Any, Any, T]) -> asyncio.Future[T]:
-        """Return the outcome of `work` as a future. For goal handles."""
+    def _in_future(self, work: Coroutine[Any, Any, T]) -> asyncio.Future[T]:
+        """Return the result of `work` as a future. For goal handles."""
         return self._futures.begin(work)
 
-    def start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:
-        """Begin with the goals that were sent before the node ran."""
-        task = super().start(tasks)
+    def _start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:
+        """Send the goals that were submitted before the node ran."""
+        task = super()._start(tasks)
         self._futures.start(tasks)
         return task
 
     async def _send(
         self, goal: GoalT, feedback_callback: Callable[[Any], Any] | None, goal_uuid: Any
     ) -> ClientGoalHandle[ResultT, FeedbackT]:
-        self.refuse_if_destroyed("given a goal")
+        self._refuse_if_destroyed("send goal")
         self._check(goal)
         if feedback_callback is not None:
-            accepts(feedback_callback, 1, subject=self.subject, wanted="(feedback_message)")
+            accepts(feedback_callback, 1, subject=self._subject, wanted="(feedback_message)")
         handle: ClientGoalHandle[ResultT, FeedbackT] = ClientGoalHandle(
             self, uuid_message(uuid4().bytes) if goal_uuid is None else goal_uuid, feedback_callback
         )
-        # Entered first, because feedback may be faster than the answer.
-        self._goals.setdefault(handle.key, handle)
+        # Registered first, because feedback may be faster than the answer.
+        self._goals.setdefault(handle._key, handle)
         try:
-            handle.sending = self._send_goal.begin(
+            handle._sending = self._send_goal._begin(
                 self.action_type.Impl.SendGoalService.Request(goal_id=handle.goal_id, goal=goal)
             )
-            # It goes on when the caller is cancelled, so that `Withdrawal` knows what became of it.
-            response = await self.awaiting(handle, self._kept(handle.sending.answer))
+            # It continues when the caller is cancelled, so that `Withdrawal` learns the answer.
+            response = await self._awaiting(handle, self._kept(handle._sending.answer))
         except BaseException:
             self._forget(handle)
             raise
-        handle.sending.cancel()  # has ended
+        handle._sending.cancel()  # it is answered
         if not response.accepted:
             self._forget(handle)
-            handle.end(lost=GoalLostError(self.action_name, handle.text, "the server refused it"))
+            handle._end(lost=GoalLostError(self.action_name, handle.text, "the server rejected it"))
             return handle
         handle.accepted = True
         handle.stamp = response.stamp
-        handle.tell(GoalStatus.ACCEPTED)
+        handle._update_status(GoalStatus.ACCEPTED)
         self._accepted.put(handle)
         return handle
 
     def _forget(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
-        if self._goals.get(goal.key) is goal:
-            del self._goals[goal.key]
+        if self._goals.get(goal._key) is goal:
+            del self._goals[goal._key]
 
     async def _kept(self, answer: asyncio.Future[T]) -> T:
-        """Wait for `answer`, which goes on when the wait is cancelled; by `_close`, too."""
+        """Wait for `answer`, which a cancelled wait leaves open; `_close` cancels the wait."""
         wait = asyncio.shield(answer)
         self._waits.add(wait)
         wait.add_done_callback(self._waits.discard)
         return await wait
 
-    async def awaiting(self, goal: ClientGoalHandle[ResultT, FeedbackT], wait: Awaitable[T]) -> T:
-        """Return what `wait` returns; if cancelled, cancel `goal` as well. For its handle."""
-        goal.waiting += 1
+    async def _awaiting(self, goal: ClientGoalHandle[ResultT, FeedbackT], wait: Awaitable[T]) -> T:
+        """Return the result of `wait`; if cancelled, cancel `goal` as well. For its handle."""
+        goal._waiting += 1
         try:
             return await wait
         except asyncio.CancelledError:
             if not (self.destroyed or goal.done):
-                self.withdraw(goal)
+                self._withdraw(goal)
             raise
         finally:
-            goal.waiting -= 1
+            goal._waiting -= 1
 
-    def withdraw(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
-        """Have `goal` cancelled at the server, without waiting. For its handle."""
-        if goal.sending is not None and not goal.sending.calls:
-            goal.sending.cancel()  # there was no server that could have got it
-        elif not goal.withdrawn:
-            goal.withdrawn = True  # one request is enough, however many wait
+    def _withdraw(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
+        """Begin to cancel `goal` at the server, without waiting. For its handle."""
+        if goal._sending is not None and not goal._sending.calls:
+            goal._sending.cancel()  # no server can have received it
+        elif not goal._withdrawn:
+            goal._withdrawn = True  # one request is enough, however many tasks wait
 
-            def over(_: asyncio.Future[Any]) -> None:
-                goal.withdrawn = False
+            def answered(_: asyncio.Future[Any]) -> None:
+                goal._withdrawn = False
 
-            self._begin_to_cancel(goal).answer.add_done_callback(over)
+            self._begin_to_cancel(goal).answer.add_done_callback(answered)
 
     def _begin_to_cancel(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> Withdrawal:
         withdrawal = Withdrawal(self._cancel_goal, goal, self._on_withdrawn)
@@ -404,22 +405,22 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         if self.destroyed:
             self._close_parts()
 
-    async def cancel_goal(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> Any:
+    async def _request_cancel(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> Any:
         """Ask the server to cancel `goal`. For its handle."""
-        self.refuse_if_destroyed("asked to cancel a goal")
-        if not self._cancel_goal.service_is_ready():  # it was, so it has gone
+        self._refuse_if_destroyed("cancel goal")
+        if not self._cancel_goal.service_is_ready():  # it was ready, so it has gone
             raise ServiceUnavailableError(self._cancel_goal.srv_name)
         return await self._kept(self._begin_to_cancel(goal).answer)
 
-    # What the server says
+    # What the server sends
 
     def _on_feedback(self, message: Any) -> Any:
         goal = self._goals.get(message.goal_id.uuid.tobytes())
         if goal is None:
             return None  # of another client, or late
-        if goal.feedback_callback is not None:
-            return goal.feedback_callback(message)
-        goal.take(message.feedback)
+        if goal._feedback_callback is not None:
+            return goal._feedback_callback(message)
+        goal._take(message.feedback)
         return None
 
     def _on_status(self, message: Any) -> None:
@@ -428,9 +429,9 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         for each in message.status_list:
             goal = self._goals.get(each.goal_info.goal_id.uuid.tobytes())
             if goal is not None:
-                goal.tell(GoalStatus(each.status))
+                goal._update_status(GoalStatus(each.status))
 
-    async def run(self) -> None:
+    async def _run(self) -> None:
         """Wait for the results of all goals, until cancelled."""
         await consume(self._accepted, self._follow, concurrent=True)
 
@@ -449,20 +450,20 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
             text = await self._reason(goal) if status is GoalStatus.ABORTED else ""
         except ServiceUnavailableError:
             problem = "the server went away before it ended"
-            goal.end(lost=GoalLostError(self.action_name, goal.text, problem))
+            goal._end(lost=GoalLostError(self.action_name, goal.text, problem))
         except ServiceError as error:
             problem = f"the server could not tell its result ({error})"
-            goal.end(lost=GoalLostError(self.action_name, goal.text, problem))
+            goal._end(lost=GoalLostError(self.action_name, goal.text, problem))
         else:
-            goal.end(ActionResult(status, response.result, text))
+            goal._end(ActionResult(status, response.result, text))
             if status is not GoalStatus.UNKNOWN:
                 await self._hear_out()
-            goal.end_feedback()
+            goal._end_feedback()
         finally:
             self._forget(goal)
 
     async def _hear_out(self) -> None:
-        """Wait for feedback that the result of its goal has overtaken."""
+        """Wait for feedback that was overtaken by the result of its goal."""
         if self._is_remote():
             with suppress(TimeoutError):
                 async with asyncio.timeout(LAST_FEEDBACK_S):
@@ -471,12 +472,12 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
             await checkpoint()
 
     def _is_remote(self) -> bool:
-        """Whether a server of another process may have had the goal."""
+        """Return whether a server of another process may have had the goal."""
         servers = self._graph.endpoints(EndpointKind.SERVER, name=self._get_result.srv_name)
         return any(server.node.participant != self._participant for server in servers)
 
     async def _until_askable(self) -> None:
-        """Wait for the server's other half, which may be found later than its first.
+        """Wait for the server's result service, which may be found later than its goal service.
 
         Raises:
             ServiceUnavailableError: the server has gone since it accepted the goal.
@@ -491,9 +492,9 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         return await self._get_result.call(request, timeout_sec)
 
     async def _reason(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> str:
-        """Return why `goal` was aborted, if the server is one of aionode and knows."""
+        """Return why `goal` was aborted, if the server runs aionode and knows; else ""."""
         try:
-            await self._ask(uuid_message(reason_id(goal.key)), ANSWER_LIMIT_S)
+            await self._ask(uuid_message(reason_id(goal._key)), ANSWER_LIMIT_S)
         except ServiceError as error:
             return error.error_text if error.error_type == "AbortReason" else ""
         except RequestTimeoutError:
@@ -503,25 +504,25 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
     # The end
 
     def _close(self) -> None:
-        """Withdraw the client, and cancel what waits, and so the goals that somebody awaits.
+        """Withdraw the client; cancel its waits, and so the goals that tasks await.
 
-        The other goals go on at the server.
+        The other goals continue at the server.
         """
         for goal in self._goals.values():
-            if goal.waiting and not goal.done:
-                self.withdraw(goal)
+            if goal._waiting and not goal.done:
+                self._withdraw(goal)
         for withdrawal in list(self._withdrawals):
             withdrawal.end_with_answer()
-        for wait in list(self._waits):  # first, as the end of the parts is a change of the graph
-            wait.cancel(f"{self.subject}: destroyed")
+        for wait in list(self._waits):  # first, since closing the parts changes the graph
+            wait.cancel(f"{self._subject}: destroyed")
         self._futures.close()
         self._close_parts()
         goals, self._goals = self._goals, {}
         for goal in goals.values():
-            goal.end()
+            goal._end()
 
     def _close_parts(self) -> None:
-        """Destroy all parts; those that cancel goals when that is done."""
+        """Destroy all parts, except those that are still needed to cancel goals."""
         for part in self._parts:
             if not (self._withdrawals and part in (self._send_goal, self._cancel_goal)):
                 part.destroy()
@@ -529,7 +530,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
 
 def uuid_message(goal_id: bytes) -> Any:
     """Return 16 bytes as unique_identifier_msgs/msg/UUID."""
-    # Imported here, because whoever imports aionode need not know this message.
+    # Imported here, because programs without actions never need this message.
     from aionode.interfaces.unique_identifier_msgs.msg import UUID
 
     return UUID(uuid=list(goal_id))

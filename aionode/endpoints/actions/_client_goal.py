@@ -25,7 +25,7 @@ ResultT = TypeVar("ResultT", bound=Message)
 FeedbackT = TypeVar("FeedbackT", bound=Message)
 
 KEPT_FEEDBACK = 100
-"""How much feedback waits for a reader; the newest stays."""
+"""How many feedback messages are kept for the reader; the oldest is dropped first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,11 +33,11 @@ class ActionResult(Generic[ResultT]):
     """How a goal ended.
 
     Attributes:
-        status: ``SUCCEEDED``, ``CANCELED`` or ``ABORTED``; ``UNKNOWN`` if the server does not know
-            the goal, or does not know it any more.
-        result: The result message; an empty one where the server had none.
-        error_text: Why the goal was aborted; empty if nobody said so, or if the server is not one
-            of aionode.
+        status: ``SUCCEEDED``, ``CANCELED`` or ``ABORTED``; ``UNKNOWN`` if the server does not, or
+            no longer, know the goal.
+        result: The result message; an empty one if the server had none.
+        error_text: Why the goal was aborted; empty if no reason was given, or if the server does
+            not run aionode.
     """
 
     status: GoalStatus
@@ -48,22 +48,23 @@ class ActionResult(Generic[ResultT]):
 class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
     """A goal that was sent. Made by `ActionClient.send_goal`.
 
-    It is an async iterator of feedback: ``async for feedback in goal`` yields what has come since
-    the goal was sent (the newest 100 are kept) and what comes, and ends when the goal has.
+    It is an async iterator of feedback: ``async for feedback in goal`` yields the feedback received
+    since the goal was sent (the newest 100 messages are kept), then what follows, and ends with the
+    goal.
 
-    Cancelling a task that awaits the goal, in `result` or in the iteration, cancels the goal. The
-    request is sent at once, and CancelledError goes on without waiting for the answer; the request
-    is sent again until the server has answered, or is gone, whatever is cancelled meanwhile. The
-    node does not end before the answer, for up to 1 s. So does destroying the client, or its node,
-    while a task awaits the goal. To give up only the wait, put ``asyncio.shield`` around `result`;
-    leaving the iteration with ``break`` has no effect on the goal, unless it is in
+    Cancelling a task that awaits the goal, in `result` or in the iteration, cancels the goal. So
+    does destroying the client or its node while a task awaits the goal. The cancel request is sent
+    at once, and CancelledError is raised without waiting for the answer. The request is repeated
+    until the server has answered or is gone; nothing interrupts this, and the node waits up to 1 s
+    for the answer before it ends. To cancel only the wait, put ``asyncio.shield`` around `result`.
+    Leaving the iteration with ``break`` does not affect the goal, except within
     ``async with goal:``, which cancels the goal when it is left.
 
     Attributes:
         goal_id: Its id, as unique_identifier_msgs/msg/UUID.
         stamp: When the server accepted it, as builtin_interfaces/msg/Time.
-        status: Its state, as far as the server has told.
-        accepted: Whether the server accepted it; False only from `send_goal_async`, since
+        status: Its last known state.
+        accepted: Whether the server accepted it; False only for handles of `send_goal_async`, since
             `send_goal` raises GoalRejectedError.
     """
 
@@ -77,16 +78,17 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         self.stamp: Any = None
         self.status = GoalStatus.UNKNOWN
         self.accepted = False
-        self.feedback_callback = feedback_callback
-        self.sending: Exchange | None = None
-        self.withdrawn = False
-        self.waiting = 0
+        self._feedback_callback = feedback_callback
+        # The exchange that sends the goal, from when that begins.
+        self._sending: Exchange | None = None
+        self._withdrawn = False  # whether a cancel request is under way
+        self._waiting = 0  # how many tasks wait for the goal
         self._client = client
         self._feedback: MessageQueue[FeedbackT] = MessageQueue(KEPT_FEEDBACK, CallbackStats())
         self._outcome: ActionResult[ResultT] | None = None
         self._lost: GoalLostError | None = None
         self._ended = asyncio.Event()
-        self._heard_out = asyncio.Event()
+        self._feedback_ended = asyncio.Event()
 
     def __repr__(self) -> str:
         return f"<ClientGoalHandle {self._client.action_name} {self.text} {self.status.name}>"
@@ -94,28 +96,29 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
     @property
     def text(self) -> str:
         """The id in 32 hexadecimal digits."""
-        return self.key.hex()
+        return self._key.hex()
 
     @property
-    def key(self) -> bytes:
+    def _key(self) -> bytes:
         """The id in 16 bytes."""
         return bytes(self.goal_id.uuid)
 
     @property
     def done(self) -> bool:
-        """Whether it is known how the goal ended."""
+        """Whether the goal has ended, or was lost with its server."""
         return self._ended.is_set()
 
     @property
-    def is_known_to_have_ended(self) -> bool:
-        """Whether the server has told how the goal ended; one that was lost may go on there."""
+    def _has_server_ended(self) -> bool:
+        """Whether the server has reported the end; a goal that was lost may still go on there."""
         return self._outcome is not None
 
     async def __aenter__(self) -> Self:
-        """Bind the goal to a block: one that has not ended when the block is left is cancelled.
+        """Bind the goal to a block: if it has not ended when the block is left, it is cancelled.
 
-        However it is left: by an exception, a cancellation, ``break`` or ``return``, or by the end
-        of an async generator around it, such as the stream of a web server whose client has gone.
+        The block may be left by an exception, a cancellation, ``break`` or ``return``, or by the
+        closing of an async generator around it, such as the response stream of a web server whose
+        client has disconnected.
         """
         return self
 
@@ -127,33 +130,33 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
     ) -> None:
         """Cancel the goal if it has not ended, without waiting for the answer."""
         if not self.done:
-            self._client.withdraw(self)
+            self._client._withdraw(self)
 
     # What a caller awaits
 
     async def result(self) -> ActionResult[ResultT]:
         """Wait for the end of the goal, and return how it ended.
 
-        Any number of tasks may wait, and later calls return the same at once. Cancelling cancels
-        the goal, see the class.
+        Any number of tasks may wait, and once the goal has ended, every call returns at once.
+        Cancelling cancels the goal, see the class.
 
         Raises:
             GoalLostError: the server went away.
             CancelledError: the client was destroyed.
         """
-        await self._client.awaiting(self, self._ended.wait())
+        await self._client._awaiting(self, self._ended.wait())
         self._raise_if_lost()
         if self._outcome is None:
-            raise asyncio.CancelledError(f"{self._client.subject}: destroyed")
+            raise asyncio.CancelledError(f"{self._client._subject}: destroyed")
         return self._outcome
 
     def __aiter__(self) -> Self:
         """Iterate over the feedback.
 
         Raises:
-            RuntimeError: the goal was sent with a `feedback_callback`, which gets it.
+            RuntimeError: the goal was sent with a `feedback_callback`, which gets the feedback.
         """
-        if self.feedback_callback is not None:
+        if self._feedback_callback is not None:
             raise RuntimeError(
                 f"{self._client.action_name}: goal {self.text}: its feedback_callback gets the "
                 "feedback; to iterate over it, send the goal without one"
@@ -161,81 +164,83 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         return self
 
     async def __anext__(self) -> FeedbackT:
-        """Wait for feedback; each goes to one reader.
+        """Wait for feedback; each message goes to one reader.
 
         Raises:
-            StopAsyncIteration: the goal has ended, and all feedback was read.
+            StopAsyncIteration: the goal has ended, and all feedback has been read.
             GoalLostError: the server went away.
             CancelledError: the client was destroyed.
         """
         while not self._feedback:
-            if self._heard_out.is_set():
+            if self._feedback_ended.is_set():
                 self._raise_if_lost()
                 if self._outcome is None:
-                    raise asyncio.CancelledError(f"{self._client.subject}: destroyed")
+                    raise asyncio.CancelledError(f"{self._client._subject}: destroyed")
                 raise StopAsyncIteration
-            await self._client.awaiting(self, self._feedback.wait())
+            await self._client._awaiting(self, self._feedback.wait())
         return self._feedback.pop()[1]
 
     def _raise_if_lost(self) -> None:
         if self._lost is not None:
-            # A copy, because the traceback of an exception grows each time that it is raised.
+            # A copy, since the traceback of an exception grows each time it is raised.
             lost = self._lost
             raise type(lost)(lost.action, lost.goal_id, lost.problem)
 
     async def cancel(self) -> Any:
         """Ask the server to cancel the goal, and return its answer.
 
-        The goal has not ended then, and may still succeed: `result` tells. The request is sent
-        again until the server has answered. Cancelling gives up the answer, not the request.
+        The goal has not ended by then, and may still succeed: `result` returns how it ended. The
+        request is repeated until the server has answered. Cancelling stops only the wait for the
+        answer, not the request.
 
         Returns:
-            An action_msgs/srv/CancelGoal response: ``return_code`` is 0 if the server agreed, 1 if
-            not, 2 if it does not know the goal, 3 if the goal had ended or was being cancelled.
+            An action_msgs/srv/CancelGoal response. Its ``return_code`` is 0 if the server agreed,
+            1 if not, 2 if it does not know the goal, 3 if the goal had ended or was being
+            cancelled.
 
         Raises:
             ServiceError: the server's cancel_callback failed, or the server went away.
             EntityDestroyedError: the client was destroyed (a RuntimeError).
         """
-        return await self._client.cancel_goal(self)
+        return await self._client._request_cancel(self)
 
     # The names of rclpy
 
     def get_result_async(self) -> asyncio.Future[ActionResult[ResultT]]:
-        """Return how the goal ends as a future, as in rclpy: see `result`.
+        """Return a future of how the goal ends, as in rclpy: see `result`.
 
-        Its ``result().status`` and ``result().result`` are those of rclpy's response. Cancelling
+        Its ``result().status`` and ``result().result`` are as in rclpy's response. Cancelling
         the future cancels the goal.
 
         Raises:
-            RuntimeError: no event loop runs.
+            RuntimeError: no event loop is running.
         """
-        return self._client.in_future(self.result())
+        return self._client._in_future(self.result())
 
     def cancel_goal_async(self) -> asyncio.Future[Any]:
-        """Ask the server to cancel the goal; return its answer as a future, see `cancel`.
+        """Ask the server to cancel the goal, and return a future of its answer: see `cancel`.
 
         Raises:
-            RuntimeError: no event loop runs.
+            RuntimeError: no event loop is running.
         """
-        return self._client.in_future(self.cancel())
+        return self._client._in_future(self.cancel())
 
-    # What the client does
+    # Called by the client
 
-    def take(self, feedback: FeedbackT) -> None:
-        """Keep `feedback` for a reader."""
+    def _take(self, feedback: FeedbackT) -> None:
+        """Queue `feedback` for the reader."""
         self._feedback.put(feedback)
 
-    def tell(self, status: GoalStatus) -> None:
-        """Take what the status topic tells; news that come late change nothing."""
+    def _update_status(self, status: GoalStatus) -> None:
+        """Take a state from the status topic; one that comes late changes nothing."""
         self.status = max(self.status, status)
 
-    def end(
+    def _end(
         self,
         outcome: ActionResult[ResultT] | None = None,
         lost: GoalLostError | None = None,
     ) -> None:
-        """Take how the goal ended; neither means that the client was destroyed."""
+        """Set how the goal ended; without either argument, the client was destroyed."""
         if not self.done:
             self._outcome = outcome
             self._lost = lost
@@ -243,13 +248,13 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
                 self.status = outcome.status
             self._ended.set()
         if outcome is None:
-            self.end_feedback()
+            self._end_feedback()
 
-    def end_feedback(self) -> None:
-        """End the iteration: no feedback will come any more."""
-        self._heard_out.set()
+    def _end_feedback(self) -> None:
+        """End the iteration once all feedback is read: no more will come."""
+        self._feedback_ended.set()
         self._feedback.wake()
 
-    async def heard_out(self) -> None:
-        """Wait until no feedback will come any more."""
-        await self._heard_out.wait()
+    async def _wait_for_feedback(self) -> None:
+        """Wait until no more feedback will come."""
+        await self._feedback_ended.wait()

@@ -1,4 +1,4 @@
-"""What action servers and clients share: arguments, stamps, and reasons of aborted goals."""
+"""What action servers and clients share: argument checks, stamps, and abort reasons."""
 
 from __future__ import annotations
 
@@ -29,25 +29,25 @@ __all__ = [
 
 
 class AbortReason(Exception):  # noqa: N818  # a message to the client, which reads its name
-    """Why a goal was aborted: how the reason travels, see `reason_id`."""
+    """Why a goal was aborted, sent to the client as a service error: see `reason_id`."""
 
 
 def reason_id(goal_id: bytes) -> bytes:
     """Return the id under which an aionode server tells why a goal was aborted.
 
-    ROS's result has no room for it, so an aionode client asks ``get_result`` once more, for the id
-    with all its bits inverted, and gets the reason as an error. The id belongs to no goal (it is no
-    version 4 UUID), so any other server answers that it does not know it. In this way the reason
-    needs no endpoint that ROS does not have, and goes through every transport.
+    A ROS result has no field for it. An aionode client therefore calls ``get_result`` once more,
+    with all bits of the id inverted, and gets the reason as a service error. No goal has such an
+    id (it is not a version 4 UUID), so other servers answer that they do not know it. This needs
+    no endpoint that ROS does not have, and works over every transport.
     """
     return bytes(byte ^ 0xFF for byte in goal_id)
 
 
 def pass_reason(error: Exception, context: CallbackContext) -> None:  # noqa: ARG001  # an OnError
-    """Let a reason go to the client, and raise anything else.
+    """Ignore an `AbortReason`, which the client gets, and raise anything else.
 
     Raises:
-        Exception: `error`, if it is no reason.
+        Exception: `error`, if it is not an `AbortReason`.
     """
     if not isinstance(error, AbortReason):
         raise error
@@ -70,8 +70,8 @@ def seconds_to_ns(seconds: float, subject: str) -> int:
     """Return seconds, 0 or more, in nanoseconds.
 
     Raises:
-        TypeError: `seconds` is no number.
-        ValueError: it is negative, or not finite.
+        TypeError: `seconds` is not a number.
+        ValueError: it is negative or not finite.
     """
     if not isinstance(seconds, int | float):
         raise TypeError(f"{subject}={brief(seconds)}; a number of seconds is needed")
@@ -89,12 +89,12 @@ def stamp_ns(stamp: Any) -> int:
 
 
 async def awaited(outcome: Any) -> Any:
-    """Return what a callback, sync or async, came to."""
+    """Return `outcome`, awaited if it can be: the result of a sync or an async callback."""
     return await outcome if isinstance(outcome, Awaitable) else outcome
 
 
 def in_event_loop() -> bool:
-    """Whether this is the thread of an event loop, not one beside it."""
+    """Return whether an event loop runs in this thread."""
     try:
         asyncio.get_running_loop()
     except RuntimeError:

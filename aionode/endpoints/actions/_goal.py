@@ -1,7 +1,7 @@
-"""The life of an action's goal: its states, the moves between them, and whom a request means.
+"""The life of a goal: its states, the transitions between them, and what cancel requests select.
 
-One table says everything: from which state which event leads where. The server asks it before
-every change, so no goal can end twice, and none can be cancelled after its end::
+`TRANSITIONS` holds every transition. The server looks each change up there first, so no goal can
+end twice, or be cancelled after its end::
 
     ACCEPTED --EXECUTE--> EXECUTING --SUCCEED--> SUCCEEDED
         |                  |     |
@@ -11,8 +11,8 @@ every change, so no goal can end twice, and none can be cancelled after its end:
                   |------SUCCEED--> SUCCEEDED
                   +------CANCELED-> CANCELED
 
-A goal that is refused has no state: nobody keeps it. ``UNKNOWN`` is what a server says of a goal
-that it does not know, or knows no more.
+A rejected goal has no state, since it is not kept. ``UNKNOWN`` is what a server reports for a goal
+that it does not know, or no longer knows.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ __all__ = [
 ]
 
 ALL_GOALS = bytes(16)
-"""The goal id that means no goal in particular."""
+"""The goal id of cancel requests that do not name a goal."""
 
 
 class GoalStatus(IntEnum):
     """The state of a goal, with the numbers of action_msgs/msg/GoalStatus.
 
-    Each is known by its name there, too: ``GoalStatus.STATUS_SUCCEEDED``.
+    The names of that message work too: ``GoalStatus.STATUS_SUCCEEDED``.
     """
 
     UNKNOWN = 0
@@ -65,12 +65,12 @@ class GoalStatus(IntEnum):
 
     @classmethod
     def _missing_(cls, value: object) -> GoalStatus | None:
-        """Read a number that a later version of ROS may send as unknown."""
+        """Take numbers that a later version of ROS may send for UNKNOWN."""
         return cls.UNKNOWN if isinstance(value, int) else None
 
     @property
     def is_active(self) -> bool:
-        """Whether the goal can still change: it was accepted and has not ended."""
+        """Whether the goal has been accepted and has not ended."""
         return self in {GoalStatus.ACCEPTED, GoalStatus.EXECUTING, GoalStatus.CANCELING}
 
 
@@ -85,21 +85,21 @@ class GoalEvent(Enum):
 
 
 class GoalResponse(Enum):
-    """What a `goal_callback` says to a new goal."""
+    """What a `goal_callback` answers to a new goal."""
 
     REJECT = 1
     ACCEPT = 2
 
 
 class CancelResponse(Enum):
-    """What a `cancel_callback` says to a request to cancel a goal."""
+    """What a `cancel_callback` answers to a request to cancel a goal."""
 
     REJECT = 1
     ACCEPT = 2
 
 
 class CancelCode(IntEnum):
-    """What a server says to a cancel request, as in action_msgs/srv/CancelGoal."""
+    """What a server answers to a cancel request, as in action_msgs/srv/CancelGoal."""
 
     NONE = 0
     REJECTED = 1
@@ -117,7 +117,7 @@ TRANSITIONS: dict[tuple[GoalStatus, GoalEvent], GoalStatus] = {
     (GoalStatus.CANCELING, GoalEvent.ABORT): GoalStatus.ABORTED,
     (GoalStatus.CANCELING, GoalEvent.CANCELED): GoalStatus.CANCELED,
 }
-"""Every move that there is; anything else is an error."""
+"""Every allowed transition; anything else is an error."""
 
 
 def next_status(status: GoalStatus, event: GoalEvent, goal_id: str = "") -> GoalStatus:
@@ -137,12 +137,12 @@ def next_status(status: GoalStatus, event: GoalEvent, goal_id: str = "") -> Goal
 
 
 class GoalKey(NamedTuple):
-    """What tells goals apart in a cancel request.
+    """What a cancel request selects goals by.
 
     Attributes:
-        goal_id: Its 16 bytes; all zero in a request that means no goal in particular.
-        stamp_ns: When the goal was accepted; 0 in a request that means no time in particular.
-        status: Its state.
+        goal_id: The 16 bytes of the id; all zero in a request that does not name a goal.
+        stamp_ns: When the goal was accepted; 0 in a request that gives no time.
+        status: The state of the goal.
     """
 
     goal_id: bytes
@@ -151,7 +151,7 @@ class GoalKey(NamedTuple):
 
 
 def candidates(goals: Iterable[GoalKey], asked: GoalKey) -> tuple[CancelCode, list[bytes]]:
-    """Return which goals a cancel request means, and the code if none of them is refused.
+    """Return the ids of the goals that a cancel request selects, and the code if none is refused.
 
     ======== ========= ===============================================
     id       time      meaning
@@ -162,14 +162,15 @@ def candidates(goals: Iterable[GoalKey], asked: GoalKey) -> tuple[CancelCode, li
     given    given     that goal, and all accepted then or before
     ======== ========= ===============================================
 
-    Only goals that can still be cancelled are meant. A request for one goal says why it cannot be.
+    Only goals that can still be cancelled are selected. For a request for one goal that cannot be,
+    the code tells why.
     """
     if asked.goal_id != ALL_GOALS and asked.stamp_ns == 0:
         for goal in goals:
             if goal.goal_id == asked.goal_id:
                 if is_cancelable(goal.status):
                     return CancelCode.NONE, [goal.goal_id]
-                return CancelCode.GOAL_TERMINATED, []  # rcl says so while CANCELING, too
+                return CancelCode.GOAL_TERMINATED, []  # as rcl answers while CANCELING too
         return CancelCode.UNKNOWN_GOAL_ID, []
     everything = asked.goal_id == ALL_GOALS and asked.stamp_ns == 0
     meant = [
@@ -182,5 +183,5 @@ def candidates(goals: Iterable[GoalKey], asked: GoalKey) -> tuple[CancelCode, li
 
 
 def is_cancelable(status: GoalStatus) -> bool:
-    """Whether a cancel request can change anything."""
+    """Return whether a goal in this state can be cancelled."""
     return (status, GoalEvent.CANCEL_GOAL) in TRANSITIONS

@@ -45,8 +45,8 @@ from aionode.qos import (
 if TYPE_CHECKING:
     from aionode.clock._time_base import Alarm
     from aionode.endpoints._core.callback_runner import CallbackRunner, OnError
+    from aionode.endpoints.actions._node import ActionNode
     from aionode.message import ActionClass
-    from aionode.node import Node
     from aionode.qos import QoSProfile
 
 __all__ = ["ActionServer"]
@@ -56,14 +56,14 @@ ResultT = TypeVar("ResultT", bound=Message)
 FeedbackT = TypeVar("FeedbackT", bound=Message)
 
 UNLIMITED = 2**63 - 1
-"""Depth of the queues of goals: `goal_callback` decides how many there are."""
+"""Depth of the queues of goals: `goal_callback` limits their number."""
 
 WITHDRAWN_NS = 10_000_000_000
 REMEMBERED_WITHDRAWN = 1000
-"""How long, and how many, ids of goals are remembered that were cancelled before they came."""
+"""How long, and how many, ids of goals are kept that were cancelled before they were accepted."""
 
 DRAIN_LIMIT_S = 1.0
-"""How long a result waits for the last feedback to be sent, in seconds of the machine."""
+"""How long a result waits until the last feedback is sent, in seconds of real time."""
 
 
 class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
@@ -80,38 +80,38 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
 
         ActionServer(node, Fibonacci, "fibonacci", execute)
 
-    A coroutine is cancelled by an accepted cancel request: it may clean up in
-    ``except asyncio.CancelledError`` and end with ``goal_handle.canceled()`` or `succeed()`;
-    letting the error through makes the goal CANCELED. A cancellation for another reason (the node
-    stops) makes it ABORTED. A sync callback looks at ``goal_handle.is_cancel_requested`` itself; it
-    runs in the event loop as every sync callback does, so a long one belongs in a thread:
-    ``offload=True``.
+    An accepted cancel request cancels a coroutine. It may clean up in
+    ``except asyncio.CancelledError`` and end with ``goal_handle.canceled()`` or `succeed()`; if it
+    lets the error through, the goal becomes CANCELED. If it is cancelled for another reason, such
+    as the end of the node, the goal becomes ABORTED. A sync callback has to check
+    ``goal_handle.is_cancel_requested`` itself. Like every sync callback it blocks the event loop,
+    so run a long one in a thread: ``offload=True``.
 
     An exception in `execute_callback` aborts the goal. It is logged with its traceback and counted;
-    the client gets an empty result, and a client of aionode gets the text.
+    the client gets an empty result and, if it runs aionode, the text of the exception.
 
     Args:
-        node: Whose it is.
+        node: The node that it belongs to.
         action_type: An action class.
-        action_name: Name of the action; a relative one gets the node's namespace.
+        action_name: Name of the action; relative names are in the node's namespace.
         execute_callback: Called with a `ServerGoalHandle` for each goal; returns the result. Sync
             or async.
-        goal_callback: Called with a goal message, says `GoalResponse.ACCEPT` or ``REJECT``; one
-            goal after the other. Without it all are accepted. Sync or async.
-        handle_accepted_callback: Called with the handle of each accepted goal, after the client was
-            told; calls ``goal_handle.execute()`` when it sees fit. Without it, at once. Sync or
-            async.
-        cancel_callback: Called with the handle of a goal that is to be cancelled, says
-            `CancelResponse.ACCEPT` or ``REJECT``. Without it none is cancelled. Sync or async.
-        result_timeout: How long a result is kept after the goal's end, in seconds. With 0 only
-            those get it who asked before the end.
+        goal_callback: Called with each goal message, one after the other; returns
+            `GoalResponse.ACCEPT` or ``REJECT``. Without it all are accepted. Sync or async.
+        handle_accepted_callback: Called with the handle of each accepted goal, after the client has
+            been told; calls ``goal_handle.execute()``, then or later. Without it, goals are
+            executed at once. Sync or async.
+        cancel_callback: Called with the handle of a goal that a client wants to cancel; returns
+            `CancelResponse.ACCEPT` or ``REJECT``. Without it all are rejected. Sync or async.
+        result_timeout: How long a result is kept after the end of its goal, in seconds. With 0 it
+            is sent only to clients that asked before the end.
         concurrent: True executes all accepted goals at once, False one after the other, a number at
-            most so many at once; the others wait as ACCEPTED.
-        on_error: What becomes of an exception in the other callbacks, once the client was told (a
-            failing `goal_callback` or `cancel_callback` is a `ServiceError` there, a failing
-            `handle_accepted_callback` aborts the goal): ``"log"`` logs it with its traceback,
-            counts it and goes on, ``"raise"`` ends the node, a function gets (exception,
-            CallbackContext).
+            most that many at once; the others wait as ACCEPTED.
+        on_error: What to do with an exception in the other callbacks, once the client has been
+            told: ``"log"`` logs it with its traceback, counts it and continues, ``"raise"`` ends
+            the node, a function gets (exception, CallbackContext). The client gets a
+            `ServiceError` for a failing `goal_callback` or `cancel_callback`; a failing
+            `handle_accepted_callback` aborts the goal.
         offload: Whether to run a sync `execute_callback` in a thread, where it may use its handle.
         goal_service_qos_profile: Profile of the service that takes goals.
         result_service_qos_profile: Profile of the service that gives results.
@@ -122,18 +122,18 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
     Attributes:
         action_type: The action type.
         action_name: The full name of the action.
-        stats: What became of the goals: `received` counts those whose execution began.
+        stats: Counts of the goals: `received` are those whose execution has started.
 
     Raises:
-        TypeError: an argument is of a wrong kind, or a callback takes other arguments.
-        ValueError: `concurrent`, `on_error` or `result_timeout` has an impossible value.
+        TypeError: an argument has the wrong type, or a callback takes other arguments.
+        ValueError: `concurrent`, `on_error` or `result_timeout` has an invalid value.
         InvalidTopicNameException: `action_name` is invalid (a ValueError).
         EntityDestroyedError: the node was destroyed (a RuntimeError).
     """
 
     def __init__(
         self,
-        node: Node,
+        node: ActionNode,
         action_type: ActionClass[GoalT, ResultT, FeedbackT],
         action_name: str,
         execute_callback: Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any],
@@ -162,14 +162,16 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         self.stats = CallbackStats()
         self._clock = node.get_clock()
         self._time_base = node.context.time_base
-        self._callbacks = node.callbacks
+        self._callbacks = node._callbacks
         self._logger = node.get_logger()
-        self._timeout_ns = seconds_to_ns(result_timeout, f"{self.subject}: result_timeout")
-        self._concurrent = checked_concurrency(concurrent, self.subject)
+        self._timeout_ns = seconds_to_ns(result_timeout, f"{self._subject}: result_timeout")
+        self._concurrent = checked_concurrency(concurrent, self._subject)
         self._offload = offload
-        self._checked_result = snapshotter(self.action_type.Result)
+        self._checked_result: Callable[[ResultT], ResultT] = snapshotter(self.action_type.Result)
+        # By goal id: goals that are active or whose results are kept; cancel requests that came
+        # before their goal, with their steady time; and when kept results are dropped.
         self._goals: dict[bytes, ServerGoalHandle[GoalT, ResultT, FeedbackT]] = {}
-        self._withdrawn: dict[bytes, int] = {}  # and when, by the steady clock
+        self._withdrawn: dict[bytes, int] = {}
         self._alarms: dict[bytes, Alarm] = {}
         self._accepted: MessageQueue[Any] = MessageQueue(UNLIMITED, CallbackStats(), keep_all=True)
         self._waiting: MessageQueue[Any] = MessageQueue(UNLIMITED, self.stats, keep_all=True)
@@ -198,7 +200,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
                 )
             )
             for srv_type, name, callback, qos_profile, options in (
-                # One decision after the other: "only one goal at a time" must not race with itself.
+                # One after the other, or two goals could both be accepted as "the only one".
                 (
                     impl.SendGoalService,
                     "send_goal",
@@ -213,7 +215,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
                     cancel_service_qos_profile,
                     {"on_error": on_error},
                 ),
-                # A request stays open until its goal ends, so they are all open at once.
+                # A request stays open until its goal ends, so many are open at once.
                 (
                     impl.GetResultService,
                     "get_result",
@@ -230,7 +232,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         except BaseException:
             self._close_parts()
             raise
-        node.add_entity(self)
+        node._add_entity(self)
 
     def _part(self, part: Any) -> Any:
         self._parts.append(part)
@@ -249,24 +251,24 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
     def register_execute_callback(
         self, execute_callback: Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any]
     ) -> None:
-        """Call another function for goals whose execution begins from now on.
+        """Set the function that executes goals from now on.
 
         Raises:
             TypeError: it cannot be called with a goal handle.
-            ValueError: it is a coroutine function, and the server offloads.
+            ValueError: it is a coroutine function, and the server has ``offload=True``.
         """
         self._execute = self._executing(execute_callback)
 
     def _executing(self, callback: Callable[..., Any]) -> CallbackRunner:
-        accepts(callback, 1, subject=self.subject, wanted="(goal_handle)")
+        accepts(callback, 1, subject=self._subject, wanted="(goal_handle)")
         return self._callbacks.make_runner(
             callback, self, self.stats, on_error="log", offload=self._offload
         )
 
     def register_goal_callback(self, goal_callback: Callable[[GoalT], Any] | None) -> None:
-        """Ask another function about new goals; None accepts all."""
+        """Set the function that decides about new goals; None accepts all."""
         if goal_callback is not None:
-            accepts(goal_callback, 1, subject=self.subject, wanted="(goal)")
+            accepts(goal_callback, 1, subject=self._subject, wanted="(goal)")
         self._goal_callback = goal_callback
 
     def register_handle_accepted_callback(
@@ -275,18 +277,18 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any] | None
         ),
     ) -> None:
-        """Hand goals over to another function; None executes them at once."""
+        """Set the function that gets accepted goals; None executes them at once."""
         if handle_accepted_callback is not None:
-            accepts(handle_accepted_callback, 1, subject=self.subject, wanted="(goal_handle)")
+            accepts(handle_accepted_callback, 1, subject=self._subject, wanted="(goal_handle)")
         self._handle_accepted_callback = handle_accepted_callback
 
     def register_cancel_callback(
         self,
         cancel_callback: Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any] | None,
     ) -> None:
-        """Ask another function about cancel requests; None rejects all."""
+        """Set the function that decides about cancel requests; None rejects all."""
         if cancel_callback is not None:
-            accepts(cancel_callback, 1, subject=self.subject, wanted="(goal_handle)")
+            accepts(cancel_callback, 1, subject=self._subject, wanted="(goal_handle)")
         self._cancel_callback = cancel_callback
 
     # New goals
@@ -296,12 +298,12 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         goal_id = request.goal_id.uuid.tobytes()
         if self._is_refused(goal_id) or not await self._welcomes(request.goal):
             return response
-        if self._is_refused(goal_id):  # while the callback was thinking
+        if self._is_refused(goal_id):  # meanwhile, during the callback
             return response
         response.accepted = True
         response.stamp = self._clock.now().to_msg()
         goal = self._accept(goal_id, request, response.stamp)
-        # Both ways lead through a queue, so that the client is told first.
+        # Either way the goal is queued first, so that the client is told before it starts.
         if self._handle_accepted_callback is None:
             goal.execute()
         else:
@@ -309,13 +311,13 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         return response
 
     def _is_refused(self, goal_id: bytes) -> bool:
-        """Whether there is such a goal already, or its client has cancelled it before."""
+        """Return whether the goal is known already, or was cancelled before it came."""
         return goal_id in self._goals or goal_id in self._withdrawn
 
     def _note_withdrawn(self, goal_id: bytes) -> None:
-        """Remember for a while that a goal was cancelled before it was accepted.
+        """Keep for a while that a goal was cancelled before it was accepted.
 
-        Its request waits in the queue, or its `goal_callback` is thinking.
+        Its request is still queued, or its `goal_callback` is running.
         """
         now_ns = self._time_base.steady_ns()
         for known, since_ns in list(self._withdrawn.items()):
@@ -328,7 +330,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             return True
         answer = await awaited(self._goal_callback(goal))
         if not isinstance(answer, GoalResponse):
-            self.warn(
+            self._warn(
                 f"goal_callback returned {brief(answer)}, no GoalResponse; the goal is rejected"
             )
         return answer is GoalResponse.ACCEPT
@@ -336,7 +338,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
     def _accept(
         self, goal_id: bytes, request: Any, stamp: Any
     ) -> ServerGoalHandle[GoalT, ResultT, FeedbackT]:
-        # Imported here, because whoever imports aionode need not know these messages.
+        # Imported here, because programs without actions never need these messages.
         from aionode.interfaces.action_msgs.msg import GoalInfo
 
         goal: ServerGoalHandle[GoalT, ResultT, FeedbackT] = ServerGoalHandle(
@@ -346,7 +348,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             GoalKey(goal_id, stamp_ns(stamp)),
         )
         self._goals[goal_id] = goal
-        self.publish_status()
+        self._publish_status()
         return goal
 
     async def _call_handle_accepted(self, goal: Any) -> None:
@@ -357,13 +359,13 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             else:
                 await awaited(callback(goal))
         except Exception as error:
-            goal.failed(error)  # or its client would wait for ever
+            goal._failed(error)  # otherwise its client would wait for ever
             raise
 
     # Execution
 
-    async def run(self) -> None:
-        """Hand over and execute goals, until cancelled."""
+    async def _run(self) -> None:
+        """Pass goals to `handle_accepted_callback` and execute them, until cancelled."""
         self._loop = asyncio.get_running_loop()
         async with asyncio.TaskGroup() as tasks:
             tasks.create_task(
@@ -371,12 +373,12 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             )
             tasks.create_task(consume(self._waiting, self._begin, self._concurrent))
 
-    def enqueue(
+    def _enqueue(
         self,
         goal: ServerGoalHandle[GoalT, ResultT, FeedbackT],
         execute_callback: Callable[..., Any] | None,
     ) -> None:
-        """Have `goal` executed in its turn. For its handle."""
+        """Queue `goal` for execution. For its handle."""
         runner = None if execute_callback is None else self._executing(execute_callback)
         self._waiting.put((goal, runner))
 
@@ -392,40 +394,40 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
     async def _run_goal(
         self, entered_ns: int, goal: ServerGoalHandle[Any, Any, Any], runner: CallbackRunner
     ) -> None:
-        if not goal.is_active:  # cancelled before this task had its first turn
+        if not goal.is_active:  # cancelled before this task started
             self.stats.dropped += 1
             return
         self.stats.received += 1
         self.stats.queue_wait.record(perf_ns() - entered_ns)
-        goal.begin()
+        goal._begin()
         try:
-            async with asyncio.TaskGroup() as tasks:  # a cancelled goal cancels only its own task
+            async with asyncio.TaskGroup() as tasks:  # cancelling a goal cancels only its own task
                 tasks.create_task(
-                    self._call_execute(goal, runner), name=f"{self.subject} goal {goal.text}"
+                    self._call_execute(goal, runner), name=f"{self._subject} goal {goal.text}"
                 )
         finally:
-            if goal.is_active:  # the node stopped before the callback began
-                goal.stopped()
+            if goal.is_active:  # the node stopped before the callback started
+                goal._stopped()
 
     async def _call_execute(
         self, goal: ServerGoalHandle[Any, Any, Any], runner: CallbackRunner
     ) -> None:
-        if not self._offload:  # a thread cannot be cancelled, so it has to look for itself
-            goal.run_in(asyncio.current_task())
+        if not self._offload:  # a thread cannot be cancelled; it has to check for itself
+            goal._run_in(asyncio.current_task())
         try:
-            goal.returned(await runner.call(goal))
+            goal._returned(await runner.call(goal))
         except asyncio.CancelledError:
-            goal.stopped()
+            goal._stopped()
             raise
         except Exception as error:  # noqa: BLE001  # logged and counted, and told to the client
             if self.destroyed and isinstance(error, CallbackCancelledError):
-                goal.stopped()  # the node ends, and its clock has ended just before this task
+                goal._stopped()  # the node ends: its clock was closed just before this task
                 return
             runner.fail(error)
-            goal.failed(error)
+            goal._failed(error)
 
-    def in_loop(self, action: Callable[..., None], *args: Any) -> None:
-        """Do `action` in the event loop, and wait for it if this is a thread. For goal handles.
+    def _in_loop(self, action: Callable[..., None], *args: Any) -> None:
+        """Run `action` in the event loop; from another thread, wait for it. For goal handles.
 
         Raises:
             Exception: what `action` raised.
@@ -439,7 +441,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         def act() -> None:
             try:
                 action(*args)
-            except Exception as error:  # noqa: BLE001  # raised in the thread
+            except Exception as error:  # noqa: BLE001  # raised in the calling thread
                 done.set_exception(error)
             else:
                 done.set_result(None)
@@ -452,7 +454,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
     async def _on_cancel(self, request: Any) -> Any:
         info = request.goal_info
         asked = GoalKey(info.goal_id.uuid.tobytes(), stamp_ns(info.stamp))
-        code, meant = candidates([goal.key for goal in self._goals.values()], asked)
+        code, meant = candidates([goal._current_key for goal in self._goals.values()], asked)
         response = self.action_type.Impl.CancelGoalService.Response()
         if code is CancelCode.UNKNOWN_GOAL_ID:
             self._note_withdrawn(asked.goal_id)
@@ -460,11 +462,11 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         for goal_id in meant:
             goal = self._goals.get(goal_id)
             if goal is None or not is_cancelable(goal.status):
-                continue  # it ended while another was asked about
+                continue  # it ended during the callback for another goal
             if not await self._yields(goal):
                 refused = True
             elif is_cancelable(goal.status):
-                goal.cancel()
+                goal._cancel()
                 response.goals_canceling.append(goal.info)
         if meant and not response.goals_canceling:
             code = CancelCode.REJECTED if refused else CancelCode.GOAL_TERMINATED
@@ -476,7 +478,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             return False
         answer = await awaited(self._cancel_callback(goal))
         if not isinstance(answer, CancelResponse):
-            self.warn(
+            self._warn(
                 f"cancel_callback returned {brief(answer)}, no CancelResponse; "
                 "the request is rejected"
             )
@@ -490,10 +492,10 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         goal = self._goals.get(goal_id)
         if goal is None:
             aborted = self._goals.get(reason_id(goal_id))
-            if aborted is not None and aborted.error_text:
-                raise AbortReason(aborted.error_text)
+            if aborted is not None and aborted._error_text:
+                raise AbortReason(aborted._error_text)
             return response
-        status, result = await goal.outcome()
+        status, result = await goal._outcome()
         await self._send_feedback_first()
         response.status = int(status)
         if result is not None:
@@ -501,27 +503,17 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         return response
 
     async def _send_feedback_first(self) -> None:
-        """Let feedback out before the result: clients stop to listen when they have that."""
+        """Send feedback before the result: clients stop listening once they have the result."""
         with suppress(TimeoutError):  # a full KEEP_ALL reader must not hold results back
             async with asyncio.timeout(DRAIN_LIMIT_S):
                 await self._feedback.drain()
 
-    def checked_result(self, result: ResultT) -> ResultT:
-        """Return a copy of `result` that nobody changes. For goal handles.
-
-        Raises:
-            TypeError: it is not of the action's Result type.
-            MessageError: a value does not fit its field.
-        """
-        checked: ResultT = self._checked_result(result)
-        return checked
-
-    def keep(self, goal: ServerGoalHandle[GoalT, ResultT, FeedbackT]) -> None:
-        """Keep the result of `goal`, which has ended, for a while. For its handle."""
-        goal_id = goal.key.goal_id
+    def _keep(self, goal: ServerGoalHandle[GoalT, ResultT, FeedbackT]) -> None:
+        """Keep the result of `goal`, which has ended, for `result_timeout`. For its handle."""
+        goal_id = goal._key.goal_id
         if self.destroyed or goal_id not in self._goals:
             return
-        if self._timeout_ns == 0:  # after the status, which is sent in the next turn
+        if self._timeout_ns == 0:  # after the status, which is sent in the next iteration
             asyncio.get_running_loop().call_soon(self._forget, goal_id)
         else:
             due_ns = self._time_base.steady_ns() + self._timeout_ns
@@ -533,25 +525,25 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
 
     # Topics
 
-    def publish_feedback(
+    def _publish_feedback(
         self, goal: ServerGoalHandle[GoalT, ResultT, FeedbackT], feedback: FeedbackT
     ) -> None:
         """Send `feedback` of `goal`. For its handle."""
         if not isinstance(feedback, self.action_type.Feedback):
             raise TypeError(
-                f"{self.subject}: feedback is a {type(feedback).__name__}; a "
+                f"{self._subject}: feedback is a {type(feedback).__name__}; a "
                 f"{type_name(self.action_type.Feedback)} is needed"
             )
         if not self.destroyed:
             message = self.action_type.Impl.FeedbackMessage(goal_id=goal.goal_id, feedback=feedback)
-            with suppress(QueueFullError):  # the goal goes on, whoever does not read
+            with suppress(QueueFullError):  # a reader that is too slow must not stop the goal
                 self._feedback.publish(message)
 
-    def publish_status(self) -> None:
-        """Send the states of all goals soon: once for all changes of one turn of the loop.
+    def _publish_status(self) -> None:
+        """Send the states of all goals soon, once for all changes of one iteration of the loop.
 
-        The list holds every goal that is active or kept, so a message for each change of each of
-        many goals would cost more than the goals do. For goal handles.
+        The message lists every goal that is active or kept, so with many goals, sending it for
+        each change would cost more than the goals themselves. For goal handles.
         """
         if not (self._status_due or self.destroyed):
             self._status_due = True
@@ -572,22 +564,22 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         with suppress(QueueFullError):  # as above
             self._status.publish(message)
 
-    def warn(self, text: str) -> None:
-        """Log what a callback did wrong. For goal handles."""
-        self._logger.warning(f"{self.subject}: {text}")
+    def _warn(self, text: str) -> None:
+        """Log a mistake of a callback. For goal handles."""
+        self._logger.warning(f"{self._subject}: {text}")
 
     # The end
 
     def _close(self) -> None:
-        """Withdraw the server: clients are told at once that their goals are lost."""
+        """Withdraw the server; clients learn at once that their goals are lost."""
         self._close_parts()
         for alarm in self._alarms.values():
             alarm.cancel()
         self._alarms.clear()
         goals, self._goals = self._goals, {}
         for goal in goals.values():
-            if goal.status is GoalStatus.ACCEPTED:  # those that are executed end by themselves
-                goal.stopped()
+            if goal.status is GoalStatus.ACCEPTED:  # the others end with their callbacks
+                goal._stopped()
         self._accepted.discard()
         self._waiting.discard()
 

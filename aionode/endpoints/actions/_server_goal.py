@@ -25,7 +25,7 @@ STOPPED_TEXT = "the action server stopped"
 
 
 class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
-    """A goal that an action server has accepted: given to its callbacks.
+    """A goal that an action server has accepted, as its callbacks get it.
 
     An `execute_callback` that runs in a thread (``offload=True``) may use it there.
 
@@ -51,7 +51,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         self._running = False
         self._task: asyncio.Task[Any] | None = None
         self._result: ResultT | None = None
-        self._error_text = ""
+        self._error_text = ""  # why it was aborted
         self._known = asyncio.Event()
 
     def __repr__(self) -> str:
@@ -59,7 +59,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
 
     @property
     def goal_id(self) -> Any:
-        """The id that the client gave it, as unique_identifier_msgs/msg/UUID."""
+        """The id that the client chose, as unique_identifier_msgs/msg/UUID."""
         return self.info.goal_id
 
     @property
@@ -68,8 +68,8 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         return self._key.goal_id.hex()
 
     @property
-    def key(self) -> GoalKey:
-        """What cancel requests go by."""
+    def _current_key(self) -> GoalKey:
+        """What cancel requests select it by."""
         return self._key._replace(status=self.status)
 
     @property
@@ -79,23 +79,23 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
 
     @property
     def is_cancel_requested(self) -> bool:
-        """Whether the goal is to be cancelled: `cancel_callback` has accepted a request."""
+        """Whether `cancel_callback` has accepted a request to cancel the goal."""
         return self.status is GoalStatus.CANCELING
 
-    # What callbacks do
+    # For callbacks
 
     def execute(self, execute_callback: Callable[..., Any] | None = None) -> None:
-        """Have the goal executed, as soon as there is room for it.
+        """Execute the goal, as soon as `concurrent` allows.
 
         For a `handle_accepted_callback` that decides when; without one, goals are executed at once.
 
         Args:
-            execute_callback: What to call in place of the server's own.
+            execute_callback: Called instead of the server's own.
 
         Raises:
-            GoalTransitionError: it is or was executed already, or has ended (a RuntimeError).
+            GoalTransitionError: it is being or was executed, or has ended (a RuntimeError).
         """
-        self._server.in_loop(self._execute, execute_callback)
+        self._server._in_loop(self._execute, execute_callback)
 
     def _execute(self, execute_callback: Callable[..., Any] | None) -> None:
         if self._server.destroyed:
@@ -103,16 +103,16 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         if self._queued or not self.is_active:
             raise GoalTransitionError(self.text, self.status.name, GoalEvent.EXECUTE.name, [])
         self._queued = True
-        self._server.enqueue(self, execute_callback)
+        self._server._enqueue(self, execute_callback)
 
     def publish_feedback(self, feedback: FeedbackT) -> None:
-        """Tell the client how far the goal is; never blocks and never waits.
+        """Send the client the progress of the goal; never waits in the event loop.
 
         Raises:
             TypeError: `feedback` is not of the action's Feedback type.
             MessageError: a value does not fit its field.
         """
-        self._server.in_loop(self._server.publish_feedback, self, feedback)
+        self._server._in_loop(self._server._publish_feedback, self, feedback)
 
     def succeed(self, result: ResultT | None = None) -> None:
         """End the goal as SUCCEEDED.
@@ -125,123 +125,118 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
             TypeError: `result` is not of the action's Result type.
             MessageError: a value does not fit its field.
         """
-        self._server.in_loop(self._end, GoalEvent.SUCCEED, result)
+        self._server._in_loop(self._end, GoalEvent.SUCCEED, result)
 
     def abort(self, result: ResultT | None = None, *, error_text: str = "") -> None:
         """End the goal as ABORTED. See `succeed` for `result` and the errors.
 
         Args:
             result: What the client gets; without it, what `execute_callback` returns.
-            error_text: Why, for clients that can be told: those of aionode.
+            error_text: The reason, which clients that run aionode get.
         """
-        self._server.in_loop(self._end, GoalEvent.ABORT, result, error_text)
+        self._server._in_loop(self._end, GoalEvent.ABORT, result, error_text)
 
     def canceled(self, result: ResultT | None = None) -> None:
-        """End the goal as CANCELED, which it can after an accepted cancel request only.
+        """End the goal as CANCELED, which is possible only after an accepted cancel request.
 
         See `succeed` for `result` and the errors.
         """
-        self._server.in_loop(self._end, GoalEvent.CANCELED, result)
+        self._server._in_loop(self._end, GoalEvent.CANCELED, result)
 
     def _end(self, event: GoalEvent, result: ResultT | None, error_text: str = "") -> None:
         if self._server.destroyed:
-            # Nobody can be told any more, and a callback that cleans up should not fail for that.
+            # No client can be told any more, and a callback that cleans up should not fail for it.
             self.status = TRANSITIONS.get((self.status, event), self.status)
             return
-        checked = None if result is None else self._server.checked_result(result)
-        self.move(event)
+        checked = None if result is None else self._server._checked_result(result)
+        self._move(event)
         self._error_text = error_text
         if checked is not None or not self._running:
             self._set_result(checked)
 
-    # What the server does
+    # For the server
 
-    def move(self, event: GoalEvent) -> None:
-        """Change the state, and tell everybody.
+    def _move(self, event: GoalEvent) -> None:
+        """Change the state, and publish it.
 
         Raises:
-            GoalTransitionError: the table does not have that move.
+            GoalTransitionError: `TRANSITIONS` does not allow it.
         """
         self.status = next_status(self.status, event, self.text)
-        self._server.publish_status()
+        self._server._publish_status()
 
-    def begin(self) -> None:
-        """Note that its callback is called now."""
+    def _begin(self) -> None:
+        """Mark the goal as executing: its callback is about to be called."""
         self._running = True
         if not self.is_cancel_requested:
-            self.move(GoalEvent.EXECUTE)
+            self._move(GoalEvent.EXECUTE)
 
-    def run_in(self, task: asyncio.Task[Any] | None) -> None:
-        """Note the task that a cancel request cancels; at once if the request was earlier.
+    def _run_in(self, task: asyncio.Task[Any] | None) -> None:
+        """Set the task that a cancel request cancels; if there was one already, cancel it.
 
-        The callback runs up to its first wait then, so that it can see that it has been cancelled.
+        In that case the callback runs up to its first await, so that it can clean up.
         """
         self._task = task
         if task is not None and self.is_cancel_requested:
             task.cancel()
 
-    def cancel(self) -> None:
-        """Carry out an accepted cancel request."""
-        self.move(GoalEvent.CANCEL_GOAL)
+    def _cancel(self) -> None:
+        """Cancel the goal: a request was accepted."""
+        self._move(GoalEvent.CANCEL_GOAL)
         if self._task is not None:
             self._task.cancel()
         elif self._queued and not self._running:
-            self.stopped()  # nothing was begun, so there is nothing to clean up
+            self._stopped()  # its callback has not started, so there is nothing to clean up
 
-    def returned(self, result: ResultT | None) -> None:
-        """Take what the callback returned.
+    def _returned(self, result: ResultT | None) -> None:
+        """Take the result that the callback returned.
 
         Raises:
-            TypeError: it is no result.
-            MessageError: a value of it does not fit its field.
+            TypeError: it is not of the action's Result type.
+            MessageError: a value does not fit its field.
         """
-        checked = None if result is None else self._server.checked_result(result)
+        checked = None if result is None else self._server._checked_result(result)
         if self.is_active:
-            self._server.warn(f"goal {self.text}: {NO_END_TEXT}; it counts as aborted")
+            self._server._warn(f"goal {self.text}: {NO_END_TEXT}; it counts as aborted")
             self._error_text = NO_END_TEXT
-            self.move(GoalEvent.ABORT)
+            self._move(GoalEvent.ABORT)
         elif checked is None and not self._known.is_set():
-            self._server.warn(
+            self._server._warn(
                 f"goal {self.text}: execute_callback returned no result, so the client gets an "
                 "empty one; `return` a Result, or give it to succeed()"
             )
         self._set_result(checked)
 
-    def failed(self, error: Exception) -> None:
-        """Take an exception of the callback: the goal is aborted, unless it has ended before."""
+    def _failed(self, error: Exception) -> None:
+        """Take an exception of the callback: the goal is aborted, unless it has already ended."""
         if self.is_active:
             self._error_text = f"{type(error).__name__}: {error}"
             if self.status is GoalStatus.ACCEPTED:
-                self.move(GoalEvent.EXECUTE)
-            self.move(GoalEvent.ABORT)
+                self._move(GoalEvent.EXECUTE)
+            self._move(GoalEvent.ABORT)
         self._set_result(None)
 
-    def stopped(self) -> None:
-        """Note that the callback was cancelled: on request, or because the server stops."""
+    def _stopped(self) -> None:
+        """End the goal: its callback was cancelled, on request or because the server stops."""
         if self.status is GoalStatus.CANCELING:
-            self.move(GoalEvent.CANCELED)
+            self._move(GoalEvent.CANCELED)
         elif self.is_active:
             self._error_text = STOPPED_TEXT
             if self.status is GoalStatus.ACCEPTED:
-                self.move(GoalEvent.EXECUTE)
-            self.move(GoalEvent.ABORT)
+                self._move(GoalEvent.EXECUTE)
+            self._move(GoalEvent.ABORT)
         self._set_result(None)
 
     def _set_result(self, result: ResultT | None) -> None:
-        """Make the result known, once; an empty one stands for None."""
+        """Set the result, only once; None becomes an empty message at the client."""
         self._running = False
         self._task = None
         if not self._known.is_set():
             self._result = result
             self._known.set()
-            self._server.keep(self)
+            self._server._keep(self)
 
-    async def outcome(self) -> tuple[GoalStatus, ResultT | None]:
-        """Wait until the result is known."""
+    async def _outcome(self) -> tuple[GoalStatus, ResultT | None]:
+        """Wait for the result; return it with the final state."""
         await self._known.wait()
         return self.status, self._result
-
-    @property
-    def error_text(self) -> str:
-        """Why the goal was aborted, if anybody said so."""
-        return self._error_text

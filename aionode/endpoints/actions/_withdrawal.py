@@ -1,4 +1,4 @@
-"""Cancelling a goal at its server, whatever becomes of the task that wanted it."""
+"""Cancelling a goal at its server, independently of the task that asked for it."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ __all__ = ["Withdrawal"]
 FIRST_RETRY_S = 0.1
 LONGEST_RETRY_S = 5.0
 ATTEMPTS = 14
-"""So many requests are sent at most, within 45 s; after that, their answers are waited for."""
+"""How many requests are sent at most, which takes 45 s; after that only answers are awaited."""
 
 
 class Withdrawal:
-    """A request to cancel a goal that is sent at once, and again until the server has answered.
+    """A request to cancel a goal, sent at once and repeated until the server has answered.
 
-    It runs in callbacks of the loop and in no task, so nothing that is cancelled can take it back.
-    The goal may be one that the server has not accepted yet: the request goes on until the server
-    has decided. It ends when the goal has ended, too; a server that has gone may come back until
-    all attempts are made.
+    It runs in callbacks of the loop and not in a task, so that no cancellation can stop it. If the
+    server has not yet accepted the goal, the request is repeated until it has decided. It also
+    ends when the goal has ended. If the server goes away it may come back, until all attempts are
+    made.
 
     Args:
         client: The client of the server's cancel service.
         goal: The goal.
-        on_end: Called soon after the end, when nothing will be sent any more.
+        on_end: Called soon after the end; nothing is sent any more by then.
 
     Attributes:
         answer: The server's answer, or the error in its place; ServiceUnavailableError as soon as
-            no server is there. Cancelled with the client.
+            no server is matched. Cancelled when the client is destroyed.
     """
 
     def __init__(
@@ -48,7 +48,7 @@ class Withdrawal:
     ) -> None:
         self._loop = asyncio.get_running_loop()
         self.answer: asyncio.Future[Any] = self._loop.create_future()
-        # Its exception is looked at, so that asyncio does not report it.
+        # Retrieves the exception, so that asyncio does not report it.
         self.answer.add_done_callback(lambda done: done.cancelled() or done.exception())
         self._client = client
         self._goal = goal
@@ -59,18 +59,18 @@ class Withdrawal:
         self._timer: asyncio.TimerHandle | None = None
         self._exchanges: list[Exchange] = []
         self._ended = False
-        if goal.sending is not None and not goal.sending.answer.done():
-            goal.sending.answer.add_done_callback(self._decided)
+        if goal._sending is not None and not goal._sending.answer.done():
+            goal._sending.answer.add_done_callback(self._decided)
         self._send()
 
     def _send(self) -> None:
-        """Send the request, and plan the next one."""
+        """Send the request, and schedule the next one."""
         if self._ended or self._attempts == ATTEMPTS:
             return
         if self._client.destroyed:
             self.end()
             return
-        if self._goal.is_known_to_have_ended:
+        if self._goal._has_server_ended:
             response = self._client.srv_type.Response(return_code=CancelCode.GOAL_TERMINATED)
             self._take_response(response)
             return
@@ -79,20 +79,21 @@ class Withdrawal:
         )
         self._attempts += 1
         if self._client.service_is_ready():
-            exchange = self._client.begin(self._request)
+            exchange = self._client._begin(self._request)
             self._exchanges.append(exchange)
             exchange.answer.add_done_callback(partial(self._take, self._is_decided()))
         else:
             self._fail(ServiceUnavailableError(self._client.srv_name))
 
     def _take(self, decided: bool, answer: asyncio.Future[Any]) -> None:
-        """Take what came of one request; `decided` when it was sent, it is the last word.
+        """Take the answer to one request.
 
-        Before that the server may have got it while it did not know the goal yet.
+        It is final if the server had `decided` about the goal when the request was sent. Before
+        that, the server may have got the request before it knew the goal.
         """
         if self._ended:
             return
-        if answer.cancelled():  # with the client
+        if answer.cancelled():  # the client was destroyed
             self.end()
             return
         error = answer.exception()
@@ -106,16 +107,16 @@ class Withdrawal:
             self._take_response(answer.result())
 
     def _is_decided(self) -> bool:
-        """Whether the server has said that it accepts the goal, or that it does not."""
-        return self._goal.sending is None or self._goal.sending.answer.done()
+        """Return whether the server has accepted or rejected the goal."""
+        return self._goal._sending is None or self._goal._sending.answer.done()
 
     def _decided(self, decision: asyncio.Future[Any]) -> None:
-        """Send the request again if the goal was accepted only now; end if it was not."""
+        """Send the request again if the goal has now been accepted; end if it was rejected."""
         if self._ended or decision.cancelled():
             return
         error = decision.exception()
         if isinstance(error, ServiceUnavailableError):
-            return  # the goal may have been accepted, and the answer was lost
+            return  # the goal may have been accepted and the answer lost
         if error is None and decision.result().accepted:
             if self._timer is not None:
                 self._timer.cancel()
@@ -135,11 +136,11 @@ class Withdrawal:
             self.answer.set_exception(error)
 
     def end_with_answer(self) -> None:
-        """Do not wait for a server that has gone to come back: the client ends."""
+        """End with the first answer or error: the client is being destroyed."""
         self.answer.add_done_callback(lambda _: self.end())
 
     def end(self) -> None:
-        """Send nothing any more."""
+        """Send nothing more, and drop the open requests."""
         if self._ended:
             return
         self._ended = True
@@ -147,7 +148,7 @@ class Withdrawal:
             self._timer.cancel()
         for exchange in self._exchanges:
             exchange.cancel()
-        if self._goal.sending is not None:
-            self._goal.sending.cancel()
+        if self._goal._sending is not None:
+            self._goal._sending.cancel()
         self.answer.cancel()
         self._loop.call_soon(self._on_end, self)

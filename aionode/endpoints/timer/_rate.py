@@ -22,14 +22,14 @@ __all__ = ["Rate"]
 class Rate(Entity):
     """Paces a loop. Made by `Node.create_rate`.
 
-    Either ``await rate.sleep()`` in the loop, or ``async for _ in rate``. The turns are on a grid
-    that begins with the rate: the first comes one period after its creation. A loop that was too
-    slow has its next turn at once, and those that it missed are left out. Several tasks may wait
-    for the same turn.
+    Use ``await rate.sleep()`` in the loop, or ``async for _ in rate``. The turns are on a grid
+    that starts with the rate: the first comes one period after its creation. A loop that was too
+    slow gets its next turn at once, and the turns that it missed are skipped. Several tasks may
+    wait for the same turn.
 
     Args:
         frequency: Turns per second.
-        clock: The clock that decides what a second is.
+        clock: The clock that measures the seconds.
 
     Raises:
         TypeError: `frequency` is not a number.
@@ -50,12 +50,12 @@ class Rate(Entity):
         Cancelling loses nothing.
 
         Raises:
-            EntityDestroyedError: The rate or its node was destroyed before (a RuntimeError).
-            asyncio.CancelledError: It was destroyed meanwhile.
+            EntityDestroyedError: The rate or its node was already destroyed (a RuntimeError).
+            asyncio.CancelledError: It was destroyed during the wait.
         """
-        self.refuse_if_destroyed("slept on")
+        self._refuse_if_destroyed("sleep")
         if not await self._next_turn():
-            raise asyncio.CancelledError(f"{self.subject}: destroyed during sleep()")
+            raise asyncio.CancelledError(f"{self._subject}: destroyed during sleep()")
 
     def __aiter__(self) -> AsyncIterator[None]:
         """Yield None at each turn, until the rate is destroyed."""
@@ -71,10 +71,10 @@ class Rate(Entity):
         schedule = self._ticker.schedule
         turn = schedule.calls
         if self._ticker.is_ready():
-            await checkpoint()  # a loop that is always late must not keep others from running
+            await checkpoint()  # a loop that is always late must let others run
         while not self.destroyed:
             if schedule.calls != turn:
-                return True  # another task was woken before, and took the turn for all of us
+                return True  # another task woke up first, and took the turn for all
             now_ns = self._ticker.clock.now_ns()
             if schedule.is_ready(now_ns):
                 schedule.call(now_ns)

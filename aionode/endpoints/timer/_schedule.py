@@ -1,8 +1,8 @@
 """When a timer is due: a grid of times, without a clock and without waiting.
 
-The rules are rcl's (rcl/src/rcl/timer.c). The first call is due one period after the start, every
-other one period after the one before was *planned*, so lateness does not add up. A timer that is
-late by whole periods is called once, and goes on at the next point of its grid.
+The rules are rcl's (rcl/src/rcl/timer.c). The first call is due one period after the start, and
+each later one a period after the time *planned* for the one before, so delays do not add up. A
+timer that is late by whole periods is called once, and continues at the next point of its grid.
 """
 
 from __future__ import annotations
@@ -11,14 +11,14 @@ __all__ = ["Schedule"]
 
 
 class Schedule:
-    """The grid of one timer; all times are nanoseconds of one clock, which the caller reads.
+    """The grid of one timer. All times are nanoseconds of one clock, which the caller reads.
 
     Attributes:
-        period_ns: From one call to the next. Changing it leaves the call already planned alone.
+        period_ns: From one call to the next. Changing it does not move the call already planned.
         next_ns: When the next call is planned.
-        last_ns: When the last call was made; before the first, when the schedule began.
+        last_ns: When the last call was made; before the first, when the schedule started.
         calls: How many calls were made.
-        skipped: How many were left out because they would have come too late.
+        skipped: How many were skipped because they would have been too late.
         canceled: Whether nothing is due until `reset`.
 
     Raises:
@@ -36,17 +36,17 @@ class Schedule:
         self.canceled = not autostart
 
     def is_ready(self, now_ns: int) -> bool:
-        """Whether a call is due."""
+        """Return whether a call is due."""
         return now_ns >= self.next_ns and not self.canceled
 
     def call(self, now_ns: int) -> int:
-        """Note that the call is made now; return when it was planned.
+        """Record that the call is made now, and plan the next; return when this one was planned.
 
         Raises:
             RuntimeError: The timer is canceled.
         """
         if self.canceled:
-            raise RuntimeError("timer: it is canceled and cannot be called; reset() it before")
+            raise RuntimeError("timer: it is canceled and cannot be called; call reset() first")
         expected_ns = self.next_ns
         period_ns = self.period_ns
         next_ns = expected_ns + period_ns
@@ -67,7 +67,7 @@ class Schedule:
         self.canceled = True
 
     def reset(self, now_ns: int) -> None:
-        """Begin anew: the next call is one period from now."""
+        """Start over: the next call is one period from now."""
         self.next_ns = now_ns + self.period_ns
         self.canceled = False
 
@@ -88,13 +88,13 @@ class Schedule:
         return now_ns - self.last_ns
 
     def look_back(self, now_ns: int) -> None:
-        """Begin anew if the clock was set back to before the last call, else leave all as it is."""
+        """Start over if the clock was set back to before the last call; else change nothing."""
         if now_ns < self.last_ns:
             self.next_ns = now_ns + self.period_ns
             self.last_ns = now_ns
 
     def carry_over(self, old_now_ns: int, new_now_ns: int) -> None:
-        """Keep what is left of the period when the clock gets its time from somewhere else."""
+        """Keep the rest of the period when the clock switches to another source of time."""
         left_ns = max(self.next_ns - old_now_ns, 0)
         self.last_ns += new_now_ns - old_now_ns
         self.next_ns = new_now_ns + left_ns

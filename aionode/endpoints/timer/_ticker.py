@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Ticker"]
 
-# Leaps forward need no callback: they end the wait for what they made due.
+# Jumps forward need no callback: they end the waits for what has become due.
 JUMPS = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
 
 
 class Ticker:
-    """Follows a schedule by a clock, through leaps of ROS time and switches of its source.
+    """Follows a schedule by a clock, through jumps of ROS time and changes of its source.
 
     Attributes:
         clock: The clock.
@@ -34,7 +34,7 @@ class Ticker:
         self.clock = clock
         self.schedule = Schedule(period_ns, clock.now_ns(), autostart=autostart)
         self._before_jump_ns = 0
-        self._waiters: dict[asyncio.Future[None], None] = {}  # woken in the order they came
+        self._waiters: dict[asyncio.Future[None], None] = {}  # a dict, to wake them in order
         self._jumps = (
             clock.create_jump_callback(
                 JUMPS, pre_callback=self._before_jump, post_callback=self._after_jump
@@ -44,18 +44,18 @@ class Ticker:
         )
 
     def is_ready(self) -> bool:
-        """Whether a call is due."""
+        """Return whether a call is due."""
         return self.schedule.is_ready(self.clock.now_ns())
 
     async def wait(self, on_ring: Callable[[], bool] | None = None) -> None:
-        """Return when a call is probably due, or `wake` was called: look at the schedule then.
+        """Wait until a call is probably due, or `wake` is called; then check the schedule.
 
-        While the schedule is canceled only `wake` ends the wait. Cancelling is safe. Nothing is
-        lost between two waits, because the schedule remembers what is due.
+        While the schedule is canceled, only `wake` ends the wait. Cancelling is safe. Nothing is
+        lost between two waits, because the schedule records what is due.
 
         Args:
-            on_ring: Called when the event loop's own alarm rings; if it returns True, it has made
-                the call, and the wait goes on until the next is due.
+            on_ring: Called when the event loop's own alarm rings. If it returns True, it has made
+                the call, and the wait continues until the next is due.
         """
         waiter = asyncio.get_running_loop().create_future()
         schedule = self.schedule
@@ -68,7 +68,7 @@ class Ticker:
                 return
             called = on_ring is not None and self.clock.follows_machine and on_ring()
             if waiter.done():
-                return  # the call has woken or cancelled who waits here
+                return  # the call has woken or cancelled this wait
             if called:
                 alarm = call_at(schedule.next_ns, ring)
             else:
@@ -92,7 +92,7 @@ class Ticker:
                 waiter.set_result(None)
 
     def close(self) -> None:
-        """End all waits, and follow the clock no longer."""
+        """End all waits, and stop following the clock."""
         if self._jumps is not None:
             self._jumps.unregister()
         self.wake()

@@ -9,7 +9,7 @@ from aionode._concurrency import checkpoint
 from aionode.clock import S_TO_NS, Time
 from aionode.endpoints._core.callback_runner import accepts
 from aionode.endpoints._core.entity import Entity
-from aionode.endpoints._core.inline_runner import InlineCall
+from aionode.endpoints._core.inline_call import InlineCall
 from aionode.endpoints.stats import CallbackStats
 from aionode.endpoints.timer._ticker import Ticker
 from aionode.errors import brief
@@ -25,8 +25,8 @@ class TimerInfo:
     """When a call of a timer was planned, and when it was made.
 
     Attributes:
-        expected_call_time: The point of the timer's grid, in the time of its clock.
-        actual_call_time: When the timer called.
+        expected_call_time: The point on the timer's grid, by its clock.
+        actual_call_time: When the call was made, by the same clock.
     """
 
     __slots__ = ("actual_call_time", "expected_call_time")
@@ -45,25 +45,25 @@ class TimerInfo:
 
 
 TimerCallback = Callable[[], object] | Callable[[TimerInfo], object]
-"""What a timer calls, sync or async; what it returns is awaited if it can be, and not used."""
+"""What a timer calls, sync or async; an awaitable that it returns is awaited."""
 
 RunnerFactory = Callable[[TimerCallback, "Timer", CallbackStats], "CallbackRunner"]
-"""Makes what runs a timer's callback, with the node's way of handling errors."""
+"""Makes the runner of a timer's callback, with the options given to `create_timer`."""
 
 
 class Timer(Entity):
     """Calls a function periodically. Made by `Node.create_timer`.
 
     The first call comes one period after the creation, or after the last `reset`; the others follow
-    on a grid from there, without drift. A callback never overlaps itself: when it takes longer than
-    the period, or the loop was held up, the calls missed are left out and the next comes on the
-    grid. A timer of period 0 is always ready; on a clock set from outside it is called each time
-    that clock is set.
+    on a grid from there, without drift. A callback never overlaps itself: if it takes longer than
+    the period, or the loop was blocked, the missed calls are skipped and the next comes on the
+    grid. A timer of period 0 is always ready; on a clock that is set from outside, it is called
+    each time the clock is set.
 
-    Its clock decides what time is: a timer on ROS time waits for `/clock` while that is in use.
+    Time is that of its clock: a timer on ROS time follows `/clock` while that is in use.
 
     Attributes:
-        stats: How its calls went: `received` counts the calls made, `dropped` those left out, and
+        stats: How its calls went: `received` counts the calls made, `dropped` those skipped, and
             `queue_wait` is how late they were by the timer's clock.
     """
 
@@ -99,9 +99,9 @@ class Timer(Entity):
 
     @property
     def callback(self) -> TimerCallback:
-        """What is called: with nothing, or with a `TimerInfo` if it needs an argument.
+        """What is called: without arguments, or with a `TimerInfo` if it requires an argument.
 
-        Setting it takes effect with the next call.
+        A new one is used from the next call on.
         """
         return self._runner.callback
 
@@ -115,7 +115,7 @@ class Timer(Entity):
     def timer_period_ns(self) -> int:
         """The period in nanoseconds.
 
-        Changing it does not move the call that is planned already: `reset()` does.
+        Changing it does not move the call that is already planned; `reset()` does.
         """
         return self._ticker.schedule.period_ns
 
@@ -124,26 +124,26 @@ class Timer(Entity):
         self._ticker.schedule.change_period(int(value))
 
     def cancel(self) -> None:
-        """Make no more calls until `reset()`. A callback that is running goes on."""
+        """Make no more calls until `reset()`. A running callback is not interrupted."""
         self._ticker.schedule.cancel()
         self._ticker.wake()
 
     def reset(self) -> None:
-        """Make the next call one period from now, also if the timer was canceled.
+        """Make the next call one period from now, even if the timer was canceled.
 
         Raises:
             EntityDestroyedError: The timer or its node was destroyed (a RuntimeError).
         """
-        self.refuse_if_destroyed("reset")
+        self._refuse_if_destroyed("reset timer")
         self._ticker.schedule.reset(self.clock.now_ns())
         self._ticker.wake()
 
     def is_canceled(self) -> bool:
-        """Whether the timer makes no calls until `reset()`."""
+        """Return whether the timer is canceled: it makes no calls until `reset()`."""
         return self._ticker.schedule.canceled
 
     def is_ready(self) -> bool:
-        """Whether a call is due now."""
+        """Return whether a call is due now."""
         return self._ticker.is_ready()
 
     def time_until_next_call(self) -> int | None:
@@ -151,12 +151,12 @@ class Timer(Entity):
         return self._ticker.schedule.until_next_ns(self.clock.now_ns())
 
     def time_since_last_call(self) -> int:
-        """Return the nanoseconds since the last call, or since the creation before the first."""
+        """Return the nanoseconds since the last call; before the first, since the creation."""
         return self._ticker.schedule.since_last_ns(self.clock.now_ns())
 
     # Work
 
-    async def run(self) -> None:
+    async def _run(self) -> None:
         """Make the calls, until cancelled."""
         ticker = self._ticker
         schedule = ticker.schedule
@@ -176,13 +176,13 @@ class Timer(Entity):
             if schedule.period_ns == 0:
                 await ticker.wait()
             elif ticker.is_ready():
-                await checkpoint()  # late again: without this nothing else would run
+                await checkpoint()  # late again: let others run
 
     def _call_inline(self) -> bool:
-        """Make the call that is due, within the alarm; return whether nothing is left to do.
+        """Make the call that is due within the alarm's callback; return whether it has finished.
 
-        To wake the task that runs this timer takes another turn of the loop, which is a third of
-        what a call costs.
+        Waking the task of this timer takes another iteration of the loop, which is a third of the
+        cost of a call.
         """
         schedule = self._ticker.schedule
         now_ns = self.clock.now_ns()
@@ -207,11 +207,11 @@ class Timer(Entity):
         )
 
     def _close(self) -> None:
-        """Stop following the clock."""
+        """End the waits, and stop following the clock."""
         self._ticker.close()
 
     def _wants_info_of(self, callback: TimerCallback) -> bool:
-        wants = accepts(callback, 0, 1, subject=self.subject, wanted="() or (info: TimerInfo)")
+        wants = accepts(callback, 0, 1, subject=self._subject, wanted="() or (info: TimerInfo)")
         return wants == 1
 
 

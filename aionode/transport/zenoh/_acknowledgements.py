@@ -1,9 +1,9 @@
 """Acknowledgements between contexts of aionode over Zenoh: their keys, and their timer.
 
-Zenoh's own way of losing nothing, congestion control BLOCK, holds up the whole process behind one
-reader that is frozen. So reliable publishers and subscriptions of aionode acknowledge instead, on a
-key of each context that ROS nodes neither hear nor send to. Who can do it announces it with a
-token; readers without one are left to Zenoh (`zenoh.topics`).
+Zenoh's own reliable delivery, congestion control BLOCK, stalls the whole process behind one frozen
+reader. Reliable publishers and subscriptions of aionode use acknowledgements instead, on one key of
+each context, which ROS nodes neither subscribe nor publish to. A context that supports them
+declares a token; readers in other contexts depend on Zenoh (`_publisher`).
 """
 
 from __future__ import annotations
@@ -21,52 +21,52 @@ from aionode.wire._acknack import Submessage
 if TYPE_CHECKING:
     from aionode.transport.zenoh._session_state import SessionState
 
-__all__ = ["Acknowledgements", "Hearer", "Teller"]
+__all__ = ["Acknowledgements", "StatefulReader", "StatefulWriter"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
 PREFIX: Final = "@aionode"
 
 TICK_S: Final = 0.05
-"""How often those are looked at who wait for something."""
+"""The interval of `tick` for publishers and subscriptions that wait for something."""
 
 LIMIT: Final = 20_000
-"""How many submessages wait for the loop; what is lost of them is said again."""
+"""How many submessages wait for the loop; those that are dropped will be repeated."""
 
 
-class Teller(Protocol):
-    """A publisher, as its readers' answers see it."""
+class StatefulWriter(Protocol):
+    """A publisher that keeps messages until they are acknowledged."""
 
-    def answer(self, said: Submessage) -> None:
-        """Take an ACKNACK."""
-
-    def tick(self) -> bool:
-        """Do what it is time for; return whether to come again."""
-
-
-class Hearer(Protocol):
-    """A subscription, as its writers see it."""
-
-    def told(self, said: Submessage) -> None:
-        """Take what a writer says."""
+    def take_acknack(self, submessage: Submessage) -> None:
+        """Handle an ACKNACK of one of its readers."""
 
     def tick(self) -> bool:
-        """Do what it is time for; return whether to come again."""
+        """Do what is due; return whether to call again."""
+
+
+class StatefulReader(Protocol):
+    """A subscription that acknowledges messages."""
+
+    def take_submessage(self, submessage: Submessage) -> None:
+        """Handle a HEARTBEAT, GAP or DATA of one of its writers."""
+
+    def tick(self) -> bool:
+        """Do what is due; return whether to call again."""
 
 
 class Acknowledgements:
-    """What this context says of messages, and hears.
+    """The submessages that this context sends and receives.
 
     Attributes:
         participants: The other contexts that acknowledge.
-        writers: The publishers of this context that want it, by gid.
-        readers: The subscriptions of this context that do it, by gid.
+        writers: The publishers of this context that want acknowledgements, by gid.
+        readers: The subscriptions of this context that acknowledge, by gid.
     """
 
     def __init__(self, state: SessionState) -> None:
         self.participants: set[str] = set()
-        self.writers: dict[bytes, Teller] = {}
-        self.readers: dict[bytes, Hearer] = {}
+        self.writers: dict[bytes, StatefulWriter] = {}
+        self.readers: dict[bytes, StatefulReader] = {}
         self._state = state
         self._prefix = f"{PREFIX}/{state.domain_id}/"
         self._suffix = f"/reliable/{acknack.VERSION}"
@@ -74,11 +74,11 @@ class Acknowledgements:
         self._declared: list[zenoh.Subscriber[None] | zenoh.LivelinessToken] = []
         self._queue = state.queue(self._take, LIMIT)
         self._tokens = state.queue(self._take_token)
-        self._busy: dict[Teller | Hearer, None] = {}
+        self._busy: dict[StatefulWriter | StatefulReader, None] = {}
         self._timer: asyncio.TimerHandle | None = None
 
     def start(self, session: zenoh.Session) -> None:
-        """Announce and listen: before any endpoint is announced."""
+        """Subscribe, and declare the token. To be called before any endpoint is declared."""
         self._session = session
         liveliness = session.liveliness()
         own = self._prefix + self._state.participant + self._suffix
@@ -92,11 +92,11 @@ class Acknowledgements:
             ]
 
     def stop(self) -> None:
-        """Say and hear nothing more."""
+        """Undeclare everything."""
         self._session = None
         declared, self._declared = self._declared, []
-        for one in reversed(declared):
-            one.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
+        for declaration in reversed(declared):
+            declaration.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
         self._queue.clear()
         self._tokens.clear()
         self.participants.clear()
@@ -105,8 +105,8 @@ class Acknowledgements:
             self._timer.cancel()
             self._timer = None
 
-    def say(self, participant: str, data: bytes, priority: zenoh.Priority = LOOP_PRIORITY) -> None:
-        """Send a submessage to another context; it may be lost. A large one from a thread."""
+    def send(self, participant: str, data: bytes, priority: zenoh.Priority = LOOP_PRIORITY) -> None:
+        """Send a submessage to another context; it may be lost. Large ones go from a thread."""
         session = self._session
         if session is None:
             return
@@ -121,38 +121,39 @@ class Acknowledgements:
         except zenoh.ZError as error:
             logger.debug("%s: not sent: %s", participant, reason(error))
 
-    def watch(self, one: Teller | Hearer) -> None:
-        """Call `one.tick` from now on, until it says that it waits for nothing more."""
-        self._busy[one] = None
+    def watch(self, endpoint: StatefulWriter | StatefulReader) -> None:
+        """Call `endpoint.tick` from now on until it returns False."""
+        self._busy[endpoint] = None
         if self._timer is None and self._session is not None:
             self._timer = asyncio.get_running_loop().call_later(TICK_S, self._tick)
 
     def _tick(self) -> None:
         self._timer = None
-        for one in list(self._busy):
-            if not one.tick():
-                self._busy.pop(one, None)
+        for endpoint in list(self._busy):
+            if not endpoint.tick():
+                self._busy.pop(endpoint, None)
         if self._busy and self._session is not None:
             self._timer = asyncio.get_running_loop().call_later(TICK_S, self._tick)
 
     def _take(self, sample: zenoh.Sample) -> None:
-        said = acknack.unpack(sample.payload.to_bytes())
-        if said is None:
+        submessage = acknack.unpack(sample.payload.to_bytes())
+        if submessage is None:
             self._state.note_malformed(str(sample.key_expr), "an acknowledgement")
-        elif said.kind is acknack.Kind.ACKNACK:
-            writer = self.writers.get(said.writer)
+        elif submessage.kind is acknack.SubmessageKind.ACKNACK:
+            writer = self.writers.get(submessage.writer)
             if writer is not None:
-                writer.answer(said)
+                writer.take_acknack(submessage)
         else:
-            reader = self.readers.get(said.reader)
+            reader = self.readers.get(submessage.reader)
             if reader is not None:
-                reader.told(said)
+                reader.take_submessage(submessage)
 
     def _take_token(self, sample: zenoh.Sample) -> None:
         participant = str(sample.key_expr).removeprefix(self._prefix).removesuffix(self._suffix)
         if participant == self._state.participant:
             return
-        # One that is gone is left in: its endpoints go by themselves, and it may come back.
+        # A participant stays in the set when its token goes: its endpoints have tokens of their
+        # own, and it may come back.
         if sample.kind == zenoh.SampleKind.PUT and participant not in self.participants:
             self.participants.add(participant)
             for updates in list(self._state.on_reader.values()):

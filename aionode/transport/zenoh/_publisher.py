@@ -40,7 +40,7 @@ from aionode.transport.zenoh._session_state import Declaration
 from aionode.wire import _acknack as acknack
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
-from aionode.wire._acknack import Kind
+from aionode.wire._acknack import SubmessageKind
 from aionode.wire._key_expression import data_key
 from aionode.wire._liveliness import endpoint_token
 
@@ -57,15 +57,13 @@ __all__ = ["ZenohWriter"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
-# Sending
-
 
 class ZenohWriter(Declaration, Writer):
-    """A publisher as the subscriptions of others see it.
+    """A publisher for the subscriptions of other contexts.
 
-    A message leaves in one of three ways, each with a queue of its own in Zenoh: from the loop,
-    which never waits; from the thread for large ones; or, for readers that do not acknowledge and
-    must not lose it, from a thread of this publisher that waits for them.
+    A message is sent in one of three ways, each with a priority and so a queue of its own in Zenoh:
+    by the event loop, which never waits; by the thread for large messages; or, for readers that do
+    not acknowledge and must not lose it, by a thread of this publisher that waits for them.
     """
 
     def __init__(self, state: SessionState, endpoint: EndpointInfo, msg_type: type[Any]) -> None:
@@ -74,29 +72,37 @@ class ZenohWriter(Declaration, Writer):
         qos = endpoint.qos
         self._key = data_key(state.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
         self._msg_type = msg_type
-        # Making a codec takes a while: not before it is needed, and not within a callback.
+        # None until it is needed, as it takes a while to make; `_update` does that, so that no
+        # callback has to.
         self._encode: Callable[[Any], bytes] | None = None
         self._publisher: zenoh.Publisher | ext.AdvancedPublisher | None = None
         self._matching: zenoh.MatchingListener[None] | None = None
         self._matching_changed = state.queue(self._update_with, limit=1)
+        # Whether a small message may be put at once, see `_update_route`.
+        self._is_direct = True
+        # Whether a message has been put into `_large` since that was last seen empty.
+        self._is_large_used = False
+        # Whether `tick` is being called.
+        self._is_watched = False
         self._transient = is_transient(qos)
         self._depth = depth_of(qos)
         self._reliable = is_reliable(qos)
-        # What a publisher keeps for late readers before the session is open.
+        # Messages for late readers that were published before the session is open.
         self._early: deque[tuple[bytes, bytes]] = deque(maxlen=self._depth)
         self.active = self._transient
         self.bounded = qos.history is HistoryPolicy.KEEP_ALL and self._reliable
-        # Who keeps messages for late readers leaves it to Zenoh to send them again.
+        # A transient local publisher has none: there Zenoh sends lost messages again.
         self._history: WriterHistory | None = None
         if self._reliable and not self._transient:
             self._history = WriterHistory(
                 self._depth, keep_all=self.bounded, side=self, now_ns=perf_ns
             )
             state.acknowledgements.writers[self.gid] = self
-        # Large messages, and small ones behind them so that the order stays.
+        # Large messages, and small ones after them to keep the order.
         self._large = self._send_queue(state.bulk, keep_all=False)
         self._bulk_only = self._transient and not self.bounded and has_buffers(msg_type)
-        # What waits for readers that do not acknowledge; once begun it stays so, for the order.
+        # Messages for readers that do not acknowledge, once it was needed; from then on it is used
+        # for all messages, to keep the order.
         self._patient: SendQueue | None = None
         self._patient_sender = SendThread("aionode-patient", state.waker)
         self._patient_publisher: zenoh.Publisher | None = None
@@ -104,9 +110,10 @@ class ZenohWriter(Declaration, Writer):
         self._dropped = 0
         self._given_up = state.queue(self.lost)
         self._closed = False
-        self._ends_ns = 0  # when a publisher that lingers gives up
+        self._ends_ns = 0  # when a lingering publisher gives up
         self._moved: tuple[int, ...] = ()
         self._moved_ns = 0
+        self._update_route()
         state.own_gids.add(self.gid)
         state.on_reader.setdefault(endpoint.name, []).append(self._update)
         state.add(self)
@@ -116,7 +123,8 @@ class ZenohWriter(Declaration, Writer):
         return send_thread.send_queue(self._depth, keep_all=keep_all, lost=lost)
 
     def declare_data(self, session: zenoh.Session) -> None:
-        """Declare the publisher, and send what was kept."""
+        """Declare the publisher, and send what was published before."""
+        self._is_watched = False
         reliable = self._reliable
         reliability = zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT
         if self._transient:
@@ -141,7 +149,7 @@ class ZenohWriter(Declaration, Writer):
                 else None,
             )
             while self._early:
-                self._put(*self._early.popleft())
+                self.put(*self._early.popleft())
         else:
             self._publisher = session.declare_publisher(
                 self._key,
@@ -156,13 +164,13 @@ class ZenohWriter(Declaration, Writer):
         self._update()
 
     def undeclare_data(self) -> None:
-        """Withdraw the publisher, as soon as what was published is sent or given up."""
+        """Undeclare the publisher as soon as its messages are acknowledged or given up."""
         self.linger()
         if self not in self.state.lingering or self.state.session is None:
             self.finish()
 
     def linger(self) -> None:
-        """Give what was published some time to arrive."""
+        """Wait a while for acknowledgements before the publisher is undeclared."""
         if self.is_done() or self in self.state.lingering or self._publisher is None:
             return
         now_ns = perf_ns()
@@ -170,10 +178,10 @@ class ZenohWriter(Declaration, Writer):
         self._moved_ns = now_ns
         self._moved = ()
         self.state.lingering[self] = None
-        self.state.acknowledgements.watch(self)
+        self._watch()
 
     def is_done(self) -> bool:
-        """Whether nothing is left to send, or to be acknowledged."""
+        """Return whether all messages were sent and acknowledged."""
         return (
             (self._history is None or self._history.done)
             and not len(self._large)
@@ -181,7 +189,7 @@ class ZenohWriter(Declaration, Writer):
         )
 
     def finish(self) -> None:
-        """Withdraw the publisher, and count what was not sent."""
+        """Undeclare the publisher, and count the messages that were not delivered."""
         self.state.has_lingered(self)
         if self._history is not None and (missing := self._history.give_up()):
             self.lost(missing)
@@ -198,11 +206,12 @@ class ZenohWriter(Declaration, Writer):
             self._forget()
 
     def _withdraw(self) -> None:
-        """Undeclare: Zenoh's objects are used by one at a time, and a thread may be inside."""
+        """Undeclare, in the thread that may be using the publisher: Zenoh locks it meanwhile."""
         publisher, self._publisher = self._publisher, None
         patient, self._patient_publisher = self._patient_publisher, None
         if self._patient is not None:
             self._patient = None
+            self._update_route()
             if patient is not None:
                 self._patient_sender.submit(partial(withdraw, patient))
             elif publisher is not None:  # it is the thread's own
@@ -217,13 +226,13 @@ class ZenohWriter(Declaration, Writer):
         else:
             withdraw(publisher)
 
-    # Who listens
+    # Readers
 
     def _update_with(self, _: zenoh.MatchingStatus) -> None:
         self._update()
 
     def _update(self) -> None:
-        """Find out whether anybody listens, and who of them acknowledges."""
+        """Update `active` and the history from the matching readers."""
         publisher, history, graph = self._publisher, self._history, self.state.graph
         if self._transient:
             if self._encode is None:
@@ -234,29 +243,30 @@ class ZenohWriter(Declaration, Writer):
         )
         if history is not None and graph is not None and publisher is not None:
             acknowledging, others = self._matched(graph)
-            # The token of a reader can come before Zenoh knows the way there: what is lost until
-            # then is sent again. Somebody without a token may listen too; beside readers that
-            # acknowledge, nothing is known of them.
+            # The token of a reader can arrive before Zenoh has a route to it; what is lost until
+            # then is sent again. A subscriber without a token may match too; beside readers that
+            # acknowledge, nothing is known of it.
             self.active = self.active or bool(acknowledging)
-            history.others = others or not acknowledging
-            self._note_readers(history, acknowledging)
+            history.has_other_readers = others or not acknowledging
+            self._update_route()
+            self._update_readers(history, acknowledging)
         if self.active and self._encode is None:
             self._encode = cdr.encoder(self._msg_type)
 
-    def _note_readers(self, history: WriterHistory, acknowledging: dict[bytes, str]) -> None:
-        """Let the history know who has come and gone."""
+    def _update_readers(self, history: WriterHistory, acknowledging: dict[bytes, str]) -> None:
+        """Add new and returned readers to the history, and remove those that have vanished."""
         for gid, known in list(history.readers.items()):
-            if gid not in acknowledging and not known.away_ns:
+            if gid not in acknowledging and not known.away_until_ns:
                 history.remove(gid)
         if not self._closed:
             for gid, participant in acknowledging.items():
                 reader = history.readers.get(gid)
-                if reader is None or reader.away_ns:
+                if reader is None or reader.away_until_ns:
                     history.add(gid, participant)
         self._progress()
 
     def _matched(self, graph: Graph) -> tuple[dict[bytes, str], bool]:
-        """Return the readers that acknowledge, and whether others must not lose messages."""
+        """Return the acknowledging readers, and whether others must not lose messages."""
         able = self.state.acknowledgements.participants
         acknowledging: dict[bytes, str] = {}
         others = False
@@ -287,42 +297,62 @@ class ZenohWriter(Declaration, Writer):
             if self._transient:
                 self._early.append((payload, extra))
         elif history is None:
-            self._put(payload, extra)
+            self.put(payload, extra)
         else:
             history.write(sample_info.sequence, payload, extra)
-            if history.entries:
-                self.state.acknowledgements.watch(self)
+            if not self._is_watched and history.entries:
+                self._watch()
+
+    def _watch(self) -> None:
+        self._is_watched = True
+        self.state.acknowledgements.watch(self)
 
     def put(self, payload: bytes, extra: bytes) -> None:
         """Send a message to every reader."""
-        self._put(payload, extra)
-
-    def _put(self, payload: bytes, extra: bytes) -> None:
         publisher = self._publisher
         if publisher is None:
             return
-        history = self._history
-        others = history is None or history.others
+        if len(payload) < BULK_BYTES and self._is_direct and not self._is_large_used:
+            try:
+                publisher.put(payload, attachment=extra)
+            except zenoh.ZError as error:
+                raise TransportError(f"{self._key}: {reason(error)}") from error
+        else:
+            self._put_otherwise(publisher, payload, extra)
+
+    def _put_otherwise(
+        self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
+    ) -> None:
+        """Send a message that is large, or follows a large one, or must not be dropped by Zenoh."""
         size = len(payload)
-        if (
-            self._patient is not None
-            or (others and self.bounded)
-            or (
-                others
-                and self._reliable
-                and not self._transient
-                and size < BULK_BYTES
-                and not self.state.burst.spend(size)
-            )
+        self._is_large_used = bool(len(self._large))
+        may_not_drop = not self._is_direct and self._reliable and not self._bulk_only
+        if self._patient is not None or (
+            may_not_drop
+            and (self.bounded or (size < BULK_BYTES and not self.state.burst.spend(size)))
         ):
             self._put_patiently(publisher, payload, extra)
-        elif size >= BULK_BYTES or self._bulk_only or len(self._large):
+        elif size >= BULK_BYTES or self._bulk_only or self._is_large_used:
+            self._is_large_used = True
             self._large.put(lambda: self._send(publisher, payload, extra))
         else:
             try:
                 publisher.put(payload, attachment=extra)
             except zenoh.ZError as error:
                 raise TransportError(f"{self._key}: {reason(error)}") from error
+
+    def _update_route(self) -> None:
+        """Find out whether small messages may be put at once, and dropped by Zenoh if need be.
+
+        Not if a reader may lose none of them and does not acknowledge: then a thread sends them
+        when they are many, and always for KEEP_ALL.
+        """
+        others = self._history is None or self._history.has_other_readers
+        self._is_direct = (
+            self._patient is None
+            and not self._bulk_only
+            and not (others and self._reliable and (self.bounded or not self._transient))
+        )
 
     def _put_patiently(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
@@ -331,6 +361,7 @@ class ZenohWriter(Declaration, Writer):
         if self._patient is None:
             self.state.send_threads.add(self._patient_sender)
             self._patient = self._send_queue(self._patient_sender, keep_all=self.bounded)
+            self._update_route()
             if not self._transient and self.state.session is not None:
                 self._patient_publisher = self.state.session.declare_publisher(
                     self._key,
@@ -345,7 +376,7 @@ class ZenohWriter(Declaration, Writer):
     def _send_patiently(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
     ) -> None:
-        """Send in the thread; Zenoh gives up after a while, and says so to nobody."""
+        """Send in the thread. Zenoh gives up after a while without an error, so time tells."""
         began_ns = perf_ns()
         try:
             publisher.put(payload, attachment=extra)
@@ -357,7 +388,7 @@ class ZenohWriter(Declaration, Writer):
     def _send(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
     ) -> None:
-        """Send from a thread, where nobody can be told that the session was closed meanwhile."""
+        """Send from a thread. No caller waits, so an error, after the session closed, is logged."""
         session = self.state.session
         try:
             if session is None or self._transient:
@@ -376,7 +407,7 @@ class ZenohWriter(Declaration, Writer):
             logger.debug("%s: not sent: %s", self._key, reason(error))
 
     def has_room(self) -> bool:
-        """Whether one more message can wait to be sent."""
+        """Return whether one more message can wait to be sent."""
         if not self.bounded:
             return True
         return (self._history is None or self._history.has_room()) and (
@@ -384,18 +415,18 @@ class ZenohWriter(Declaration, Writer):
         )
 
     async def drain(self) -> None:
-        """Wait until there is room, and everything was handed to Zenoh."""
+        """Wait until there is room and all messages were handed to Zenoh."""
         while self._history is not None and (self._history.unsent or not self.has_room()):
             waiter = asyncio.get_running_loop().create_future()
             self._drained.append(waiter)
-            self.state.acknowledgements.watch(self)
+            self._watch()
             await waiter
         if self._patient is not None:
             await self._patient.drain()
         await self._large.drain()
 
     def _progress(self) -> None:
-        """Let those go on who wait for it."""
+        """Wake `drain` if there is room now."""
         history = self._history
         if self._drained and (history is None or not (history.unsent or not history.has_room())):
             self._wake()
@@ -406,18 +437,22 @@ class ZenohWriter(Declaration, Writer):
             if not waiter.done():
                 waiter.set_result(None)
 
-    # What readers say, and are told
+    # Submessages
 
-    def answer(self, said: Submessage) -> None:
-        """Take an ACKNACK."""
+    def take_acknack(self, submessage: Submessage) -> None:
+        """Handle an ACKNACK of one of its readers."""
         if self._history is not None:
-            self._history.acknack(said.reader, said.first, said.ranges())
+            self._history.acknack(submessage.reader, submessage.first, submessage.ranges())
             self._progress()
             if self in self.state.lingering and self.is_done():
                 self.finish()
 
     def tick(self) -> bool:
-        """Ask readers, and give up in the end; return whether to come again."""
+        """Send heartbeats, and give up in the end; return whether to call again."""
+        self._is_watched = self._tick()
+        return self._is_watched
+
+    def _tick(self) -> bool:
         history = self._history
         again = history is not None and history.tick()
         self._progress()
@@ -438,31 +473,33 @@ class ZenohWriter(Declaration, Writer):
         return again
 
     def heartbeat(self, reader: ReaderProxy, first: int, last: int) -> None:
-        """Tell a reader how far the messages go."""
-        self._say(Kind.HEARTBEAT, reader, first, last, self.state.participant.encode())
+        """Send a reader a HEARTBEAT."""
+        self._send_submessage(
+            SubmessageKind.HEARTBEAT, reader, first, last, self.state.participant.encode()
+        )
 
     def gap(self, reader: ReaderProxy, first: int, last: int) -> None:
-        """Tell a reader that some will not come."""
-        self._say(Kind.GAP, reader, first, last)
+        """Send a reader a GAP."""
+        self._send_submessage(SubmessageKind.GAP, reader, first, last)
 
     def resend(self, reader: ReaderProxy, entry: Entry) -> None:
         """Send a message again to one reader."""
         fields = attachment.unpack_fields(entry.extra)
         source_ns = 0 if fields is None else fields[1]
-        self._say(Kind.DATA, reader, entry.sequence, source_ns, entry.payload)
+        self._send_submessage(SubmessageKind.DATA, reader, entry.sequence, source_ns, entry.payload)
 
-    def _say(
-        self, kind: Kind, reader: ReaderProxy, first: int, last: int, rest: bytes = b""
+    def _send_submessage(
+        self, kind: SubmessageKind, reader: ReaderProxy, first: int, last: int, rest: bytes = b""
     ) -> None:
         data = acknack.pack(kind, self.gid, reader.gid, first, last, rest)
-        say = self.state.acknowledgements.say
+        send = self.state.acknowledgements.send
         if len(data) < BULK_BYTES:
-            say(reader.participant, data)
-        else:  # each of its fragments may wait
-            self.state.bulk.submit(partial(say, reader.participant, data, BULK_PRIORITY))
+            send(reader.participant, data)
+        else:  # Zenoh sends it in fragments, each of which may wait
+            self.state.bulk.submit(partial(send, reader.participant, data, BULK_PRIORITY))
 
     def lost(self, count: int) -> None:
-        """Count dropped messages, and say so the first time."""
+        """Count dropped messages; the first are logged."""
         if not self._dropped:
             logger.warning(
                 "%s: %d of the messages published here were dropped before every reader had them: "
@@ -479,15 +516,15 @@ class ZenohWriter(Declaration, Writer):
 
     @property
     def dropped(self) -> int:
-        """How many messages were dropped on their way, as far as that can be known."""
+        """How many messages are known to have been dropped on the way."""
         return self._dropped
 
     def route_of(self, reader: EndpointInfo) -> str | None:
-        """Return ``zenoh`` for the subscriptions of others."""
+        """Return ``zenoh`` for subscriptions of other contexts."""
         return "zenoh" if reader.node.participant != self.state.participant else None
 
     def close(self) -> None:
-        """Withdraw the publisher for good; what was published has some time to arrive."""
+        """Undeclare the publisher for good, after it has lingered."""
         self._closed = True
         super().close()
         self._transient = False
@@ -506,7 +543,7 @@ class ZenohWriter(Declaration, Writer):
 
 
 def withdraw(publisher: zenoh.Publisher | ext.AdvancedPublisher) -> None:
-    """Undeclare a publisher, which an end of its session may have done already."""
+    """Undeclare a publisher, unless its session has been closed already."""
     try:
         publisher.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
     except zenoh.ZError as error:

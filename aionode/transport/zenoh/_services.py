@@ -16,7 +16,7 @@ from aionode.graph import EndpointKind
 from aionode.transport.base import Request, Requester, SampleInfo
 from aionode.transport.zenoh._handlers import CALL_PRIORITY, direct, translated
 from aionode.transport.zenoh._session_state import Declaration
-from aionode.transport.zenoh._subscription import NOBODY, sample_info_of
+from aionode.transport.zenoh._subscription import UNKNOWN_GID, sample_info_of
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
 from aionode.wire._key_expression import data_key
@@ -143,7 +143,7 @@ class ZenohServer(Declaration):
         if sample_info is None:
             if query.attachment is not None:
                 self.state.note_malformed(self.key, "an attachment")
-            sample_info = SampleInfo(NOBODY, 0, 0, True)
+            sample_info = SampleInfo(UNKNOWN_GID, 0, 0, True)
         payload = query.payload
         try:
             message = cdr.decode(
@@ -155,7 +155,7 @@ class ZenohServer(Declaration):
             self.answer(query, sample_info, lambda: query.reply_err(problem), len(problem))
         else:
             if abs(self.state.now_ns() - sample_info.source_ns) < FRESH_NS:
-                self.state.peers.heard(self.participant_of(sample_info.gid))
+                self.state.peer_senders.heard(self.participant_of(sample_info.gid))
             self._serve(
                 ZenohRequest(message, sample_info, query, self), self.state.waker.inline_deadline_ns
             )
@@ -188,7 +188,7 @@ class ZenohServer(Declaration):
         size_bytes: int,
     ) -> None:
         """End `query`, without waiting for a client that hangs."""
-        self.state.peers.send(
+        self.state.peer_senders.send(
             (self.participant_of(sample_info.gid),), size_bytes, lambda: answer(query, reply)
         )
 
@@ -215,7 +215,7 @@ class ZenohRequest(Request):
         self._server = server
         self._id = (sample_info.gid, sample_info.sequence)
         # Who sends no attachment has no number either; then the object itself is unique.
-        if self._id in server.unanswered or sample_info.gid == NOBODY:
+        if self._id in server.unanswered or sample_info.gid == UNKNOWN_GID:
             self._id = (sample_info.gid, id(self))
         server.unanswered[self._id] = self
 
@@ -347,7 +347,7 @@ class ZenohCall:
         """Send the request without waiting for a server that hangs; on the loop."""
         self._send_again = partial(self.send, session, payload, extra, timeout_s)
         requester = self._requester
-        requester.state.peers.send(
+        requester.state.peer_senders.send(
             requester.participants(),
             len(payload),
             partial(self._get, session, payload, extra, timeout_s),
@@ -390,7 +390,7 @@ class ZenohCall:
             return
         servers = self._requester.participants()
         if len(servers) == 1:  # else it is not known which of them lives
-            self._requester.state.peers.heard(servers.pop())
+            self._requester.state.peer_senders.heard(servers.pop())
         sample = reply.ok
         if sample is None:
             error = reply.err
@@ -413,7 +413,7 @@ class ZenohCall:
             return
         self._finish()
         reply_to.reply(
-            response, sample_info_of(sample.attachment) or SampleInfo(NOBODY, 0, 0, True)
+            response, sample_info_of(sample.attachment) or SampleInfo(UNKNOWN_GID, 0, 0, True)
         )
 
     def _try_again(self) -> bool:

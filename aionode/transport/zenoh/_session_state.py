@@ -1,4 +1,4 @@
-"""What all entities of one context share: the session, the ways into the loop and out of it."""
+"""What all entities of one context share: the session, its declarations, threads and queues."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from aionode.transport.base import Registration
 from aionode.transport.zenoh._acknowledgements import Acknowledgements
 from aionode.transport.zenoh._cancellations import Cancellations
 from aionode.transport.zenoh._handlers import translated
-from aionode.transport.zenoh._peers import Peers
+from aionode.transport.zenoh._peer_senders import PeerSenders
 from aionode.wire._liveliness import gid_of
 
 if TYPE_CHECKING:
@@ -33,10 +33,10 @@ logger = logging.getLogger("aionode.transport.zenoh")
 
 BURST_BYTES: Final = 256 * 1024
 BURST_NS: Final = 10_000_000
-"""So much in so many nanoseconds finds its way to any peer that lives: a quarter of the queue."""
+"""So much in so many nanoseconds reaches every peer that is alive: a quarter of the queue."""
 
 FLUSH_S: Final = 2.0
-"""How long `flush` waits for what has to arrive, while its readers make progress."""
+"""How long `flush` waits for reliable messages, while their readers make progress."""
 
 BULK_FLUSH_S: Final = 0.15
 """How long `flush` waits for large messages, which may be dropped."""
@@ -45,11 +45,11 @@ SHARING_NS: Final = 500_000_000
 """How long Zenoh may take to have its shared memory ready."""
 
 
-class Lingering(Protocol):
-    """A publisher that was destroyed."""
+class LingeringWriter(Protocol):
+    """A destroyed publisher with messages that are not acknowledged."""
 
     def finish(self) -> None:
-        """Withdraw it now, and count what was not sent."""
+        """Undeclare it now, and count the messages that were not delivered."""
 
 
 class SessionState:
@@ -58,20 +58,20 @@ class SessionState:
     Attributes:
         participant: Id of the context, and of its session.
         domain_id: The ROS domain.
-        session: The session while it is open.
-        graph: Where others are found while it is open.
-        waker: The way from Zenoh's threads to the loop.
-        bulk: Sends what is large.
-        send_threads: Every thread that sends messages.
-        peers: The ways of requests and replies.
-        burst: How much the loop has just put itself.
-        acknowledgements: What is said of messages between contexts of aionode.
-        lingering: Publishers that were destroyed and still have something to send.
-        malformed: How many samples of each key were in no known form.
-        own_gids: Ids of this context's publishers.
-        cancellations: Requests that clients have given up.
-        now_ns: The system time, in nanoseconds since 1970.
-        on_reader: What is told of each remote subscription that comes or goes, by topic.
+        session: The session while it is open, else None.
+        graph: The graph of the context while the session is open, else None.
+        waker: Wakes the event loop from Zenoh's threads.
+        bulk: The thread that sends large messages.
+        send_threads: All threads that send messages, `bulk` included.
+        peer_senders: Send requests and replies.
+        burst: Limits what the loop puts at once for readers that do not acknowledge.
+        acknowledgements: The acknowledgements between contexts of aionode.
+        lingering: Destroyed publishers with messages that are not acknowledged; an ordered set.
+        malformed: How many malformed samples came on each key.
+        own_gids: The gids of this context's publishers, lingering ones included.
+        cancellations: The requests that clients have given up.
+        now_ns: The system clock, in nanoseconds since 1970.
+        on_reader: Called when a remote subscription appears or vanishes, by topic.
     """
 
     def __init__(self, participant: str, domain_id: int) -> None:
@@ -82,10 +82,10 @@ class SessionState:
         self.waker = LoopWaker()
         self.bulk = SendThread("aionode-bulk", self.waker)
         self.send_threads = {self.bulk}
-        self.peers = Peers(self.waker)
+        self.peer_senders = PeerSenders(self.waker)
         self.burst = Burst()
         self.acknowledgements = Acknowledgements(self)
-        self.lingering: dict[Lingering, None] = {}
+        self.lingering: dict[LingeringWriter, None] = {}
         self.malformed: Counter[str] = Counter()
         self.own_gids: set[bytes] = set()
         self.cancellations = Cancellations(participant, domain_id, self.waker, self.note_malformed)
@@ -96,7 +96,7 @@ class SessionState:
         self._declarations: dict[Declaration, None] = {}
 
     def queue(self, handle: Callable[[T], None], limit: int | None = None) -> ThreadsafeQueue[T]:
-        """Return a queue from Zenoh's threads to `handle` on the loop."""
+        """Return a queue from Zenoh's threads to `handle`, which is called on the event loop."""
         return ThreadsafeQueue(self.waker, handle, limit)
 
     def add(self, declaration: Declaration) -> None:
@@ -120,20 +120,20 @@ class SessionState:
             declaration.declare(session)
 
     def is_preparing_shared_memory(self) -> bool:
-        """Whether Zenoh may be busy making its shared memory. For the thread that sends bulk.
+        """Return whether Zenoh may be creating its shared memory. Called by the bulk thread.
 
-        It does so with the first large message, which takes some 20 ms, and this message still goes
-        through the network: fragment by fragment, of which each is dropped after a millisecond or
-        two of waiting, with the whole message (zenoh 1.10).
+        Zenoh creates it for the first large message, which takes about 20 ms. That message still
+        goes through the network, in fragments; if one has to wait for more than a millisecond or
+        two, Zenoh drops the whole message (zenoh 1.10).
         """
         now_ns = perf_ns()
         self._shares_from_ns = self._shares_from_ns or now_ns
         return now_ns - self._shares_from_ns < SHARING_NS
 
     async def flush(self) -> None:
-        """Wait until everything that was handed over was sent, `FLUSH_S` at most.
+        """Wait until all messages were sent and acknowledged, for `FLUSH_S` at most.
 
-        Destroyed publishers end that wait by themselves, when their readers make no progress.
+        Lingering publishers end the wait early when their readers make no progress.
         """
         for declaration in list(self._declarations):
             declaration.linger()
@@ -149,28 +149,28 @@ class SessionState:
             async with asyncio.timeout(BULK_FLUSH_S):
                 await self.bulk.flush()
 
-    def has_lingered(self, publisher: Lingering) -> None:
-        """Note that a publisher has nothing to send any more."""
-        self.lingering.pop(publisher, None)
+    def has_lingered(self, writer: LingeringWriter) -> None:
+        """Remove a publisher that does not linger any more."""
+        self.lingering.pop(writer, None)
         if self._lingered is not None and not self._lingered.done():
             self._lingered.set_result(None)
 
     def disconnect(self) -> zenoh.Session | None:
-        """Undeclare everything, the newest first; return the session, to be closed."""
+        """Undeclare everything, the newest first; return the session, which the caller closes."""
         session, self.session = self.session, None
         if session is not None:
             for declaration in reversed(self._declarations):
                 declaration.undeclare()
             for publisher in list(self.lingering):
                 publisher.finish()
-        self.peers.clear()
+        self.peer_senders.clear()
         self.cancellations.stop()
         self.acknowledgements.stop()
         self.graph = None
         return session
 
     def note_malformed(self, key: str, problem: str) -> None:
-        """Count a sample that is in no known form, and say so the first time."""
+        """Count a malformed sample; the first on each key is logged."""
         self.malformed[key] += 1
         if self.malformed[key] == 1:
             logger.warning(
@@ -182,14 +182,14 @@ class SessionState:
 
 
 class Burst:
-    """How much the loop puts into Zenoh at once, which has to go through its queue in time."""
+    """Limits what the loop puts into Zenoh at once to what fits into its queue."""
 
     def __init__(self) -> None:
         self._left = BURST_BYTES
         self._since_ns = 0
 
     def spend(self, size_bytes: int) -> bool:
-        """Return whether so much more can be put now."""
+        """Return whether so much more may be put now, and count it if so."""
         self._left -= size_bytes + 128
         if self._left < 0:
             now_ns = perf_ns()
@@ -201,11 +201,11 @@ class Burst:
 
 
 class Declaration(Registration):
-    """Something that is declared in the session while that is open.
+    """A registration that is declared in the session while that is open.
 
     Args:
-        state: The connection.
-        token: Its liveliness token; without one others do not see it.
+        state: The state of the session.
+        token: Its liveliness token; an empty one hides it from other contexts.
     """
 
     def __init__(self, state: SessionState, token: str) -> None:
@@ -219,7 +219,7 @@ class Declaration(Registration):
         return id(self)
 
     def declare(self, session: zenoh.Session) -> None:
-        """Announce it: first what it does, then, to everybody, that it is there."""
+        """Declare its data, and then the token, which makes it visible to all other contexts."""
         with translated(self.token):
             self.declare_data(session)
             self._declared = True
@@ -227,7 +227,7 @@ class Declaration(Registration):
                 self._declared_token = session.liveliness().declare_token(self.token)
 
     def undeclare(self) -> None:
-        """Withdraw it, in the other order."""
+        """Undeclare it, in the opposite order."""
         token, self._declared_token = self._declared_token, None
         declared, self._declared = self._declared, False
         with translated(self.token):
@@ -237,17 +237,17 @@ class Declaration(Registration):
                 self.undeclare_data()
 
     def linger(self) -> None:
-        """Note that this is about to end, for those who still have something to send."""
+        """Begin to linger, if messages are not acknowledged: the context is about to close."""
 
     @abstractmethod
     def declare_data(self, session: zenoh.Session) -> None:
-        """Declare what it does."""
+        """Declare its publisher, subscriber, queryable or querier, if it has one."""
 
     @abstractmethod
     def undeclare_data(self) -> None:
-        """Withdraw what it does."""
+        """Undeclare what `declare_data` has declared."""
 
     def close(self) -> None:
-        """Withdraw it for good; twice is the same as once."""
+        """Undeclare it for good. Closing it again has no effect."""
         self.state.remove(self)
         self.undeclare()

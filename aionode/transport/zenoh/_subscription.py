@@ -13,51 +13,57 @@ from aionode.clock import perf_ns
 from aionode.errors import DecodeError
 from aionode.graph import EndpointKind
 from aionode.qos import HistoryPolicy, depth_of
-from aionode.transport._reliability import NEVER, OVERHEAD_BYTES, WriterProxy
+from aionode.transport._reliability import NEVER, OVERHEAD_BYTES
+from aionode.transport._writer_proxy import WriterProxy
 from aionode.transport.base import SampleInfo
 from aionode.transport.zenoh._delivery import has_buffers, is_reliable, is_transient
 from aionode.transport.zenoh._session_state import Declaration
 from aionode.wire import _acknack as acknack
-from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
-from aionode.wire._acknack import Kind
+from aionode.wire._acknack import SubmessageKind
+from aionode.wire._attachment import unpack_fields
 from aionode.wire._key_expression import buffer_key, data_key
 from aionode.wire._liveliness import CPU_BACKEND, endpoint_token
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.graph import EndpointInfo
+    from aionode.graph import EndpointInfo, Graph
     from aionode.transport.base import Reader
     from aionode.transport.zenoh._session_state import SessionState
     from aionode.wire._acknack import Submessage
 
-__all__ = ["NOBODY", "ZenohReader", "sample_info_of"]
+__all__ = ["UNKNOWN_GID", "ZenohReader", "sample_info_of"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
 BACKLOG = 10_000
-"""How many small messages wait for the loop at least, before the oldest are dropped."""
+"""At least so many small messages wait for the loop before the oldest are dropped."""
 
 KEEP_ALL_ARRIVING = 100_000
-"""How many messages for a KEEP_ALL subscription wait for the loop, if it hangs."""
+"""How many messages for a KEEP_ALL subscription wait for a loop that is stalled."""
 
 FULL_BYTES = 256 << 20
-"""How much waits for room in a KEEP_ALL subscription of what cannot be held back."""
+"""How much waits for room in a KEEP_ALL subscription from publishers without flow control."""
 
 SPAN = 1_000
-"""How many small messages a KEEP_LAST subscription waits for at least that were lost on the way."""
+"""At least so many small messages a KEEP_LAST subscription holds while earlier ones are missing."""
 
 REMEMBERED_WRITERS = 1_024
+"""How many publishers a subscription remembers the state of."""
 
-GONE_NS = 15_000_000_000
-"""After so long a publisher that is not there will not fill any gap."""
+GONE_TICKS = 300
+"""After so many ticks, 15 s, the messages of a publisher that is not in the graph will not come.
 
-NOBODY = bytes(16)
+Ticks, and no time: while this process is frozen or stalled, nothing that others announce is seen.
+"""
+
+UNKNOWN_GID = bytes(16)
+"""The gid of a message without a valid attachment."""
 
 
 class ZenohReader(Declaration):
-    """A subscription as the publishers of others see it."""
+    """A subscription to the publishers of other contexts."""
 
     def __init__(
         self, state: SessionState, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
@@ -66,7 +72,7 @@ class ZenohReader(Declaration):
         transient = is_transient(endpoint.qos)
         self._second_key = self._buffers and not transient
         backends = CPU_BACKEND if self._second_key else ""
-        # Without a hash it takes every definition of the type, which ROS has no token for.
+        # Without a hash it matches every definition of the type; ROS has no token for that.
         visible = bool(endpoint.type_hash)
         super().__init__(
             state, endpoint_token(state.domain_id, endpoint, backends) if visible else ""
@@ -86,24 +92,26 @@ class ZenohReader(Declaration):
         # A few hundred images waiting for a busy loop would take all memory; what is small may
         # wait for its turn in the subscription's own queue, where it is counted if dropped.
         limit = depth if self._buffers else max(depth, BACKLOG)
-        # Who acknowledges sends no more than a window ahead, and sends again what is dropped here.
+        # A publisher that gets acknowledgements sends at most a window ahead, and sends again what
+        # is dropped here.
         self._queue = state.queue(self._take, KEEP_ALL_ARRIVING if self._keep_all else limit)
         self._span = NEVER if self._keep_all else depth if self._buffers else max(depth, SPAN)
         self._proxies: dict[bytes, WriterProxy] = {}
-        # The last numbers of those who do not acknowledge, or have not begun to.
+        # The last sequence number of each publisher without a proxy.
         self._last: dict[bytes, int] = {}
-        # What a KEEP_ALL subscription has no room for yet.
+        # Messages for which a KEEP_ALL subscription has no room yet.
         self._full: deque[tuple[bytes, SampleInfo, WriterProxy | None]] = deque()
         self._full_bytes = 0
         self._waits_for_room = False
         self._refused = 0
         self._subscribers: list[zenoh.Subscriber[None] | ext.AdvancedSubscriber[None]] = []
-        if reliable and not transient and visible:
+        self._acknowledges = reliable and not transient and visible
+        if self._acknowledges:
             state.acknowledgements.readers[self.gid] = self
         state.add(self)
 
     def declare_data(self, session: zenoh.Session) -> None:
-        """Declare the subscriber; a transient local one is given the history."""
+        """Declare the subscriber; a transient local one gets the history."""
         put = self._queue.put
         if self._transient:
             reliable = is_reliable(self.endpoint.qos)
@@ -128,7 +136,7 @@ class ZenohReader(Declaration):
             )
 
     def undeclare_data(self) -> None:
-        """Withdraw the subscriber."""
+        """Undeclare the subscriber."""
         subscribers, self._subscribers = self._subscribers, []
         for subscriber in subscribers:
             subscriber.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
@@ -137,36 +145,56 @@ class ZenohReader(Declaration):
         self._proxies.clear()
 
     def close(self) -> None:
-        """Withdraw the subscription for good."""
+        """Undeclare the subscription for good."""
         self.state.acknowledgements.readers.pop(self.gid, None)
         super().close()
 
     def _take(self, sample: zenoh.Sample) -> None:
         extra = sample.attachment
-        sample_info = sample_info_of(extra)
-        if sample_info is None:
-            # ROS drops it; here the message counts, and who sent it stays unknown.
-            if extra is not None:
-                self.state.note_malformed(self._key, "an attachment")
-            sample_info = SampleInfo(NOBODY, 0, 0, True)
-        elif sample_info.gid in self.state.own_gids:
+        fields = None if extra is None else unpack_fields(extra.to_bytes())
+        sequence, source_ns, gid = fields or self._without_attachment(extra)
+        if self._transient and gid in self.state.own_gids:
             return  # a late subscription asks the publishers of its own context for history too
         payload = sample.payload.to_bytes()
-        gid = sample_info.gid
+        sample_info = SampleInfo(gid, sequence, source_ns, True)
         proxy = self._proxies.get(gid)
-        if proxy is not None:
-            if not self._keep_all and proxy.takes_at_once(sample_info.sequence, len(payload)):
-                self._hand_over(payload, sample_info)
-            else:
-                self._take_in_order(proxy, payload, sample_info)
-            return
-        self._last[gid] = sample_info.sequence
-        if len(self._last) > REMEMBERED_WRITERS:
-            del self._last[next(iter(self._last))]
-        if self._keep_all:
-            self._accept_or_wait(payload, sample_info, None)
+        if proxy is None:
+            if self._acknowledges:
+                self._note_last(gid, sequence)
+            if self._keep_all:
+                self._accept_or_wait(payload, sample_info, None)
+                return
+        elif sequence == proxy.expected and (not self._keep_all or self._has_room()):
+            proxy.note_in_order(len(payload))
         else:
+            self._take_in_order(proxy, payload, sample_info)
+            return
+        # As `_hand_over`, which would be one more call for each message.
+        if self._decode is None or self._raw:
             self._hand_over(payload, sample_info)
+            return
+        try:
+            msg = self._decode(payload)
+        except DecodeError as error:
+            self._reject(error)
+        else:
+            self._deliver(msg, sample_info, self._waker.inline_deadline_ns)
+
+    def _without_attachment(self, extra: zenoh.ZBytes | None) -> tuple[int, int, bytes]:
+        """Return the fields of a message that ROS drops; here it counts, from an unknown sender."""
+        if extra is not None:
+            self.state.note_malformed(self._key, "an attachment")
+        return 0, 0, UNKNOWN_GID
+
+    def _note_last(self, gid: bytes, sequence: int) -> None:
+        """Record the last message of a publisher without a proxy."""
+        last = self._last
+        if gid not in last and len(last) >= REMEMBERED_WRITERS:
+            del last[next(iter(last))]
+        last[gid] = sequence
+
+    def _has_room(self) -> bool:
+        return not self._full and self._reader.has_room()
 
     def _take_in_order(self, proxy: WriterProxy, payload: bytes, sample_info: SampleInfo) -> None:
         proxy.take(sample_info.sequence, (payload, sample_info), len(payload) + OVERHEAD_BYTES)
@@ -174,7 +202,7 @@ class ZenohReader(Declaration):
             self.state.acknowledgements.watch(self)
 
     def accept(self, item: tuple[bytes, SampleInfo], proxy: WriterProxy) -> bool:
-        """Take the next message of a writer; return whether it is used already."""
+        """Take the next message of a writer; return whether it is used, or else waits for room."""
         if self._keep_all:
             return self._accept_or_wait(*item, proxy)
         self._hand_over(*item)
@@ -183,12 +211,12 @@ class ZenohReader(Declaration):
     def _accept_or_wait(
         self, payload: bytes, sample_info: SampleInfo, proxy: WriterProxy | None
     ) -> bool:
-        """Give a message to a KEEP_ALL subscription as soon as it has room."""
-        if not self._full and self._reader.has_room():
+        """Deliver a message to a KEEP_ALL subscription as soon as it has room."""
+        if self._has_room():
             self._hand_over(payload, sample_info)
             return True
         if proxy is None and self._full_bytes >= FULL_BYTES:
-            self._refuse()  # who sent it cannot be held back
+            self._refuse()  # its publisher has no flow control
             return True
         self._full.append((payload, sample_info, proxy))
         self._full_bytes += len(payload) + OVERHEAD_BYTES
@@ -232,56 +260,64 @@ class ZenohReader(Declaration):
         try:
             msg = decode(payload)
         except DecodeError as error:
-            self.state.note_malformed(self._key, str(error))
-            self._reader.reject(error)
+            self._reject(error)
         else:
             self._deliver(msg, sample_info, self._waker.inline_deadline_ns)
 
-    # What writers say, and are told
+    def _reject(self, error: DecodeError) -> None:
+        self.state.note_malformed(self._key, str(error))
+        self._reader.reject(error)
 
-    def told(self, said: Submessage) -> None:
-        """Take what a writer says."""
-        proxy = self._proxies.get(said.writer)
-        if said.kind is Kind.HEARTBEAT:
+    # Submessages
+
+    def take_submessage(self, submessage: Submessage) -> None:
+        """Handle a HEARTBEAT, GAP or DATA of one of its writers."""
+        proxy = self._proxies.get(submessage.writer)
+        if submessage.kind is SubmessageKind.HEARTBEAT:
             if proxy is None:
-                participant = said.rest.decode(errors="replace")
-                if not participant.isalnum():  # it becomes part of a key
-                    self.state.note_malformed(self._key, "an acknowledgement")
+                proxy = self._add_proxy(submessage)
+                if proxy is None:
                     return
-                first = max(said.first, self._last.pop(said.writer, 0) + 1)
-                proxy = WriterProxy(said.writer, participant, first, self, perf_ns, self._span)
-                self._forget_writers()
-                self._proxies[said.writer] = proxy
-            # While some of its messages wait for their turn, nobody can tell what is missing.
-            proxy.heartbeat(said.first, said.last, ask=not len(self._queue))
-        elif proxy is not None:
-            if said.kind is Kind.GAP:
-                proxy.gap(said.first, said.last)
-            else:
-                sample_info = SampleInfo(said.writer, said.first, said.last, True)
-                self._take_in_order(proxy, said.rest, sample_info)
-                return
-        if proxy is not None and proxy.next <= proxy.last:
+            # While messages wait in the queue, it cannot be told which ones are missing.
+            proxy.heartbeat(submessage.first, submessage.last, ask=not len(self._queue))
+        elif proxy is None:
+            return
+        elif submessage.kind is SubmessageKind.GAP:
+            proxy.gap(submessage.first, submessage.last)
+        else:
+            sample_info = SampleInfo(submessage.writer, submessage.first, submessage.last, True)
+            self._take_in_order(proxy, submessage.rest, sample_info)
+            return
+        if proxy.next <= proxy.last:
             self.state.acknowledgements.watch(self)
 
-    def _forget_writers(self) -> None:
-        """Forget those that have been silent for longest, if there are many."""
-        if len(self._proxies) >= REMEMBERED_WRITERS:
+    def _add_proxy(self, heartbeat: Submessage) -> WriterProxy | None:
+        """Return a new proxy for the sender of a HEARTBEAT; None if that is malformed."""
+        participant = heartbeat.rest.decode(errors="replace")
+        if not participant.isalnum():  # it becomes part of a key
+            self.state.note_malformed(self._key, "an acknowledgement")
+            return None
+        if len(self._proxies) >= REMEMBERED_WRITERS:  # forget the one that was silent for longest
             del self._proxies[min(self._proxies, key=lambda gid: self._proxies[gid].heard_ns)]
+        gid = heartbeat.writer
+        first = max(heartbeat.first, self._last.pop(gid, 0) + 1)
+        proxy = WriterProxy(gid, participant, first, self, perf_ns, self._span)
+        self._proxies[gid] = proxy
+        return proxy
 
     def tick(self) -> bool:
-        """Ask again for what is missing; return whether to come again."""
+        """Ask again for what is missing; return whether to call again."""
         graph = self.state.graph
         again = False
         for proxy in list(self._proxies.values()):
             if proxy.next > proxy.last:
+                proxy.absent_ticks = 0
                 continue
-            if graph is not None and perf_ns() - proxy.heard_ns >= GONE_NS:
-                there = {
-                    one.gid
-                    for one in graph.endpoints(EndpointKind.PUBLISHER, name=self.endpoint.name)
-                }
-                if proxy.gid not in there:
+            if graph is None or self._is_in_graph(graph, proxy):
+                proxy.absent_ticks = 0
+            else:
+                proxy.absent_ticks += 1
+                if proxy.absent_ticks >= GONE_TICKS:
                     proxy.give_up()
                     continue
             again = True
@@ -289,17 +325,21 @@ class ZenohReader(Declaration):
                 proxy.remind()
         return again
 
+    def _is_in_graph(self, graph: Graph, proxy: WriterProxy) -> bool:
+        publishers = graph.endpoints(EndpointKind.PUBLISHER, name=self.endpoint.name)
+        return any(publisher.gid == proxy.gid for publisher in publishers)
+
     def acknack(self, proxy: WriterProxy, first: int, ranges: list[tuple[int, int]]) -> None:
-        """Tell a writer what is here and what is not."""
+        """Send a writer an ACKNACK."""
         data = acknack.pack(
-            Kind.ACKNACK, proxy.gid, self.gid, first, 0, acknack.pack_ranges(ranges)
+            SubmessageKind.ACKNACK, proxy.gid, self.gid, first, 0, acknack.pack_ranges(ranges)
         )
-        self.state.acknowledgements.say(proxy.participant, data)
+        self.state.acknowledgements.send(proxy.participant, data)
 
 
 def sample_info_of(extra: zenoh.ZBytes | None) -> SampleInfo | None:
-    """Return what an attachment says, or None when there is none in a known form."""
+    """Return the contents of an attachment; None without one in a known form."""
     if extra is None:
         return None
-    fields = attachment.unpack_fields(extra.to_bytes())
+    fields = unpack_fields(extra.to_bytes())
     return None if fields is None else SampleInfo(fields[2], fields[0], fields[1], True)

@@ -1,7 +1,7 @@
-"""Messages as bytes and back, in the encoding that ROS 2 nodes send each other (XCDR1).
+"""Encodes and decodes messages in the encoding of ROS 2 (XCDR1).
 
-The functions are generated when a type is first encoded or decoded: about a millisecond, once.
-What they cannot take in their stride is done, or refused with the reason, by slower code.
+The functions are generated when a type is first encoded or decoded, which takes about a
+millisecond. Slower code handles unusual values, and raises the errors.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ MessageT = TypeVar("MessageT", bound=Message)
 Encoded = TypeVar("Encoded")
 
 Data: TypeAlias = bytes | bytearray | memoryview
-"""What may hold an encoded message."""
+"""Types that can hold an encoded message."""
 
 
 def encode(msg: Message) -> bytes:
-    """Return a message as bytes: little endian, zeros as padding, nothing after the last field.
+    """Return a message encoded: little-endian, zeros as padding, nothing after the last field.
 
     Raises:
         MessageError: A value does not fit its field.
@@ -51,20 +51,21 @@ def encode(msg: Message) -> bytes:
 
 
 def decode(msg_type: type[MessageT], data: Data) -> MessageT:
-    """Return the message of this type in `data`; what follows it is not looked at.
+    """Return the message of this type in `data`; bytes after it are ignored.
 
     Arrays of numbers and sequences of bytes are read-only views of `data`: no copy is made, and
     `data` lives as long as they do. It must not change while they are in use.
 
     Raises:
-        DecodeError: `data` holds no such message: it is cut, corrupted, or of another type.
-        TypeError: `msg_type` is not a message class, or `data` not bytes-like.
+        DecodeError: `data` does not hold such a message: it is truncated, corrupt, or of another
+            type.
+        TypeError: `msg_type` is not a message class, or `data` is not bytes-like.
     """
     try:
         function = DECODERS[msg_type]
     except KeyError:
         function = decoder(msg_type)
-    return function(data)  # type: ignore[no-any-return] # of this type
+    return function(data)  # type: ignore[no-any-return] # a message of this type
 
 
 def encoder(cls: type[MessageT]) -> Callable[[MessageT], bytes]:
@@ -79,12 +80,12 @@ def encoder(cls: type[MessageT]) -> Callable[[MessageT], bytes]:
 
 
 def parts_encoder(cls: type[MessageT]) -> Callable[[MessageT], list[bytes | memoryview]]:
-    """Return the function that encodes messages of one class into pieces, not yet put together.
+    """Return the function that encodes messages of one class into a list of parts.
 
-    Put one after the other they are what `encode` returns. Large arrays and octets of the message
-    are read-only views of its own memory, of single bytes: no copy is made, and they show what the
-    message holds when they are read, not when it was encoded. Read them before the message may
-    change. It is worth it for classes of which `has_views` is true; all others have no such pieces.
+    Joined, the parts are what `encode` returns. Large arrays and byte sequences of the message are
+    read-only views of its own memory, as single bytes: no copy is made, and a view shows the
+    current content of the message, so use the parts before the message may change. This pays off
+    for classes for which `has_views` is true; other classes have no such views.
 
     Raises:
         TypeError: `cls` is not a message class.
@@ -113,8 +114,8 @@ DECODERS: dict[type[Message], Callable[[Any], Any]] = {}
 def new_encoder(
     cls: type[Message], finish: Callable[[Sequence[Any]], Encoded]
 ) -> Callable[[Any], Encoded]:
-    """Return the encoder of a class, newly made; `finish` as for `generate_encoder`."""
-    fields(cls)  # tells a service from a message
+    """Return a new encoder of a class; `finish` as for `generate_encoder`."""
+    fields(cls)  # raises TypeError for a service class
     take = snapshotter(cls)
 
     def encode_unusual(msg: Any) -> Encoded:
@@ -122,9 +123,9 @@ def new_encoder(
         try:
             return fast(taken, True)
         except struct.error as error:
-            raise MessageError(type_name(cls), f"too large to be sent ({error})") from None
+            raise MessageError(type_name(cls), f"too large to encode ({error})") from None
         except FALLBACK_ERRORS:
-            # Arrays with gaps between their elements, which a snapshot may share.
+            # Arrays that are not contiguous, which a snapshot may share with the message.
             return fast(copy.deepcopy(taken), True)
 
     fast = generate_encoder(cls, encode_unusual, finish)
@@ -132,8 +133,8 @@ def new_encoder(
 
 
 def new_decoder(cls: type[Message]) -> Callable[[Any], Any]:
-    """Return the decoder of a class, newly made."""
-    fields(cls)  # tells a service from a message
+    """Return a new decoder of a class."""
+    fields(cls)  # raises TypeError for a service class
 
     def decode_carefully(data: bytes) -> Any:
         return decode_slowly(cls, memoryview(data))
@@ -146,7 +147,7 @@ def new_decoder(cls: type[Message]) -> Callable[[Any], Any]:
 
 @cache
 def view_decoder(cls: Any) -> Callable[[memoryview], Any]:
-    """Return the decoder for what is not a bytes object."""
+    """Return the decoder of a class for data that is not a bytes object."""
 
     def decode_carefully(data: memoryview) -> Any:
         return decode_slowly(cls, data)
@@ -155,7 +156,7 @@ def view_decoder(cls: Any) -> Callable[[memoryview], Any]:
 
 
 def read_only(data: Any) -> memoryview:
-    """Return the memory of `data`, as single bytes that cannot be changed through it."""
+    """Return `data` as a read-only view of single bytes."""
     view = memoryview(data)
     if not view.nbytes or not view.c_contiguous:
         view = memoryview(bytes(view))

@@ -1,7 +1,7 @@
-"""Functions written at run time, one for each message type, and compiled once.
+"""Builds the source of functions that are generated once for each message type.
 
-Their text holds only numbers, names that this package made up, and names of fields that
-`aionode.message` has validated as identifiers. Values of any other kind go in by name.
+The source consists only of numbers, names chosen by this package, and field names that
+`aionode.message` has validated as identifiers. All other values are passed in by name.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ __all__ = ["CodeBuilder", "NeedsFallback"]
 POSITION = re.compile(r"\bpos\b")
 
 
-class NeedsFallback(ValueError):  # noqa: N818 - a signal inside this package, never seen by a caller
-    """A value is not of the usual form: the plain codec takes it, or says what is wrong."""
+class NeedsFallback(ValueError):  # noqa: N818 - internal control flow, never seen by a caller
+    """The generated code does not handle a value; the fallback handles it or raises the error."""
 
 
 class CodeBuilder:
-    """The text of one function, and the values that it uses by name."""
+    """The source of one function, and the values that it refers to by name."""
 
     def __init__(self) -> None:
         self.namespace: dict[str, Any] = {"NeedsFallback": NeedsFallback}
@@ -31,11 +31,14 @@ class CodeBuilder:
         self._indent = 1
         self._count = 0
         self._kept: list[str] = []
+        """Names of the variables that keep their value between calls."""
         self._loops = 0
+        """Number of loops around the next line."""
         self._positions: set[int] = set()
+        """Indices of the lines that only set `pos`."""
 
     def constant(self, hint: str, value: object) -> str:
-        """Return the name under which the function finds `value`."""
+        """Return the name by which the function refers to `value`."""
         for name, known in self.namespace.items():
             if known is value and name not in self._kept:
                 return name
@@ -44,7 +47,7 @@ class CodeBuilder:
         return name
 
     def variable(self, hint: str, value: object) -> str:
-        """Return the name of a variable that the function keeps from call to call."""
+        """Return the name of a variable that keeps its value between calls."""
         name = f"{hint}{len(self.namespace)}"
         self.namespace[name] = value
         self._kept.append(name)
@@ -60,18 +63,18 @@ class CodeBuilder:
         self._lines.append("    " * self._indent + text)
 
     def position(self, text: str) -> None:
-        """Add a statement that sets `pos`; it is left out if nothing reads `pos` after it."""
+        """Add a statement that sets `pos`; it is dropped if `pos` is not read afterwards."""
         if not self._loops:
             self._positions.add(len(self._lines))
         self.line(text)
 
     def require(self, condition: str) -> None:
-        """Leave the function where `condition` does not hold."""
+        """Raise NeedsFallback unless `condition` holds."""
         self.line(f"if not ({condition}): raise NeedsFallback")
 
     @contextmanager
     def block(self, head: str) -> Iterator[None]:
-        """Indent what follows under `head`."""
+        """Indent the lines added inside the `with` block under `head`."""
         self.line(head)
         self._indent += 1
         yield
@@ -79,14 +82,14 @@ class CodeBuilder:
 
     @contextmanager
     def loop(self, head: str) -> Iterator[None]:
-        """Indent what follows under `head`; what it sets may be read when it comes round."""
+        """Like `block`, for loops: a later iteration may read what an earlier one sets."""
         self._loops += 1
         with self.block(head):
             yield
         self._loops -= 1
 
     def text(self, head: str) -> str:
-        """Return the whole function."""
+        """Return the source of the whole function."""
         kept: list[str] = []
         is_read = False
         for number, line in reversed(list(enumerate(self._lines))):
@@ -98,10 +101,10 @@ class CodeBuilder:
         return "\n".join((head, *kept, ""))
 
     def function(self, head: str, subject: str) -> Callable[..., Any]:
-        """Compile the function; `subject` shows in tracebacks."""
+        """Return the compiled function; `subject` is shown in tracebacks."""
         name = head.removeprefix("def ").partition("(")[0]
         code = compile(self.text(head), f"<{name} {subject}>", "exec")
-        # The text comes from validated field names and numbers only: see the module's docstring.
+        # The source holds validated field names and numbers only: see the module's docstring.
         exec(code, self.namespace)  # noqa: S102
         function: Callable[..., Any] = self.namespace.pop(name)
         return function

@@ -1,7 +1,7 @@
-"""A closer look at values that are not of Python's or numpy's own classes.
+"""Checks of values that are not of the usual Python and numpy classes.
 
-A generated encoder calls these where a value is not what it mostly is. They take what can be
-packed as it stands; a `NeedsFallback` makes the encoder leave the message to a snapshot of it.
+A generated encoder calls these functions for unusual values. They accept what can be packed as it
+is, and raise `NeedsFallback` otherwise: the encoder then encodes a snapshot of the message.
 """
 
 from __future__ import annotations
@@ -15,15 +15,15 @@ from aionode.wire.cdr._codegen import NeedsFallback
 __all__ = ["coerce_array", "octets", "real_numbers", "whole_numbers"]
 
 CLASSES: dict[str, set[type]] = {"b": {bool}, "i": {int}, "u": {int}, "f": {float, int}}
-"""Classes of the numbers in a list that need no closer look, by kind of dtype."""
+"""Classes of numbers that `struct` converts correctly, by kind of dtype."""
 
 
 def octets(value: object) -> Any:
-    """Return `value` if its bytes are what is sent."""
+    """Return `value`, or a view of it, if its memory can be sent as it is."""
     if isinstance(value, bytes | bytearray):
         return value
     try:
-        view = memoryview(value)  # type: ignore[arg-type] # asked in this way: an ndarray has one
+        view = memoryview(value)  # type: ignore[arg-type] # raises TypeError if it has no buffer
     except (TypeError, BufferError):
         raise NeedsFallback from None
     if view.format == "B" and view.ndim == 1 and view.contiguous:
@@ -32,15 +32,18 @@ def octets(value: object) -> Any:
 
 
 def whole_numbers(*values: object) -> None:
-    """Raise where a value is a bool: struct takes it, and whatever else is no int it refuses."""
+    """Raise NeedsFallback for a bool: `struct` accepts it, but refuses all other non-integers."""
     if any(isinstance(value, bool) for value in values):
         raise NeedsFallback
 
 
 def real_numbers(*values: object) -> None:
-    """Raise where a value only behaves like a number, as a bool, a Decimal or an array do."""
+    """Raise NeedsFallback for what `struct` accepts though it is not a real number.
+
+    A bool, a Decimal or an array converts to a float too.
+    """
     for value in values:
-        # The first question is the quick one; numpy's float64 is a float.
+        # The first test is the fast one; numpy's float64 is a float.
         if not isinstance(value, float) and (
             isinstance(value, bool) or not isinstance(value, int | Real)
         ):
@@ -48,12 +51,12 @@ def real_numbers(*values: object) -> None:
 
 
 def coerce_array(value: object, dtype: Any, code: str) -> Any:
-    """Return a list of Python's own numbers, or an array of a subclass of ndarray, as an ndarray.
+    """Return a list of Python numbers, or an array of a subclass of ndarray, as an ndarray.
 
     Args:
-        value: What stands where an array is expected.
-        dtype: The array's.
-        code: The letter of its elements for `struct`.
+        value: The value of an array field.
+        dtype: The dtype of the field.
+        code: The `struct` format character of its elements.
     """
     import numpy as np
 
@@ -63,5 +66,5 @@ def coerce_array(value: object, dtype: Any, code: str) -> Any:
         return value.view(np.ndarray)
     if not isinstance(value, list | tuple) or not set(map(type, value)) <= CLASSES[dtype.kind]:
         raise NeedsFallback
-    # struct knows the ranges.
+    # struct checks the ranges.
     return np.frombuffer(struct.pack(f"<{len(value)}{code}", *value), dtype)

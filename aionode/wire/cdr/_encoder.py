@@ -1,14 +1,10 @@
-"""The generator of encoders: one function for each message type.
+"""Generates one encoder function for each message type.
 
-The part of an encoder's generator that knows where what it writes will be.
-
-Writes, for one message type, the function that encodes its messages.
-
-Single nested messages are unfolded, so that runs of values of fixed size, across nesting, are
-packed by one `struct.Struct`. Where a run starts after something of variable length, there is one
-Struct for each of the eight places, differing in alignment, that `pos` can have. The function takes
-messages in their usual form (ndarrays of the field's dtype, lists of str); all others it leaves to
-a slower one, which has the verdict too.
+Nested messages are inlined, so runs of values of fixed size are packed by one `struct.Struct` even
+across nesting levels. A run after a value of variable size has one Struct for each of the eight
+start positions that differ in alignment. The generated function handles messages in their usual
+form (ndarrays of the field's dtype, lists of str) and leaves all others to a slower fallback, which
+also raises the errors.
 """
 
 from __future__ import annotations
@@ -20,9 +16,8 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 from aionode.message import fields, type_name
 from aionode.wire.cdr._codegen import CodeBuilder, NeedsFallback
 from aionode.wire.cdr._coerce import coerce_array, octets, real_numbers, whole_numbers
+from aionode.wire.cdr._constants import COUNT_SIZE, HEADER
 from aionode.wire.cdr._layout import (
-    COUNT_SIZE,
-    HEADER,
     PHASES,
     PRIMITIVES,
     TEXT,
@@ -43,160 +38,14 @@ if TYPE_CHECKING:
 
     from aionode.message import FieldType
 
-__all__ = ["FALLBACK_ERRORS", "JOIN", "Writing", "generate_encoder", "views"]
-
-
-class Writing:
-    """Collects values into runs, and runs and what lies between them into the parts of a message.
-
-    What is known of `pos` at the place reached: its value as `_offset`, or None where that depends
-    on the message; in any case that it is `_residue` modulo `_modulus`.
-    """
-
-    def __init__(self) -> None:
-        self._source = CodeBuilder()
-        self._run: list[Item] = []
-        self._text_size = ""
-        self._parts: list[str] = []
-        self._listed = False
-        self._offset: int | None = 0
-        self._modulus, self._residue = PHASES, 0
-
-    def _unknown(self) -> None:
-        """Note that nothing is known of `pos`."""
-        self._offset = None
-        self._modulus, self._residue = 1, 0
-
-    def _forget_offset(self) -> None:
-        """Leave what is known of `pos` to the variable."""
-        if self._offset is not None:
-            self._source.line(f"pos = {self._offset}")
-            self._offset = None
-
-    def _count(self, kind: FieldType, count: str) -> None:
-        """Write how many elements follow, or check it where their number is fixed."""
-        if kind.container == "array":
-            self._source.require(f"{count} == {kind.size}")
-            self._run.append(Item("", first_alignment(kind)))
-            return
-        if kind.container == "bounded":
-            self._source.require(f"{count} <= {kind.size}")
-        self._run.append(Item("I", COUNT_SIZE, count))
-
-    def _align_elements(self, alignment: int, count: str) -> None:
-        """Write the gap between a count and elements larger than it; no elements have no gap."""
-        self._flush()
-        if alignment <= COUNT_SIZE:
-            return
-        source = self._source
-        gap = source.constant("gap", bytes(COUNT_SIZE))
-        if self._modulus == PHASES:
-            if padding(self._residue, alignment) == 0:
-                return
-            condition = count
-        else:
-            condition = f"{count} and not pos & {COUNT_SIZE}"
-        pad = source.local("pad")
-        source.line(f"{pad} = {gap} if {condition} else b''")
-        self._variable(pad, f"len({pad})", COUNT_SIZE)
-
-    def _variable(self, part: str, size: str, alignment: int) -> None:
-        """Write a part whose size is only known from the message."""
-        self._flush()
-        self._parts.append(part)
-        self._move(size, alignment)
-
-    def _move(self, size: str, alignment: int) -> None:
-        """Set `pos` after something that is `size` long, always a multiple of `alignment`."""
-        if self._offset is None:
-            self._source.position(f"pos += {size}")
-        else:
-            self._source.position(f"pos = {self._offset} + {size}")
-            self._offset = None
-        # It started aligned, as far as that is known.
-        self._modulus = min(alignment, self._modulus)
-        self._residue = len(HEADER) % self._modulus
-
-    def _flush(self) -> None:
-        """Pack the run collected so far."""
-        if not self._run:
-            return
-        run, self._run = self._run, []
-        values = ", ".join(item.value for item in run if item.value)
-        if any(item.code == TEXT for item in run):
-            self._pack_text(run, values)
-            return
-        structs = phase_structs(run, range(self._residue, PHASES, self._modulus))
-        one = structs[self._residue]
-        if len({each.format for each in structs.values()}) == 1:
-            if one.size:
-                self._parts.append(self._packing(one, values))
-            if self._offset is not None:
-                self._offset += one.size
-            else:
-                self._source.position(f"pos += {one.size}")
-        else:
-            self._pack_by_phase(structs, values)
-        self._ends({phase + each.size for phase, each in structs.items()})
-
-    def _ends(self, places: set[int]) -> None:
-        """Note where a run may have ended."""
-        self._modulus = modulus_of(places)
-        self._residue = places.pop() % self._modulus
-
-    def _packing(self, packed: struct.Struct, values: str) -> str:
-        """Return the expression of a run that is the same wherever it starts."""
-        if not values:
-            return self._source.constant("zeros", packed.pack())
-        return f"{self._source.constant('pack', packed.pack)}({values})"
-
-    def _pack_by_phase(self, structs: dict[int, struct.Struct], values: str) -> None:
-        """Write a run whose padding depends on where it starts."""
-        source = self._source
-        table = [structs.get(phase, struct.Struct("")) for phase in range(PHASES)]
-        steps = source.constant("sizes", tuple(each.size for each in table))
-        part, phase = source.local("run"), source.local("phase")
-        source.line(f"{phase} = pos & {PHASES - 1}")
-        if values:
-            packs = source.constant("packs", tuple(each.pack for each in table))
-            source.line(f"{part} = {packs}[{phase}]({values})")
-        else:
-            zeros = source.constant("zeros", tuple(bytes(each.size) for each in table))
-            source.line(f"{part} = {zeros}[{phase}]")
-        self._parts.append(part)
-        source.position(f"pos += {steps}[{phase}]")
-
-    def _pack_text(self, run: list[Item], values: str) -> None:
-        """Write a run with a string in it."""
-        source = self._source
-        assert self._offset is not None  # noqa: S101 - else the string is a part of its own
-        packing = TextPacking(run, self._offset)
-        known = source.constant("known", packing.known)
-        more = source.constant("more", packing)
-        pack, part = source.local("pack"), source.local("run")
-        source.line(f"try: {pack}, pos = {known}[{self._text_size}]")
-        source.line(f"except KeyError: {pack}, pos = {more}({self._text_size})")
-        source.line(f"{part} = {pack}({values})")
-        self._parts.append(part)
-        self._ends({packing(size)[1] for size in range(PHASES)})
-        self._offset = None
-
-    def _spill(self) -> None:
-        """Move the parts named so far into the list `out`, before a loop adds to it."""
-        if not self._listed:
-            self._source.line(f"out = [{', '.join(self._parts)}]")
-            self._listed = True
-        elif self._parts:
-            self._source.line(f"out += ({', '.join(self._parts)},)")
-        self._parts.clear()
-
+__all__ = ["FALLBACK_ERRORS", "JOIN", "generate_encoder", "views"]
 
 Encoded = TypeVar("Encoded")
 
 JOIN: Final = b"".join
 
 LARGE: Final = 1 << 12
-"""From so many elements on a part stands for itself; what is smaller costs less when joined."""
+"""Parts of at least this many elements stay separate; smaller ones are cheaper to join."""
 
 FALLBACK_ERRORS = (
     NeedsFallback,
@@ -207,7 +56,7 @@ FALLBACK_ERRORS = (
     TypeError,
     ValueError,
 )
-"""What the generated function meets when a message is not of the usual form."""
+"""Raised by the generated function if a message is not in the usual form."""
 
 
 def generate_encoder(
@@ -219,16 +68,16 @@ def generate_encoder(
 
     Args:
         cls: A message class.
-        fallback: Encodes a message that is not of the usual form, or raises its error. It may call
-            the function again with True after the message, and then gets what went wrong.
-        finish: Makes the result of the parts, which are bytes and the message's own arrays: `JOIN`
-            or `views`.
+        fallback: Encodes a message that is not in the usual form, or raises the error. It may call
+            the function again with True as second argument, which then raises what went wrong.
+        finish: Makes the result from the parts, which are bytes and the message's own arrays:
+            `JOIN` or `views`.
     """
-    return Encoding(cls).whole(fallback, finish)
+    return EncoderGenerator(cls).whole(fallback, finish)
 
 
 def views(parts: Sequence[Any]) -> list[bytes | memoryview]:
-    """Return `parts` as bytes and as read-only views of their single bytes, small ones joined."""
+    """Return `parts` with small ones joined to bytes, large ones as read-only byte views."""
     found: list[bytes | memoryview] = []
     begin = 0
     for place in [number for number, part in enumerate(parts) if len(part) >= LARGE]:
@@ -244,23 +93,41 @@ def views(parts: Sequence[Any]) -> list[bytes | memoryview]:
 
 @cache
 def element_encoder(cls: Any) -> Callable[[list[bytes], int, Any], int]:
-    """Return the function that appends one message to a list of parts, and gives the new `pos`."""
-    return Encoding(cls).element()
+    """Return the function that encodes a nested message: it appends parts and returns `pos`."""
+    return EncoderGenerator(cls).element()
 
 
-class Encoding(Writing):
-    """One encoder while it is being written: what a message consists of."""
+class EncoderGenerator:
+    """Generates the encoder of one message type.
+
+    Adjacent values of fixed size are collected into a run, and each run is packed in one step; the
+    runs, and the values of variable size between them, are the parts of the encoded message.
+    `_offset` is the value of the variable `pos` after the parts so far, or None if that depends on
+    the message. In both cases that position is `_residue` modulo `_modulus`.
+    """
 
     def __init__(self, cls: Any) -> None:
-        super().__init__()
         self._cls = cls
+        self._source = CodeBuilder()
+        self._run: list[Item] = []
+        """The current run."""
+        self._text_size = ""
+        """Expression of the size of the string in the current run, if it contains one."""
+        self._parts: list[str] = []
+        """Expressions of the parts that are not in the list `out` yet."""
+        self._listed = False
+        """Whether the generated function has a list `out` of parts."""
         self._ints: list[str] = []
+        """Variables of integers whose class is not checked yet."""
         self._floats: list[str] = []
+        """Variables of floats whose class is not checked yet."""
+        self._offset: int | None = 0
+        self._modulus, self._residue = PHASES, 0
 
     def whole(
         self, fallback: Callable[[Any], Encoded], finish: Callable[[Sequence[Any]], Encoded]
     ) -> Callable[..., Encoded]:
-        """Compile the function that encodes a message; only `fallback` passes `again`."""
+        """Return the function that encodes a whole message; only `fallback` passes `again`."""
         source = self._source
         fallback_name = source.constant("plain", fallback)
         misfits = source.constant("misfits", FALLBACK_ERRORS)
@@ -282,7 +149,7 @@ class Encoding(Writing):
         return source.function("def encode(msg, again=False):", type_name(self._cls))
 
     def element(self) -> Callable[[list[bytes], int, Any], int]:
-        """Compile the function that writes one message after others."""
+        """Return the function that appends an encoded message to a list of parts."""
         self._listed = True
         self._unknown()
         self._message(self._cls, "msg", after=1)
@@ -292,7 +159,7 @@ class Encoding(Writing):
         return self._source.function("def write(out, pos, msg):", type_name(self._cls))
 
     def _message(self, cls: Any, owner: str, after: int) -> None:
-        """Write all fields; what follows them is aligned to `after`."""
+        """Encode all fields; the next value after them is aligned to `after`."""
         self._source.require(f"{owner}.__class__ is {self._source.constant('T', cls)}")
         described = fields(cls)
         if not described:
@@ -342,8 +209,7 @@ class Encoding(Writing):
         source = self._source
         local = source.local(name)
         source.line(f"{local} = {value}")
-        # What struct would take, though it does not fit: the truth of anything, and what has a
-        # number's methods. Ranges it knows.
+        # struct checks ranges, but accepts any object as a bool and whatever converts to a number.
         if kind == "bool":
             source.require(f"{local} is True or {local} is False")
         elif kind.startswith("float"):
@@ -354,7 +220,7 @@ class Encoding(Writing):
         self._run.append(Item(primitive.code, primitive.size, local))
 
     def _check_scalars(self) -> None:
-        """Write one statement for all numbers so far: most are of Python's own classes."""
+        """Check the classes of all numbers so far in one statement."""
         for name, look in (("int", whole_numbers), ("float", real_numbers)):
             values = self._ints if name == "int" else self._floats
             if values:
@@ -384,7 +250,7 @@ class Encoding(Writing):
                 self._text_size = size
             else:
                 self._variable(local, size, 1)
-            # The NUL that ends a string opens the next run.
+            # The NUL at the end of the string belongs to the next run.
             self._run.append(Item("x", 1))
 
     def _strings(self, kind: FieldType, local: str, after: int) -> None:
@@ -462,8 +328,138 @@ class Encoding(Writing):
                 self._element(cls, element)
 
     def _element(self, cls: Any, local: str) -> None:
-        """Write one message by the function of its class."""
+        """Encode a nested message by the function of its class."""
         source = self._source
         write = source.constant("write", element_encoder(cls))
         source.line(f"pos = {write}(out, pos, {local})")
         self._unknown()
+
+    # Runs and positions
+
+    def _unknown(self) -> None:
+        """Record that nothing is known about `pos`."""
+        self._offset = None
+        self._modulus, self._residue = 1, 0
+
+    def _forget_offset(self) -> None:
+        """Store the known offset in the variable `pos`."""
+        if self._offset is not None:
+            self._source.line(f"pos = {self._offset}")
+            self._offset = None
+
+    def _count(self, kind: FieldType, count: str) -> None:
+        """Add the number of elements to the run, or check it for arrays of fixed size."""
+        if kind.container == "array":
+            self._source.require(f"{count} == {kind.size}")
+            self._run.append(Item("", first_alignment(kind)))
+            return
+        if kind.container == "bounded":
+            self._source.require(f"{count} <= {kind.size}")
+        self._run.append(Item("I", COUNT_SIZE, count))
+
+    def _align_elements(self, alignment: int, count: str) -> None:
+        """Add the padding between a count and larger elements; an empty sequence has none."""
+        self._flush()
+        if alignment <= COUNT_SIZE:
+            return
+        source = self._source
+        gap = source.constant("gap", bytes(COUNT_SIZE))
+        if self._modulus == PHASES:
+            if padding(self._residue, alignment) == 0:
+                return
+            condition = count
+        else:
+            condition = f"{count} and not pos & {COUNT_SIZE}"
+        pad = source.local("pad")
+        source.line(f"{pad} = {gap} if {condition} else b''")
+        self._variable(pad, f"len({pad})", COUNT_SIZE)
+
+    def _variable(self, part: str, size: str, alignment: int) -> None:
+        """Add a part whose size depends on the message."""
+        self._flush()
+        self._parts.append(part)
+        self._move(size, alignment)
+
+    def _move(self, size: str, alignment: int) -> None:
+        """Move `pos` by `size` bytes, which is always a multiple of `alignment`."""
+        if self._offset is None:
+            self._source.position(f"pos += {size}")
+        else:
+            self._source.position(f"pos = {self._offset} + {size}")
+            self._offset = None
+        # The value started aligned, as far as that is known.
+        self._modulus = min(alignment, self._modulus)
+        self._residue = len(HEADER) % self._modulus
+
+    def _flush(self) -> None:
+        """Pack the current run and begin a new one."""
+        if not self._run:
+            return
+        run, self._run = self._run, []
+        values = ", ".join(item.value for item in run if item.value)
+        if any(item.code == TEXT for item in run):
+            self._pack_text(run, values)
+            return
+        structs = phase_structs(run, range(self._residue, PHASES, self._modulus))
+        one = structs[self._residue]
+        if len({each.format for each in structs.values()}) == 1:
+            if one.size:
+                self._parts.append(self._packing(one, values))
+            if self._offset is not None:
+                self._offset += one.size
+            else:
+                self._source.position(f"pos += {one.size}")
+        else:
+            self._pack_by_phase(structs, values)
+        self._ends({phase + each.size for phase, each in structs.items()})
+
+    def _ends(self, places: set[int]) -> None:
+        """Record the offsets, modulo `PHASES`, where a run may have ended."""
+        self._modulus = modulus_of(places)
+        self._residue = places.pop() % self._modulus
+
+    def _packing(self, packed: struct.Struct, values: str) -> str:
+        """Return the expression of a run whose padding does not depend on its start."""
+        if not values:
+            return self._source.constant("zeros", packed.pack())
+        return f"{self._source.constant('pack', packed.pack)}({values})"
+
+    def _pack_by_phase(self, structs: dict[int, struct.Struct], values: str) -> None:
+        """Pack a run whose padding depends on its start."""
+        source = self._source
+        table = [structs.get(phase, struct.Struct("")) for phase in range(PHASES)]
+        steps = source.constant("sizes", tuple(each.size for each in table))
+        part, phase = source.local("run"), source.local("phase")
+        source.line(f"{phase} = pos & {PHASES - 1}")
+        if values:
+            packs = source.constant("packs", tuple(each.pack for each in table))
+            source.line(f"{part} = {packs}[{phase}]({values})")
+        else:
+            zeros = source.constant("zeros", tuple(bytes(each.size) for each in table))
+            source.line(f"{part} = {zeros}[{phase}]")
+        self._parts.append(part)
+        source.position(f"pos += {steps}[{phase}]")
+
+    def _pack_text(self, run: list[Item], values: str) -> None:
+        """Pack a run that contains a string."""
+        source = self._source
+        assert self._offset is not None  # noqa: S101 - otherwise the string is a separate part
+        packing = TextPacking(run, self._offset)
+        known = source.constant("known", packing.known)
+        more = source.constant("more", packing)
+        pack, part = source.local("pack"), source.local("run")
+        source.line(f"try: {pack}, pos = {known}[{self._text_size}]")
+        source.line(f"except KeyError: {pack}, pos = {more}({self._text_size})")
+        source.line(f"{part} = {pack}({values})")
+        self._parts.append(part)
+        self._ends({packing(size)[1] for size in range(PHASES)})
+        self._offset = None
+
+    def _spill(self) -> None:
+        """Move the parts so far into the list `out`, before a loop appends to it."""
+        if not self._listed:
+            self._source.line(f"out = [{', '.join(self._parts)}]")
+            self._listed = True
+        elif self._parts:
+            self._source.line(f"out += ({', '.join(self._parts)},)")
+        self._parts.clear()

@@ -1,8 +1,8 @@
-"""Decodes any message field by field: slower than the generated functions, and more patient.
+"""Decodes any message field by field: slower than the generated functions, but more lenient.
 
-It reads both byte orders and what systems write that are less strict than ROS, and for data that
-nobody can read it knows the field and the offset. No length is believed before it is compared with
-the bytes that are left, so what is made is never much larger than the data.
+It accepts both byte orders and the output of writers that are less strict than ROS, and its errors
+name the field and the offset. Lengths are checked against the remaining bytes before anything is
+allocated, so a corrupt length cannot make the result much larger than the data.
 """
 
 from __future__ import annotations
@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from aionode.errors import DecodeError
 from aionode.message import fields, type_name
-from aionode.wire.cdr._layout import COUNT_SIZE, HEADER, PRIMITIVES, minimum_size, padding
+from aionode.wire.cdr._constants import COUNT_SIZE, HEADER
+from aionode.wire.cdr._layout import PRIMITIVES, minimum_size, padding
 from aionode.wire.cdr._strings import wide_string
 
 if TYPE_CHECKING:
@@ -24,21 +25,20 @@ if TYPE_CHECKING:
 __all__ = ["decode_slowly"]
 
 ORDERS = {b"\x00\x00": ">", b"\x00\x01": "<"}
-"""Byte orders by what a message begins with; later encodings, which ROS 2 does not use, begin
-otherwise."""
+"""Byte order by the first two bytes; later encodings, which ROS 2 does not use, have others."""
 
 
 def decode_slowly(cls: type[Message], data: memoryview) -> Message:
     """Return the message in `data`.
 
     Raises:
-        DecodeError: The data holds no message of this class.
+        DecodeError: The data does not hold a message of this class.
     """
     return FallbackDecoder(cls, data).whole()
 
 
 class FallbackDecoder:
-    """One message while it is being read."""
+    """Decodes one message."""
 
     def __init__(self, cls: type[Message], data: memoryview) -> None:
         self._cls = cls
@@ -48,18 +48,18 @@ class FallbackDecoder:
         self._order = "<"
 
     def whole(self) -> Message:
-        """Read the header, and the message after it."""
-        start = bytes(self._take(len(HEADER), "the header of the encapsulation")[:2])
+        """Decode the header and the message after it."""
+        start = bytes(self._take(len(HEADER), "the encapsulation header")[:2])
         if start not in ORDERS:
             self._pos = 0
-            self._fail(f"begins with {start.hex(' ')}, needs 00 01 (CDR, little endian) or 00 00")
+            self._fail(f"starts with {start.hex(' ')}, needs 00 01 (CDR, little endian) or 00 00")
         self._order = ORDERS[start]
         return self._message(self._cls)
 
     def _message(self, cls: type[Message]) -> Message:
         described = fields(cls)
         if not described:
-            self._take(1, "the one byte of a message without fields")
+            self._take(1, "the single byte of a message without fields")
         values = {}
         for field in described:
             with self._inside(f".{field.name}"):
@@ -74,7 +74,7 @@ class FallbackDecoder:
             self._fail(f"{count} elements, at most {kind.size} fit")
         if kind.form == "bytes":
             found = self._take(count, f"{count} elements")
-            # As the generated functions give them: few bytes in place, many as a view.
+            # As in the generated functions: arrays are copied, sequences are views.
             return bytes(found) if kind.container == "array" else found
         if kind.form == "ndarray":
             return self._array(kind, count)
@@ -109,7 +109,7 @@ class FallbackDecoder:
             return found.decode()
         except UnicodeDecodeError as error:
             self._pos = start + error.start
-            self._fail(f"no UTF-8 ({error.reason})")
+            self._fail(f"invalid UTF-8 ({error.reason})")
 
     def _wide_text(self) -> str:
         count = self._count("characters")
@@ -119,7 +119,7 @@ class FallbackDecoder:
             return wide_string(found, self._order)
         except UnicodeDecodeError as error:
             self._pos = start
-            self._fail(f"no characters of UTF-16 or UTF-32 ({error.reason})")
+            self._fail(f"invalid UTF-16 or UTF-32 ({error.reason})")
 
     def _array(self, kind: FieldType, count: int) -> Any:
         import numpy as np
@@ -132,7 +132,7 @@ class FallbackDecoder:
             array = np.frombuffer(found, np.uint8) != 0
         else:
             array = np.frombuffer(found, f"{self._order}{primitive.dtype}")
-            # Readers get the machine's own byte order.
+            # Subscribers get arrays in the machine's byte order.
             array = array.astype(array.dtype.newbyteorder("="), copy=False)
         array.flags.writeable = False
         return array
@@ -158,7 +158,7 @@ class FallbackDecoder:
 
     @contextmanager
     def _inside(self, step: str) -> Iterator[None]:
-        """Name what is being read."""
+        """Add `step` to the path in error texts."""
         before = self._path
         self._path += step
         yield

@@ -1,12 +1,8 @@
-"""Sizes, alignments and runs of packed values of XCDR1.
+"""Sizes and alignments of XCDR1, the encoding of ROS 2, and runs of values packed in one step.
 
-Sizes and alignments of XCDR1, the form in which ROS 2 writes messages.
-
-A value is aligned to its own size, counted from the end of the four bytes that open every message.
+A value is aligned to its own size, counted from the end of the four-byte header of each message.
 Only values are aligned, not structures: where a structure starts depends on its first field alone.
-Offsets in this package count those four bytes too, so they are places in the data as it is sent.
-
-Runs of values of fixed size, packed in one step wherever they start.
+Offsets in this package include the header, so they are positions in the data as it is sent.
 """
 
 from __future__ import annotations
@@ -18,13 +14,12 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from aionode.message import fields
+from aionode.wire.cdr._constants import COUNT_SIZE, HEADER
 
 if TYPE_CHECKING:
     from aionode.message import FieldType
 
 __all__ = [
-    "COUNT_SIZE",
-    "HEADER",
     "PHASES",
     "PRIMITIVES",
     "TEXT",
@@ -43,25 +38,32 @@ __all__ = [
     "uniform_alignment",
 ]
 
-HEADER = b"\x00\x01\x00\x00"
-"""What opens a message: CDR, little endian, no options."""
-
-COUNT_SIZE = 4
-"""Bytes of the uint32 that opens strings and sequences."""
-
 MOST_LEAVES = 64
+"""Largest number of fields, nested ones included, of a message whose code is inlined."""
 
 DEEPEST = 16
+"""Largest nesting depth of a message whose code is inlined."""
+
+PHASES = 8
+"""Number of start positions that differ in alignment: the largest alignment is 8."""
+
+TEXT = "text"
+"""Code of an item whose size is that of a string."""
+
+LONGEST_PACKED = 64
+"""Largest size in bytes of a string that is packed together with the values around it."""
+
+Pack: TypeAlias = Callable[..., bytes]
 
 
 @dataclass(frozen=True, slots=True)
 class Primitive:
-    """How one value of a primitive kind is written.
+    """How a value of a primitive type is encoded.
 
     Attributes:
-        code: Its letter for `struct`.
-        size: Bytes on the wire, which is also its alignment.
-        dtype: Its numpy type without byte order.
+        code: Its format character for `struct`.
+        size: Size in bytes, which is also its alignment.
+        dtype: Its numpy type without the byte order.
     """
 
     code: str
@@ -87,12 +89,12 @@ PRIMITIVES = {
 
 
 def padding(offset: int, alignment: int) -> int:
-    """Return how many bytes there are between `offset` and the next aligned place."""
+    """Return the number of padding bytes between `offset` and the next aligned position."""
     return (len(HEADER) - offset) % alignment
 
 
 def first_alignment(kind: FieldType) -> int:
-    """Return the alignment of the first value of a field, which aligns the field as a whole."""
+    """Return the alignment of a field, which is that of its first value."""
     if kind.container in ("bounded", "unbounded"):
         return COUNT_SIZE
     if kind.nested is not None:
@@ -103,26 +105,26 @@ def first_alignment(kind: FieldType) -> int:
 
 
 def minimum_size(cls: Any) -> int:
-    """Return the fewest bytes that a message of this class takes, padding not counted.
+    """Return the smallest encoded size of a message class in bytes, without padding.
 
-    Never 0, so that a sequence that claims more elements than there are bytes is refused unread.
+    It is never 0, so a sequence that claims more elements than there are bytes is refused early.
     """
     return totals(cls)[0]
 
 
 def is_small(cls: Any) -> bool:
-    """Tell whether code may be written out for the fields of a nested message.
+    """Return whether the code for a nested message may be inlined.
 
-    Larger ones get a function of their own, so that no definition makes code grow without bound.
+    Larger messages get a function of their own, so that the generated code stays bounded.
     """
     _, leaves, depth = totals(cls)
     return leaves <= MOST_LEAVES and depth <= DEEPEST
 
 
 def has_views(cls: Any) -> bool:
-    """Tell whether messages hold sequences of numbers or of bytes, at any depth.
+    """Return whether messages contain sequences of numbers or bytes, at any depth.
 
-    They may be large, and are written from where they lie.
+    These can be large, and are sent from their own memory without a copy.
     """
     return any(
         has_views(kind.nested)
@@ -134,7 +136,7 @@ def has_views(cls: Any) -> bool:
 
 @cache
 def totals(cls: Any) -> tuple[int, int, int]:
-    """Return the least size, the number of unfolded fields, and the depth of their nesting."""
+    """Return the smallest size, the number of flattened fields, and the nesting depth."""
     size = leaves = depth = 0
     for field in fields(cls):
         kind = field.type
@@ -151,15 +153,15 @@ def totals(cls: Any) -> tuple[int, int, int]:
         size += COUNT_SIZE if repeats is None else inner_size * repeats
         leaves += inner_leaves if kind.container == "single" else 1
         depth = max(depth, inner_depth)
-    # A message without fields has one byte that says nothing.
+    # A message without fields is encoded as one meaningless byte.
     return max(size, 1), max(leaves, 1), depth + 1
 
 
 @cache
 def uniform_alignment(cls: Any) -> int | None:
-    """Return the one alignment of all values of a fixed-size message, None if there is no such one.
+    """Return the common alignment of all values of a fixed-size message, None if they differ.
 
-    Messages of such a class follow each other without padding, once the first is aligned.
+    Messages of such a class follow each other without padding once the first is aligned.
     """
     alignments: set[int | None] = set()
     for field in fields(cls):
@@ -175,25 +177,13 @@ def uniform_alignment(cls: Any) -> int | None:
     return alignments.pop() if len(alignments) == 1 else None
 
 
-PHASES = 8
-"""Places that differ in alignment."""
-
-TEXT = "text"
-"""Code of an item that is as long as a string is."""
-
-LONGEST_PACKED = 64
-"""Bytes of a string that is packed together with what is around it."""
-
-Pack: TypeAlias = Callable[..., bytes]
-
-
 @dataclass(frozen=True, slots=True)
 class Item:
     """One value of a run.
 
     Attributes:
-        code: For `struct`; empty for an item that only aligns what follows.
-        alignment: As of the wire.
+        code: Its format for `struct`; empty for an item that only aligns the next one.
+        alignment: Its alignment in the encoded message.
         value: The expression that is packed; empty for zeros.
     """
 
@@ -203,7 +193,7 @@ class Item:
 
 
 def lay_out(run: list[Item], start: int, text_size: int = 0) -> str:
-    """Return the format of a run that starts at `start`, with its padding."""
+    """Return the `struct` format, padding included, of a run that starts at offset `start`."""
     layout = "<"
     for item in run:
         gap = padding(start + struct.calcsize(layout), item.alignment)
@@ -213,15 +203,15 @@ def lay_out(run: list[Item], start: int, text_size: int = 0) -> str:
 
 
 def phase_structs(run: list[Item], phases: range) -> dict[int, struct.Struct]:
-    """Return the Struct of a run for each place, modulo `PHASES`, where it may start."""
+    """Return the Struct of a run for each of the given start offsets modulo `PHASES`."""
     return {phase: struct.Struct(lay_out(run, phase)) for phase in phases}
 
 
 class TextPacking:
-    """Packs a run with one string in it, which starts at a known place.
+    """Packs a run that contains one string and starts at a known offset.
 
-    Most messages with a string begin with a header, whose frame id is short and mostly of one
-    length: for each length that occurs there is one Struct, which makes the message in one step.
+    Most messages with a string begin with a header whose frame id is short and rarely changes its
+    length. There is one Struct for each length that occurs, which packs the run in one step.
     """
 
     def __init__(self, run: list[Item], start: int) -> None:
@@ -232,10 +222,10 @@ class TextPacking:
         self._before = struct.Struct(lay_out(run[:place], start))
         self._after = phase_structs(run[place + 1 :], range(PHASES))
         self.known: dict[int, tuple[Pack, int]] = {}
-        """What was returned, by length of the string."""
+        """Earlier results for short strings, by size of the string in bytes."""
 
     def __call__(self, size: int) -> tuple[Pack, int]:
-        """Return what packs the run if its string has this size in bytes, and where it ends."""
+        """Return the packing function for a string of `size` bytes, and the run's end offset."""
         if size <= LONGEST_PACKED:
             whole = struct.Struct(lay_out(self._run, self._start, size))
             self.known[size] = whole.pack, self._start + whole.size
@@ -247,13 +237,13 @@ class TextPacking:
         def pack(*values: object) -> bytes:
             text = values[place]
             rest = after.pack(*values[place + 1 :])
-            return b"".join((before.pack(*values[:place]), text, rest))  # type: ignore[arg-type] # it is UTF-8
+            return b"".join((before.pack(*values[:place]), text, rest))  # type: ignore[arg-type] # encoded by the caller
 
         return pack, end + after.size
 
 
 def modulus_of(places: set[int]) -> int:
-    """Return the largest power of two, up to `PHASES`, by which all places leave one remainder."""
+    """Return the largest power of two, up to `PHASES`, modulo which all offsets are equal."""
     modulus = PHASES
     while len({place % modulus for place in places}) > 1:
         modulus //= 2

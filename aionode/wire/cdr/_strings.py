@@ -1,4 +1,4 @@
-"""Strings on the wire: UTF-8 with a length and a NUL, and wide ones, four bytes per character."""
+"""Encoded strings: UTF-8 with a length and a NUL; wide strings with four bytes per character."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import struct
 from typing import Any
 
 from aionode.wire.cdr._codegen import NeedsFallback
-from aionode.wire.cdr._layout import COUNT_SIZE
+from aionode.wire.cdr._constants import COUNT_SIZE
 
 __all__ = [
     "StringsReader",
@@ -20,22 +20,22 @@ __all__ = [
 COUNT = struct.Struct("<I")
 
 LARGEST_KEPT = 4096
-"""Bytes of strings that are kept for the next message; longer ones do not repeat."""
+"""Largest block of strings, in bytes, that is cached; longer ones rarely repeat."""
 
 
 def gap_after(size: int) -> int:
-    """Return the padding between a string of `size` bytes and the next one's length."""
+    """Return the padding between a string of `size` bytes and the length of the next one."""
     return -size % COUNT_SIZE
 
 
 PACKS = [struct.Struct(f"<I{size}s{gap_after(size)}x").pack for size in range(64)]
-"""What packs a short string with its length, NUL and padding, by its size, NUL included."""
+"""Packs a short string with its length, NUL and padding; indexed by its size with the NUL."""
 
 
 class StringsWriter:
-    """Writes the strings of one field. Those of the last message are known when they come again.
+    """Encodes the strings of one field, and caches those of the last message.
 
-    A robot's joints keep their names, so one comparison mostly saves encoding all strings.
+    A robot's joints keep their names, so a single comparison usually saves encoding all strings.
     """
 
     def __init__(self, *, exact: bool) -> None:
@@ -43,9 +43,9 @@ class StringsWriter:
         self._last: tuple[list[str], bytes] = ([], b"")
 
     def __call__(self, strings: list[str]) -> bytes:
-        """Return the strings as they are from an aligned place, each padded for the next.
+        """Return the encoded strings, each padded to the alignment of the next.
 
-        The last one has no padding if the writer is to be exact.
+        The first starts aligned. The last one has no padding if `exact` was given.
         """
         known, block = self._last
         if strings == known:
@@ -67,13 +67,13 @@ class StringsWriter:
 
 
 class StringsReader:
-    """Reads the strings of one field; knows those of the last message, as `StringsWriter` does."""
+    """Decodes the strings of one field, and caches those of the last message."""
 
     def __init__(self) -> None:
         self._last: tuple[int, bytes, list[str]] = (0, b"", [])
 
     def __call__(self, data: Any, pos: int, count: int) -> tuple[list[str], int]:
-        """Return `count` strings from `pos` (aligned), and where they end."""
+        """Return `count` strings from the aligned offset `pos`, and the offset of their end."""
         known_count, block, known = self._last
         if count == known_count and data[pos : pos + len(block)] == block:
             return known.copy(), pos + len(block)
@@ -96,9 +96,9 @@ class StringsReader:
 
 
 def wide_bytes(text: str) -> bytes:
-    """Return the characters of a wide string.
+    """Return a wide string encoded.
 
-    ROS holds it as UTF-16, and writes each half of a surrogate pair as a character of its own.
+    ROS holds it as UTF-16 and encodes each half of a surrogate pair as a separate character.
     """
     data = str.encode(text, "utf-16-le")
     units = len(data) // 2
@@ -108,27 +108,29 @@ def wide_bytes(text: str) -> bytes:
 
 
 def wide_strings(strings: list[str]) -> bytes:
-    """Return the wide strings of a sequence."""
+    """Return a sequence of wide strings encoded."""
     encoded = map(wide_bytes, strings)
     return b"".join([COUNT.pack(len(data) // 4) + data for data in encoded])
 
 
 def wide_string(data: Any, order: str = "<") -> str:
-    """Return the wide string of these bytes, whether its writer used pairs or whole characters.
+    """Return a decoded wide string, whether it was written as UTF-16 units or as UTF-32.
 
     Raises:
-        ValueError: A character does not exist, or half of a pair is missing.
+        ValueError: A character is invalid, or half of a surrogate pair is missing.
     """
     units = struct.unpack(f"{order}{len(data) // 4}I", data)
     if not any(0xD800 <= unit < 0xE000 for unit in units):
         return str(data, "utf-32-le" if order == "<" else "utf-32-be")
     if max(units) >= 0x10000:
-        raise UnicodeDecodeError("utf-16", bytes(data), 0, len(data), "pairs and whole characters")
+        raise UnicodeDecodeError(
+            "utf-16", bytes(data), 0, len(data), "surrogate pairs mixed with UTF-32"
+        )
     return struct.pack(f"<{len(units)}H", *units).decode("utf-16-le")
 
 
 def read_wide_strings(data: Any, pos: int, count: int) -> tuple[list[str], int]:
-    """Return `count` wide strings from `pos` (aligned), and where they end."""
+    """Return `count` wide strings from the aligned offset `pos`, and the offset of their end."""
     if COUNT_SIZE * count > len(data) - pos:
         raise NeedsFallback
     strings = []

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
+from aionode._concurrency import checkpoint
 from aionode.action import (
     ActionClient,
     ActionServer,
@@ -101,9 +102,9 @@ async def cancelled(waiting: asyncio.Task[Any]) -> None:
 
 
 async def until(condition: Callable[[], Any]) -> None:
-    """Wait until something is so of which nobody tells."""
-    while not condition():  # noqa: ASYNC110  # there is no event to wait for
-        await asyncio.sleep(0.001)  # noqa: TID251  # the same
+    """Wait until `condition()` is true, for states that set no event."""
+    while not condition():  # noqa: ASYNC110  # as said
+        await asyncio.sleep(0.001)  # noqa: TID251  # as said
 
 
 def beside(work: Any) -> asyncio.Task[Any]:
@@ -177,7 +178,7 @@ async def test_a_hundred_goals_at_once_get_their_own_feedback_and_results(ends: 
     async def execute(goal: Goal) -> Fibonacci.Result:
         for _ in range(3):
             goal.publish_feedback(Fibonacci.Feedback(sequence=[goal.request.order]))
-            await asyncio.sleep(0)  # noqa: TID251  # lets the others in between
+            await checkpoint()  # lets the others in between
         goal.succeed()
         return Fibonacci.Result(sequence=[goal.request.order])
 
@@ -464,7 +465,7 @@ async def test_cancelling_who_awaits_a_goal_cancels_the_goal(ends: Ends, wait: A
 
     await cancelled(waiting)
 
-    await until(lambda: not goal.is_active)
+    await goal._outcome()
     assert ends.requests == [goal]
     assert goal.status is GoalStatus.CANCELED
 
@@ -477,7 +478,7 @@ async def test_a_timeout_cancels_the_goal(ends: Ends) -> None:
         async with asyncio.timeout(0.01):
             await sent.result()
 
-    await until(lambda: not goal.is_active)
+    await goal._outcome()
     assert ends.requests == [goal]
 
 
@@ -485,22 +486,22 @@ async def test_several_who_await_a_goal_send_one_request(ends: Ends) -> None:
     """A request more would be answered with an error."""
     sent, goal = await begin(ends)
     waiting = [beside(sent.result()) for _ in range(3)]
-    await asyncio.sleep(0)  # noqa: TID251  # lets them begin
+    await checkpoint()  # lets them begin
     for each in waiting:
         each.cancel()
     await asyncio.wait(waiting)
 
     assert all(each.cancelled() for each in waiting)
-    await until(lambda: not goal.is_active)
+    await goal._outcome()
     assert ends.requests == [goal]
 
 
 async def test_cancelling_a_shielded_wait_leaves_the_goal_alone(ends: Ends) -> None:
-    """Who only looks on says so."""
+    """For observers of a goal that must not influence it."""
     sent, goal = await begin(ends)
     result = beside(sent.result())
     waiting = beside(asyncio.wait_for(asyncio.shield(result), 10))
-    await asyncio.sleep(0)  # noqa: TID251  # lets it begin
+    await checkpoint()  # lets it begin
 
     await cancelled(waiting)
     ends.worker.may_end.set()
@@ -555,7 +556,7 @@ async def test_a_server_that_keeps_silent_does_not_keep_a_cancelled_task(ends: E
     ends.server.register_cancel_callback(decide)
     sent, _ = await begin(ends)
     waiting = beside(sent.result())
-    await asyncio.sleep(0)  # noqa: TID251  # lets it begin
+    await checkpoint()  # lets it begin
 
     await cancelled(waiting)
 
@@ -598,7 +599,7 @@ async def test_a_destroyed_server_loses_its_goals_at_once(ends: Ends) -> None:
     calling = beside(ends.client.call(Fibonacci.Goal()))
     await ends.worker.begun.get()
     iterating = beside(anext(sent))
-    await asyncio.sleep(0)  # noqa: TID251  # lets them begin
+    await checkpoint()  # lets them begin
 
     ends.server.destroy()
 
@@ -652,14 +653,14 @@ async def test_a_forgotten_goal_is_unknown(ends: Ends) -> None:
 
 
 async def test_a_destroyed_client_cancels_its_waits_and_what_they_wait_for(ends: Ends) -> None:
-    """Nothing of the client is left, and no goal goes on that somebody still awaited."""
+    """Nothing of the client is left, and goals that tasks awaited are cancelled."""
     sent, goal = await begin(ends)
     call = ends.client.call(Fibonacci.Goal())
     waiting = [beside(each) for each in (sent.result(), anext(sent), call)]
     called = await ends.worker.begun.get()
-    other: Client = ends.asking.create_action_client(Fibonacci, "nobody")
+    other: Client = ends.asking.create_action_client(Fibonacci, "unserved")
     waiting.append(beside(other.wait_for_server()))
-    await asyncio.sleep(0)  # noqa: TID251  # lets them begin
+    await checkpoint()  # lets them begin
     before = len(ends.asking._entities)
 
     ends.client.destroy()
@@ -669,7 +670,8 @@ async def test_a_destroyed_client_cancels_its_waits_and_what_they_wait_for(ends:
     for each in waiting:
         with pytest.raises(asyncio.CancelledError):
             await each
-    await until(lambda: not (goal.is_active or called.is_active))
+    await goal._outcome()
+    await called._outcome()
     await until(lambda: len(ends.asking._entities) == before - 12)
     assert ends.requests == [goal, called]
     with pytest.raises(EntityDestroyedError):
@@ -686,7 +688,7 @@ async def test_a_goal_that_nobody_awaits_outlives_its_client(ends: Ends) -> None
     await gone_from(ends.serving)
     ends.worker.may_end.set()
 
-    await until(lambda: not goal.is_active)
+    await goal._outcome()
     assert goal.status is GoalStatus.SUCCEEDED
     assert ends.requests == []
     with pytest.raises(asyncio.CancelledError):
@@ -715,7 +717,7 @@ async def test_a_stopping_node_cancels_the_goals_that_it_awaits(ends: Ends) -> N
     node.destroy_node()
     await running
 
-    await until(lambda: not goal.is_active)
+    await goal._outcome()
     assert goal.status is GoalStatus.CANCELED
     assert ends.requests == [goal]
 
@@ -801,7 +803,7 @@ async def test_a_server_that_goes_before_it_was_found_whole_loses_the_goal(ends:
     client, services = await halves(ends, "send_goal")
     sent = await client.send_goal(Fibonacci.Goal())
     waiting = beside(sent.result())
-    await asyncio.sleep(0)  # noqa: TID251  # lets it begin
+    await checkpoint()  # lets it begin
     assert not waiting.done()
 
     services["send_goal"].destroy()
@@ -811,7 +813,7 @@ async def test_a_server_that_goes_before_it_was_found_whole_loses_the_goal(ends:
 
 
 async def test_cancelling_a_goal_whose_server_has_gone_is_an_error_at_once(ends: Ends) -> None:
-    """A request to nobody would wait for ever."""
+    """A request without a server would wait for ever."""
     sent, _ = await begin(ends)
     ends.server.destroy()
     await gone(ends)

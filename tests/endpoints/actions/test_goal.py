@@ -66,14 +66,14 @@ def test_an_illegal_move_says_what_is_possible() -> None:
     """The text is what a user sees who called succeed() too early."""
     with pytest.raises(
         GoalTransitionError,
-        match="goal 42: SUCCEED while ACCEPTED; only EXECUTE, CANCEL_GOAL can follow",
+        match="goal 42: cannot SUCCEED while ACCEPTED; only EXECUTE, CANCEL_GOAL is allowed",
     ):
         next_status(GoalStatus.ACCEPTED, GoalEvent.SUCCEED, "42")
 
 
 def test_a_move_after_the_end_says_that_nothing_is_possible() -> None:
     """An empty list of possibilities would read like a mistake."""
-    with pytest.raises(GoalTransitionError, match="nothing can follow that"):
+    with pytest.raises(GoalTransitionError, match="no event is allowed"):
         next_status(GoalStatus.SUCCEEDED, GoalEvent.ABORT)
 
 
@@ -136,7 +136,7 @@ GOALS = [
         pytest.param(ALL_GOALS, 200, [ONE, TWO], id="up to a time, which counts itself"),
         pytest.param(ALL_GOALS, 99, [], id="up to a time before all"),
         pytest.param(THREE, 100, [ONE, THREE], id="up to a time, and one"),
-        pytest.param(bytes(15) + b"\x01", 200, [ONE, TWO], id="up to a time, and a stranger"),
+        pytest.param(bytes(15) + b"\x01", 200, [ONE, TWO], id="up to a time, and an unknown goal"),
     ],
 )
 def test_a_request_means_these_goals(goal_id: bytes, stamp_ns: int, meant: list[bytes]) -> None:

@@ -41,12 +41,12 @@ async def send(robot: Node, client: Node, steps: list[tuple[str, int, Any]]) -> 
         goal_id = uuid_of(number)
         if kind == "goal":
             goal = Fibonacci.Goal(order=detail)
-            goals.begin(Impl.SendGoalService.Request(goal_id=goal_id, goal=goal))
+            goals._begin(Impl.SendGoalService.Request(goal_id=goal_id, goal=goal))
         elif kind == "cancel":
             info = GoalInfo(goal_id=goal_id, stamp=detail)
-            cancels.begin(Impl.CancelGoalService.Request(goal_info=info))
+            cancels._begin(Impl.CancelGoalService.Request(goal_info=info))
         elif kind == "result":
-            results.begin(Impl.GetResultService.Request(goal_id=goal_id))
+            results._begin(Impl.GetResultService.Request(goal_id=goal_id))
         else:
             for _ in range(number):
                 await checkpoint()
@@ -96,7 +96,7 @@ def run(steps: list[tuple[str, int, Any]], *, concurrent: bool | int) -> None:
 def test_no_sequence_of_requests_ends_the_node(
     steps: list[tuple[str, int, Any]], *, concurrent: bool | int
 ) -> None:
-    """Anybody in the network may send them."""
+    """Any process in the network may send them."""
     run(steps, concurrent=concurrent)
 
 

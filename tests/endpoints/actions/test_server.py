@@ -90,10 +90,10 @@ async def test_a_goal_callback_sees_the_goal_and_may_reject_it(
 
 
 async def test_a_goal_callback_may_be_a_coroutine(serve: Serve, client: PlainClient) -> None:
-    """It may have to ask somebody else."""
+    """It may have to ask another service."""
 
     async def decide(_goal: Fibonacci.Goal) -> GoalResponse:
-        await asyncio.sleep(0)  # noqa: TID251  # any wait
+        await checkpoint()
         return GoalResponse.REJECT
 
     serve(goal_callback=decide)
@@ -102,7 +102,7 @@ async def test_a_goal_callback_may_be_a_coroutine(serve: Serve, client: PlainCli
 
 
 async def test_a_rejected_goal_is_not_kept(serve: Serve, client: PlainClient) -> None:
-    """Nobody will ask for it."""
+    """No client will ask for it."""
     server = serve(goal_callback=lambda _goal: GoalResponse.REJECT)
 
     await client.send()
@@ -191,7 +191,7 @@ async def test_an_id_is_rejected_that_came_while_its_twin_was_decided_on(
 async def test_the_client_is_told_before_the_goal_is_handed_over(
     serve: Serve, client: PlainClient
 ) -> None:
-    """Feedback of a goal that nobody knows to be accepted would be lost on simple clients."""
+    """Simple clients would ignore feedback of a goal that they do not know as accepted."""
     handed_over: list[Goal] = []
     serve(handle_accepted_callback=handed_over.append)
 
@@ -411,7 +411,7 @@ async def test_a_wrong_result_that_is_returned_counts_as_an_exception(
 
 
 async def test_an_end_is_final(serve: Serve, client: PlainClient) -> None:
-    """Whoever ends a goal twice learns of it."""
+    """Ending a goal twice is a mistake in the callback."""
     caught: list[GoalTransitionError] = []
 
     async def execute(goal: Goal) -> Fibonacci.Result:
@@ -768,7 +768,7 @@ async def test_each_goal_of_a_request_is_decided_on_alone(
 async def test_cancelling_all_where_there_is_nothing_is_no_error(
     serve: Serve, client: PlainClient
 ) -> None:
-    """Whoever stops everything wants it stopped."""
+    """A request to stop everything includes goals that have not started."""
     serve()
 
     assert await client.cancel(0) == (NONE, [])
@@ -992,7 +992,7 @@ async def test_a_destroyed_server_leaves_nothing_behind(
 
 
 async def test_a_stopping_node_aborts_its_goals() -> None:
-    """Nobody asked to cancel them; what was accepted and not begun is aborted, too."""
+    """There was no cancel request; accepted goals that have not started are aborted too."""
     worker = Worker()
     kept: list[Goal] = []
 
@@ -1011,7 +1011,7 @@ async def test_a_stopping_node_aborts_its_goals() -> None:
 async def test_a_callback_may_clean_up_when_the_server_is_gone(
     serve: Serve, client: PlainClient
 ) -> None:
-    """Ending a goal that nobody waits for any more raises nothing."""
+    """Ending a goal after its server is gone raises nothing."""
     begun = asyncio.Event()
     cleaned: list[Goal] = []
 
@@ -1092,17 +1092,21 @@ async def test_a_server_that_cannot_be_made_leaves_nothing(node: Node) -> None:
 
 
 async def test_a_goal_is_aborted_whose_node_stops_before_its_callback_began(
-    node: Node, serve: Serve, client: PlainClient
+    serve: Serve, client: PlainClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its turn had come, and the end came first."""
     goals: list[Goal] = []
     server = serve(handle_accepted_callback=goals.append)
     await client.send()
     await settle()
+    begin = goals[0]._begin
+
+    def begin_and_end() -> None:
+        begin()
+        server.destroy()
+
+    monkeypatch.setattr(goals[0], "_begin", begin_and_end)
     goals[0].execute()
-    while goals[0].status is GoalStatus.ACCEPTED:
-        await checkpoint()
-    server.destroy()
     await settle()
 
     assert goals[0].status is GoalStatus.ABORTED
@@ -1134,10 +1138,13 @@ async def test_a_handed_over_goal_is_executed_if_the_callback_was_taken_back(
 ) -> None:
     """The callback may be replaced between a goal's acceptance and its turn."""
     server = serve(handle_accepted_callback=lambda _goal: None)
-    sending = asyncio.ensure_future(client.send())  # noqa: TID251  # beside the test
-    while not server._goals:
-        await checkpoint()
-    server.register_handle_accepted_callback(None)
+    hand_over = server._hand_over.callback
+
+    def replace_first(goal: Goal) -> Any:
+        server.register_handle_accepted_callback(None)
+        return hand_over(goal)
+
+    server._hand_over.callback = replace_first
+    await client.send()
 
     assert (await worker.begun.get()).status is GoalStatus.EXECUTING
-    await sending

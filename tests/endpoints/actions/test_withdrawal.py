@@ -1,4 +1,4 @@
-"""A goal that nobody awaits any more is cancelled, however its task was cancelled."""
+"""A goal whose awaiting task is cancelled is cancelled itself, however that happens."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import anyio
 import pytest
 from starlette.responses import StreamingResponse
 
+from aionode._concurrency import checkpoint
 from aionode.action import ActionClient, ActionServer, CancelResponse, GoalResponse, GoalStatus
 from aionode.context import Context
 from aionode.errors import ServiceUnavailableError
@@ -71,14 +72,14 @@ def beside(work: Any) -> asyncio.Task[Any]:
 
 
 async def until(condition: Callable[[], Any]) -> None:
-    """Wait until something is so of which nobody tells."""
-    while not condition():  # noqa: ASYNC110  # there is no event to wait for
-        await asyncio.sleep(0.001)  # noqa: TID251  # the same
+    """Wait until `condition()` is true, for states that set no event."""
+    while not condition():  # noqa: ASYNC110  # as said
+        await asyncio.sleep(0.001)  # noqa: TID251  # as said
 
 
 async def expect_canceled(goal: Goal) -> None:
     """Wait for the end of the goal, and see that a request has ended it."""
-    await until(lambda: not goal.is_active)
+    await goal._outcome()
     assert goal.status is GoalStatus.CANCELED
 
 
@@ -129,16 +130,16 @@ async def by_a_task_group(wait: Wait, ends: Ends) -> None:
     """As the frameworks do that are built on anyio, such as those for tools of language models."""
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(wait, ends.client)
-        await until(ends.worker.begun.qsize)
+        await ends.worker.has_begun.wait()
         tasks.cancel_scope.cancel()
 
 
 async def cancelled_twice(wait: Wait, ends: Ends) -> None:
-    """By somebody impatient."""
+    """Twice in a row, as with two Ctrl-C."""
     task = beside(wait(ends.client))
-    await until(ends.worker.begun.qsize)
+    await ends.worker.has_begun.wait()
     task.cancel()
-    await asyncio.sleep(0)  # noqa: TID251  # between the two
+    await checkpoint()  # between the two
     task.cancel()
     await asyncio.wait([task])
 
@@ -153,9 +154,9 @@ async def by_leaving_the_node(wait: Wait, ends: Ends) -> None:
             await wait(client)
 
     task = beside(program())
-    await until(ends.worker.begun.qsize)
+    await ends.worker.has_begun.wait()
     task.cancel()
-    await asyncio.sleep(0)  # noqa: TID251  # between the two
+    await checkpoint()  # between the two
     task.cancel()
     await asyncio.wait([task])
 
@@ -175,7 +176,7 @@ CANCELS = [
 async def test_a_goal_ends_however_its_task_is_cancelled(
     ends: Ends, wait: Wait, cancel: Callable[[Wait, Ends], Coroutine[Any, Any, None]]
 ) -> None:
-    """A robot that nobody waits for must not drive on."""
+    """A robot must not drive on when the program that sent it has given up."""
     await cancel(wait, ends)
 
     await expect_canceled(await ends.worker.begun.get())
@@ -214,7 +215,7 @@ async def test_a_browser_that_leaves_a_stream_of_feedback_ends_the_goal(ends: En
 
 
 async def test_a_browser_that_leaves_while_it_reads_ends_a_goal_in_a_block(ends: Ends) -> None:
-    """Then nobody awaits the goal: the stream is closed where it yields.
+    """Then no task awaits the goal: the stream is closed where it yields.
 
     By Python's garbage collector, since Starlette leaves a cancelled stream to that.
     """
@@ -298,7 +299,7 @@ async def test_a_goal_that_is_cancelled_in_the_queue_of_the_server_is_never_exec
     first = beside(ends.client.send_goal(Fibonacci.Goal(order=1)))
     await door.asked.get()
     second = beside(ends.client.send_goal(Fibonacci.Goal(order=2)))
-    await asyncio.sleep(0)  # noqa: TID251  # lets it be sent
+    await checkpoint()  # lets it be sent
     second.cancel()
     await asyncio.wait([second])
     await until(lambda: ends.server._withdrawn)
@@ -329,8 +330,8 @@ async def test_a_goal_that_another_server_accepts_after_its_cancellation_is_canc
 
 
 async def test_a_goal_without_a_server_leaves_nothing_behind(ends: Ends) -> None:
-    """It was sent to nobody, so there is nothing to cancel."""
-    client: Client = ends.asking.create_action_client(Fibonacci, "nobody")
+    """It was sent to no server, so there is nothing to cancel."""
+    client: Client = ends.asking.create_action_client(Fibonacci, "unserved")
     with anyio.move_on_after(0.01):
         await client.call(Fibonacci.Goal())
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 async def test_an_offloaded_callback_publishes_what_it_computed(node: Node) -> None:
-    """What it is there for; asyncio's loops take nothing from threads but by one door."""
+    """That is what offloading is for; only `call_soon_threadsafe` may be called from a thread."""
     heard: list[str] = []
     node.create_subscription(String, "out", lambda msg: heard.append(msg.data))
     out = node.create_publisher(String, "out", 10)
@@ -34,7 +34,7 @@ async def test_an_offloaded_callback_publishes_what_it_computed(node: Node) -> N
     assert heard == ["a", "b", "c"]
 
 
-async def test_a_thread_is_told_what_is_wrong_with_its_message(node: Node) -> None:
+async def test_a_thread_gets_the_error_of_its_message(node: Node) -> None:
     """As in the thread of the loop."""
     await settle()
     publisher = node.create_publisher(String, "words", 10)
@@ -45,7 +45,7 @@ async def test_a_thread_is_told_what_is_wrong_with_its_message(node: Node) -> No
 async def test_a_thread_cannot_fill_the_loop_with_messages(
     node: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It waits until each was taken, so it meets the bounds that all meet."""
+    """It waits until each is taken, so the same limits apply."""
     monkeypatch.setattr("aionode.endpoints.subscription.KEEP_ALL_DEPTH", 2)
     keep_all = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=1)
     await settle()
@@ -62,7 +62,7 @@ async def test_a_thread_cannot_fill_the_loop_with_messages(
 
 
 async def test_a_thread_ends_a_node_that_runs(node_factory: Callable[..., Node]) -> None:
-    """Its loop is woken for it, so nothing hangs until something else happens."""
+    """The loop is woken for it."""
     node = node_factory()
     await settle()
     with ThreadPoolExecutor(1) as pool:
@@ -73,8 +73,8 @@ async def test_a_thread_ends_a_node_that_runs(node_factory: Callable[..., Node])
         node.create_publisher(String, "words", 10)
 
 
-def test_what_runs_nowhere_is_done_at_once() -> None:
-    """A node may be filled and destroyed with no loop at all."""
+def test_without_a_running_loop_calls_are_made_at_once() -> None:
+    """A node can be set up and destroyed without a loop."""
     done: list[str] = []
     nowhere = LoopAffinity()
     nowhere.call(lambda: done.append("call"))
@@ -85,7 +85,7 @@ def test_what_runs_nowhere_is_done_at_once() -> None:
 def test_a_thread_does_not_wait_for_a_loop_that_was_closed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A loop may be closed over what a thread asked of it last."""
+    """A loop may be closed before it makes the last call of a thread."""
     monkeypatch.setattr(loop_affinity, "PATIENCE_S", 0.0)
     loop = asyncio.new_event_loop()
     place = LoopAffinity()

@@ -7,17 +7,17 @@ from typing import Any
 
 import pytest
 
-from aionode.clock import ManualTime, ROSClock, Time
+from aionode.clock import ROSClock, Time
 from aionode.endpoints.timer import Rate
 from aionode.errors import EntityDestroyedError
-from aionode.testing import settle
+from aionode.testing import ManualClock, settle
 
 MS = 1_000_000
 
 
-def make() -> tuple[ManualTime, ROSClock, Rate]:
+def make() -> tuple[ManualClock, ROSClock, Rate]:
     """Return a rate of 10 Hz on a clock that is stepped."""
-    manual = ManualTime()
+    manual = ManualClock()
     clock = ROSClock(time_base=manual)
     return manual, clock, Rate(10, clock)
 

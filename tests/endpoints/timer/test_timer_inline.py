@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from aionode._concurrency import checkpoint
 from aionode.endpoints.timer import Timer
 from aionode.node import Node
-from aionode.testing import local_context
+from aionode.testing import local_context, settle
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable
@@ -22,20 +21,23 @@ place: ContextVar[str] = ContextVar("place", default="nowhere")
 
 
 class Calls:
-    """A callback that notes the task that it runs in, and can be waited for."""
+    """A callback that records the tasks that it runs in, and can be awaited."""
 
     def __init__(self) -> None:
         self.tasks: list[asyncio.Task[Any] | None] = []
+        self._called = asyncio.Event()
 
     def __call__(self) -> None:
-        """Note a call."""
+        """Record a call."""
         self.tasks.append(asyncio.current_task())
+        self._called.set()
 
     async def have(self, count: int) -> None:
-        """Wait for so many."""
+        """Wait until there were `count` calls."""
         async with asyncio.timeout(20):
             while len(self.tasks) < count:
-                await checkpoint()
+                self._called.clear()
+                await self._called.wait()
 
 
 async def test_a_sync_callback_is_called_without_waking_a_task(node: Node) -> None:
@@ -53,24 +55,28 @@ async def test_a_call_has_the_context_of_its_timer_not_of_the_alarm(node: Node) 
     node.create_timer(PERIOD_S, first)
     await first.have(2)
     found: list[str] = []
+    second = Calls()
+
+    def call() -> None:
+        found.append(place.get())
+        second()
+
     token = place.set("here")
-    node.create_timer(PERIOD_S, lambda: found.append(place.get()))
+    node.create_timer(PERIOD_S, call)
     place.reset(token)
-    async with asyncio.timeout(20):
-        while len(found) < 4:
-            await checkpoint()
+    await second.have(4)
     assert set(found) == {"here"}
 
 
 async def test_what_a_sync_callback_returns_is_awaited_before_the_next_call(node: Node) -> None:
     """A callback that only turns out to wait does not overlap itself."""
-    begun = ended = 0
+    begun = 0
+    ended = Calls()
     go_on = asyncio.Event()
 
     async def wait() -> None:
-        nonlocal ended
         await go_on.wait()
-        ended += 1
+        ended()
 
     def call() -> Awaitable[None]:
         nonlocal begun
@@ -81,11 +87,9 @@ async def test_what_a_sync_callback_returns_is_awaited_before_the_next_call(node
     others = Calls()
     node.create_timer(PERIOD_S, others)
     await others.have(5)
-    assert (begun, ended) == (1, 0)
+    assert (begun, len(ended.tasks)) == (1, 0)
     go_on.set()
-    async with asyncio.timeout(20):
-        while ended < 3:
-            await checkpoint()
+    await ended.have(3)
 
 
 @pytest.mark.parametrize("end", [Timer.cancel, Timer.destroy])
@@ -149,7 +153,7 @@ async def test_an_error_ends_the_node_of_the_timer() -> None:
 
 @pytest.mark.parametrize("action", ["cancel", "destroy", "reset", "cancel and fail"])
 async def test_a_sync_callback_may_end_its_own_timer(node: Node, action: str) -> None:
-    """Every one-shot timer does; the alarm that called it must not set what was set already."""
+    """Every one-shot timer does; the alarm must not set a future that is done."""
     problems: list[dict[str, Any]] = []
     asyncio.get_running_loop().set_exception_handler(lambda _, about: problems.append(about))
     calls: list[int] = []
@@ -171,8 +175,7 @@ async def test_a_sync_callback_may_end_its_own_timer(node: Node, action: str) ->
     timer = node.create_timer(PERIOD_S, once, on_error="log")
     async with asyncio.timeout(20):
         await may_end.wait()
-    for _ in range(5):
-        await checkpoint()
+    await settle()
 
     assert not problems
     if action.startswith("cancel"):

@@ -9,10 +9,12 @@ import pytest
 
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.qos import QoSProfile, ReliabilityPolicy
+from aionode.transport._writer_proxy import WriterProxy
 from aionode.transport.zenoh._acknowledgements import Acknowledgements
 from aionode.transport.zenoh._publisher import ZenohWriter
+from aionode.transport.zenoh._subscription import GONE_TICKS, ZenohReader
 from aionode.wire import _acknack as acknack
-from aionode.wire._acknack import Kind
+from aionode.wire._acknack import SubmessageKind
 from tests.support.peers import (
     DOMAIN_ID,
     KEEP_ALL,
@@ -37,16 +39,16 @@ def writer_of(publisher: Any) -> ZenohWriter:
 
 
 async def acknowledged(publisher: Any) -> None:
-    """Wait until every reader has said that it has everything."""
+    """Wait until every reader has acknowledged everything."""
     writer: Any = writer_of(publisher)
     changed = asyncio.Event()
-    answer = writer.answer
+    take_acknack = writer.take_acknack
 
-    def note(said: Any) -> None:
-        answer(said)
+    def note(submessage: Any) -> None:
+        take_acknack(submessage)
         changed.set()
 
-    writer.answer = note
+    writer.take_acknack = note
     while not writer._history.readers or not writer._history.done:
         changed.clear()
         await changed.wait()
@@ -119,8 +121,8 @@ async def test_a_slow_stream_is_acknowledged_seldom(qos: QoSProfile) -> None:
         quiet_node("b", second) as b,
     ):
         with raw_session() as session:
-            said = Collector()
-            subscriber = session.declare_subscriber(f"@aionode/{DOMAIN_ID}/*/reliable/1", said)
+            sent = Collector()
+            subscriber = session.declare_subscriber(f"@aionode/{DOMAIN_ID}/*/reliable/1", sent)
             publisher = a.create_publisher(Int32, "n", qos)
             subscription = b.create_subscription(Int32, "n", None, qos)
             await publisher.wait_for_subscribers()
@@ -128,13 +130,13 @@ async def test_a_slow_stream_is_acknowledged_seldom(qos: QoSProfile) -> None:
                 publisher.publish(Int32(data=number))
                 assert (await subscription.receive()).data == number
             subscriber.undeclare()
-        kinds = [acknack.unpack(each.payload.to_bytes()) for each in said.items]
+        kinds = [acknack.unpack(each.payload.to_bytes()) for each in sent.items]
         assert len(kinds) <= (0 if qos.reliability is ReliabilityPolicy.BEST_EFFORT else 20)
-        assert all(each is not None and each.kind is not Kind.DATA for each in kinds)
+        assert all(each is not None and each.kind is not SubmessageKind.DATA for each in kinds)
 
 
 async def test_garbage_instead_of_acknowledgements_is_left_out() -> None:
-    """Anybody may put anything on a key."""
+    """Any process may put any data on a key."""
     async with (
         two_contexts() as (first, second),
         quiet_node("a", first) as a,
@@ -154,13 +156,27 @@ async def test_garbage_instead_of_acknowledgements_is_left_out() -> None:
                 key = f"@aionode/{DOMAIN_ID}/{participant}/reliable/1"
                 for data in (b"", b"\1", bytes(60), b"\1\2" + bytes(50)):
                     session.put(key, data)
-                for kind in Kind:
+                for kind in SubmessageKind:
                     for numbers in ((-5, big), (big, 0), (0, 0), (-big, -big)):
                         rest = acknack.pack_ranges([(-big, big), (5, 3)])
                         for name in (bytes(16), gid):
                             session.put(key, acknack.pack(kind, name, name, *numbers, rest))
-                        if kind is Kind.ACKNACK:
+                        if kind is SubmessageKind.ACKNACK:
                             session.put(key, acknack.pack(kind, writer.gid, gid, *numbers, rest))
             for number in range(2, 50):
                 publisher.publish(Int32(data=number))
                 assert (await subscription.receive()).data == number
+
+
+async def test_a_subscription_that_was_frozen_does_not_give_its_publisher_up() -> None:
+    """When it goes on, its clock has jumped, and the publisher is not in the graph yet."""
+    async with two_contexts() as (first, _), quiet_node("a", first) as a:
+        subscription: Any = a.create_subscription(Int32, "n", None, KEEP_ALL)
+        reader = next(each for each in subscription._registrations if isinstance(each, ZenohReader))
+        proxy = WriterProxy(b"p" * 16, "f", 1, reader, lambda: 0)
+        proxy.last = 3
+        reader._proxies[proxy.gid] = proxy
+        assert all(reader.tick() for _ in range(GONE_TICKS - 1))
+        assert proxy.next == 1
+        assert not reader.tick()
+        assert proxy.next == 4

@@ -191,7 +191,7 @@ async def test_a_server_that_goes_away_ends_the_call_at_once() -> None:
         call = asyncio.gather(client.call(AddTwoInts.Request()))
         await began.wait()
         service.destroy()
-        with pytest.raises(ServiceUnavailableError, match="went away before it answered"):
+        with pytest.raises(ServiceUnavailableError, match="went away before it replied"):
             await call
 
         server.create_service(AddTwoInts, "add", add)

@@ -443,17 +443,17 @@ async def test_a_closed_context_leaves_no_thread_and_opens_again() -> None:
     context = Context()
     publisher_node = quiet_node("a", context)
     publisher = publisher_node.create_publisher(Int32, "n", 10)
-    await context.acquire()
-    await context.release()
+    await context._acquire()
+    await context._release()
     assert [t for t in threading.enumerate() if t not in before] == []
 
-    await context.acquire()
+    await context._acquire()
     async with quiet_node("b") as b:
         subscription = b.create_subscription(Int32, "n")
         await publisher.wait_for_subscribers()
         publisher.publish(Int32(data=7))
         assert await first_numbers(subscription, 1) == [7]
-    await context.release()
+    await context._release()
     publisher_node.destroy_node()
 
 
@@ -518,7 +518,7 @@ async def test_without_a_hash_every_definition_of_a_type_is_heard() -> None:
         endpoint = EndpointInfo(
             EndpointKind.SUBSCRIPTION,
             node.context.graph.nodes()[0],
-            node.context.new_id(),
+            node.context._new_id(),
             "/chatter",
             "std_msgs/msg/String",
             "",

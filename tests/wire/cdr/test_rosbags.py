@@ -122,7 +122,7 @@ def test_rosbags_and_aionode_read_each_other(cls: type[Message], data: st.DataOb
 def test_big_endian_data_is_read_into_native_values(
     data: st.DataObject, cls: type[Message]
 ) -> None:
-    """Nobody sends it any more, but the format allows it."""
+    """Current systems do not send it, but the format allows it."""
     message = data.draw(messages(cls))
     theirs = to_rosbags(cls, message)
     encoded = bytes(STORE.serialize_cdr(theirs, type_name(cls), little_endian=False))

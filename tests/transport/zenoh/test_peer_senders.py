@@ -10,15 +10,15 @@ from functools import partial
 import pytest
 
 from aionode.transport._loop_waker import LoopWaker
-from aionode.transport.zenoh._peers import ALLOWANCE_BYTES, Peers
+from aionode.transport.zenoh._peer_senders import ALLOWANCE_BYTES, PeerSenders
 
 
 @pytest.fixture
-async def peers() -> AsyncIterator[Peers]:
-    """Peers whose threads wake the running loop."""
+async def peers() -> AsyncIterator[PeerSenders]:
+    """PeerSenders whose threads wake the running loop."""
     waker = LoopWaker()
     waker.open(asyncio.get_running_loop())
-    peers = Peers(waker)
+    peers = PeerSenders(waker)
     yield peers
     for send_thread in peers.send_threads():
         await send_thread.flush()
@@ -46,7 +46,7 @@ def waited(gate: threading.Event) -> None:
     gate.wait()
 
 
-async def test_a_peer_that_answers_is_sent_to_from_the_loop(peers: Peers) -> None:
+async def test_a_peer_that_answers_is_sent_to_from_the_loop(peers: PeerSenders) -> None:
     """A thread between would cost latency."""
     sent = Sent()
     for _ in range(10_000):
@@ -55,7 +55,9 @@ async def test_a_peer_that_answers_is_sent_to_from_the_loop(peers: Peers) -> Non
     assert sent.direct == 10_000
 
 
-async def test_a_peer_that_gives_no_sign_of_life_is_sent_to_from_a_thread(peers: Peers) -> None:
+async def test_a_peer_that_gives_no_sign_of_life_is_sent_to_from_a_thread(
+    peers: PeerSenders,
+) -> None:
     """What the loop has sent by then fits into the queues between, so it never waits."""
     sent = Sent()
     for _ in range(1000):
@@ -66,7 +68,7 @@ async def test_a_peer_that_gives_no_sign_of_life_is_sent_to_from_a_thread(peers:
     assert len(sent.threads) == 1000
 
 
-async def test_a_peer_that_hangs_holds_up_no_other(peers: Peers) -> None:
+async def test_a_peer_that_hangs_holds_up_no_other(peers: PeerSenders) -> None:
     """Each has its own thread; and while that is busy the loop sends nothing there either."""
     gate = threading.Event()
     sent = Sent()
@@ -80,7 +82,7 @@ async def test_a_peer_that_hangs_holds_up_no_other(peers: Peers) -> None:
     gate.set()
 
 
-async def test_the_threads_of_peers_that_are_done_end(peers: Peers) -> None:
+async def test_the_threads_of_peers_that_are_done_end(peers: PeerSenders) -> None:
     """A robot that runs for weeks sees many peers in trouble."""
     for name in "abc":
         peers.send((name,), 2 * ALLOWANCE_BYTES, Sent())

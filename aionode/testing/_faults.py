@@ -1,25 +1,11 @@
-"""For tests of your nodes: no network, time that you step, and faults on demand.
-
-With pytest the fixtures `aionode_context`, `node_factory` and `manual_clock` are there as soon as
-aionode is installed (see `aionode.pytest_plugin`)::
-
-    async def test_the_heartbeat_comes_once_a_second(node_factory, manual_clock):
-        heart = node_factory("heart")
-        beats = []
-        heart.create_timer(1.0, lambda: beats.append(manual_clock.now()))
-        await manual_clock.advance(3.0)
-        assert len(beats) == 3
-"""
+"""A transport that loses, delays, duplicates and reorders messages."""
 
 from __future__ import annotations
 
 import random
 from typing import TYPE_CHECKING, Any
 
-from aionode._concurrency import wait_all_tasks_blocked as settle
 from aionode.clock import MachineTime
-from aionode.clock import ManualTime as ManualClock
-from aionode.context import Context
 from aionode.message import snapshot
 from aionode.transport.base import Registration, Requester, SampleInfo, Transport, Writer
 
@@ -30,37 +16,27 @@ if TYPE_CHECKING:
     from aionode.graph import EndpointInfo, Graph, NodeInfo
     from aionode.transport.base import Call, LinkStatus, Reader, ReplyTo, Serve
 
-__all__ = ["FaultyTransport", "ManualClock", "local_context", "settle"]
-
-
-def local_context(*, clock: TimeBase | None = None) -> Context:
-    """Return a context without network: its nodes hear each other and nobody else.
-
-    Args:
-        clock: Where its time comes from, such as a `ManualClock`; the machine without it.
-    """
-    return Context(transport="local", clock=clock)
+__all__ = ["FaultyTransport"]
 
 
 class FaultyTransport(Transport):
-    """Wraps a transport and does to messages and requests what bad networks do.
+    """Wraps a transport and treats messages and requests as a bad network would.
 
-    Readers behind it see what they receive as coming from another process, so gaps are counted in
-    `stats.lost`::
+    Readers see messages as coming from another process, so gaps are counted in `stats.lost`::
 
         Context(transport=FaultyTransport(LocalTransport(), drop=0.1, seed=1))
 
     Args:
-        inner: The transport that carries what is left.
-        drop: How likely a message or request is lost, from 0 to 1.
+        inner: The transport that carries what is not dropped.
+        drop: Probability that a message or request is lost, from 0 to 1.
         delay: How long each is held back, in seconds.
-        duplicate: How likely a message is sent twice, from 0 to 1.
-        reorder: How likely a message is sent after the next one, from 0 to 1.
-        seed: Start of the random numbers; the same seed gives the same faults.
-        clock: Whose time `delay` is; the machine's without it.
+        duplicate: Probability that a message is sent twice, from 0 to 1.
+        reorder: Probability that a message is sent after the next one, from 0 to 1.
+        seed: Seed of the random numbers; the same seed gives the same faults.
+        clock: The clock that `delay` follows; the machine's by default.
 
     Raises:
-        ValueError: a likelihood is not from 0 to 1, or `delay` is negative.
+        ValueError: a probability is not from 0 to 1, or `delay` is negative.
     """
 
     def __init__(
@@ -74,11 +50,11 @@ class FaultyTransport(Transport):
         seed: int = 0,
         clock: TimeBase | None = None,
     ) -> None:
-        for name, likelihood in (("drop", drop), ("duplicate", duplicate), ("reorder", reorder)):
-            if not 0 <= likelihood <= 1:
-                raise ValueError(f"FaultyTransport: {name}={likelihood}; use a number from 0 to 1")
+        for name, probability in (("drop", drop), ("duplicate", duplicate), ("reorder", reorder)):
+            if not 0 <= probability <= 1:
+                raise ValueError(f"FaultyTransport: {name}={probability}; use a number from 0 to 1")
         if delay < 0:
-            raise ValueError(f"FaultyTransport: delay={delay}; use seconds from 0 up")
+            raise ValueError(f"FaultyTransport: delay={delay}; use 0 or more seconds")
         self.inner = inner
         self.drop = drop
         self.delay = delay
@@ -87,12 +63,12 @@ class FaultyTransport(Transport):
         self._random = random.Random(seed)  # noqa: S311  # faults, not secrets
         self._time_base: TimeBase = MachineTime() if clock is None else clock
 
-    def strikes(self, likelihood: float) -> bool:
-        """Whether a fault of this likelihood happens now."""
-        return self._random.random() < likelihood
+    def _strikes(self, probability: float) -> bool:
+        """Whether a fault of this probability happens now."""
+        return self._random.random() < probability
 
-    def later(self, action: Callable[[], None]) -> None:
-        """Do `action` after the delay; at once without one."""
+    def _later(self, action: Callable[[], None]) -> None:
+        """Call `action` after the delay; at once without one."""
         if self.delay == 0:
             action()
         else:
@@ -116,39 +92,39 @@ class FaultyTransport(Transport):
         return self.inner.create_node(node)
 
     def create_writer(self, endpoint: EndpointInfo, msg_type: type[Any]) -> Writer:
-        """Announce a publisher, whose messages suffer."""
+        """Announce a publisher, whose messages are subject to the faults."""
         return _FaultyWriter(self, self.inner.create_writer(endpoint, msg_type))
 
     def create_reader(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
     ) -> Registration:
-        """Announce a subscription, without faults of its own."""
+        """Announce a subscription; faults happen at the publisher."""
         return self.inner.create_reader(endpoint, msg_type, reader)
 
     def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Registration:
-        """Announce a server, without faults of its own."""
+        """Announce a server; faults happen at the client."""
         return self.inner.create_server(endpoint, srv_type, serve)
 
     def create_requester(self, endpoint: EndpointInfo, srv_type: Any) -> Requester:
-        """Announce a client, whose requests and replies suffer."""
+        """Announce a client, whose requests and replies are subject to the faults."""
         return _FaultyRequester(self, self.inner.create_requester(endpoint, srv_type))
 
 
 class _FaultyWriter(Writer):
-    """A writer whose messages are dropped, delayed, doubled and swapped."""
+    """A writer whose messages are dropped, delayed, duplicated and reordered."""
 
     def __init__(self, faults: FaultyTransport, inner: Writer) -> None:
         self._faults = faults
         self._inner = inner
-        self._held: list[tuple[Any, SampleInfo]] = []
+        self._held: list[tuple[Any, SampleInfo]] = []  # to be sent after the next message
 
     @property
-    def active(self) -> bool:  # type: ignore[override]  # what the inner one says
-        """Whether anybody would use a message."""
+    def active(self) -> bool:  # type: ignore[override]  # an attribute there, read-only here
+        """Whether any reader would get a message."""
         return self._inner.active
 
     @property
-    def bounded(self) -> bool:  # type: ignore[override]  # what the inner one says
+    def bounded(self) -> bool:  # type: ignore[override]  # an attribute there, read-only here
         """Whether `has_room` may be false."""
         return self._inner.bounded
 
@@ -162,32 +138,32 @@ class _FaultyWriter(Writer):
 
     @property
     def dropped(self) -> int:
-        """What the inner writer has dropped; what was lost by fate, nobody counts."""
+        """How many messages the inner writer has dropped; injected losses are not counted."""
         return self._inner.dropped
 
     def route_of(self, reader: EndpointInfo) -> str | None:
-        """Return the way of the inner writer."""
+        """Return the route of the inner writer."""
         return self._inner.route_of(reader)
 
     def write(self, msg: Any, sample_info: SampleInfo) -> None:
-        """Let fate decide about `msg`."""
+        """Send `msg`, drop it, hold it back, or send it twice."""
         faults = self._faults
         msg = snapshot(msg)  # the caller may change it before it is sent
         sample_info = SampleInfo(
             sample_info.gid, sample_info.sequence, sample_info.source_ns, remote=True
         )
         released, self._held = self._held, []
-        if faults.strikes(faults.reorder):
+        if faults._strikes(faults.reorder):
             self._held.append((msg, sample_info))
-        elif not faults.strikes(faults.drop):
-            copies = 2 if faults.strikes(faults.duplicate) else 1
+        elif not faults._strikes(faults.drop):
+            copies = 2 if faults._strikes(faults.duplicate) else 1
             for _ in range(copies):
-                faults.later(lambda: self._inner.write(msg, sample_info))
+                faults._later(lambda: self._inner.write(msg, sample_info))
         for held_msg, held_info in released:
-            faults.later(lambda m=held_msg, o=held_info: self._inner.write(m, o))  # type: ignore[misc]  # mypy cannot infer defaults of a lambda
+            faults._later(lambda m=held_msg, i=held_info: self._inner.write(m, i))  # type: ignore[misc]  # mypy cannot infer defaults of a lambda
 
     def close(self) -> None:
-        """Close the inner writer; what is held back is lost."""
+        """Close the inner writer; held messages are lost."""
         self._held.clear()
         self._inner.close()
 
@@ -205,10 +181,10 @@ class _FaultyRequester(Requester):
         return self._inner.servers
 
     def send(self, request: Any, sample_info: SampleInfo, reply_to: ReplyTo) -> Call:
-        """Let fate decide about `request`."""
+        """Send `request` after the delay, or drop it."""
         call = _FaultyCall(self._faults, reply_to)
-        if not self._faults.strikes(self._faults.drop):
-            self._faults.later(lambda: call.begin(self._inner, request, sample_info))
+        if not self._faults._strikes(self._faults.drop):
+            self._faults._later(lambda: call.begin(self._inner, request, sample_info))
         return call
 
     def close(self) -> None:
@@ -217,7 +193,7 @@ class _FaultyRequester(Requester):
 
 
 class _FaultyCall:
-    """One request on its way, and its replies on their way back."""
+    """One request and its replies."""
 
     def __init__(self, faults: FaultyTransport, reply_to: ReplyTo) -> None:
         self._faults = faults
@@ -231,19 +207,19 @@ class _FaultyCall:
             self._inner = requester.send(request, sample_info, self)
 
     def reply(self, response: Any, sample_info: SampleInfo) -> None:
-        """Pass a response on, later."""
-        self._faults.later(lambda: self._reply_to.reply(response, sample_info))
+        """Pass a response on after the delay."""
+        self._faults._later(lambda: self._reply_to.reply(response, sample_info))
 
     def fail(self, error: Any) -> None:
-        """Pass an error on, later."""
-        self._faults.later(lambda: self._reply_to.fail(error))
+        """Pass an error on after the delay."""
+        self._faults._later(lambda: self._reply_to.fail(error))
 
     def end(self) -> None:
-        """Pass the end on, later."""
-        self._faults.later(self._reply_to.end)
+        """Pass the end on after the delay."""
+        self._faults._later(self._reply_to.end)
 
     def cancel(self) -> None:
-        """Forget the request; a reply that is under way still arrives, late."""
+        """Cancel the request; a reply already on its way still arrives."""
         self._cancelled = True
         if self._inner is not None:
             self._inner.cancel()

@@ -1,9 +1,9 @@
-"""Requests and replies towards other contexts, of which any may be frozen.
+"""Sending requests and replies to other contexts, each of which may be frozen.
 
-They go with congestion control BLOCK, since none may be lost, and so whoever sends one waits when
-the peer takes nothing more. The loop sends them itself as long as the peer has shown that it lives,
-or has been sent so little that it fits into the queues between; everything else is sent by one
-thread for each such peer.
+They are sent with congestion control BLOCK, since none may be lost, so sending one waits while the
+peer reads nothing. The event loop sends them itself while the peer has shown signs of life, or has
+been sent so little that the queues on the way hold it. Otherwise one thread for each such peer
+sends them.
 """
 
 from __future__ import annotations
@@ -16,24 +16,24 @@ from aionode.transport._send_thread import SendThread
 if TYPE_CHECKING:
     from aionode.transport._loop_waker import LoopWaker
 
-__all__ = ["Peers"]
+__all__ = ["PeerSenders"]
 
 ALLOWANCE_BYTES: Final = 128 * 1024
-"""How much the loop sends to a peer that gives no sign of life: less than Zenoh's queue holds."""
+"""How much the loop sends to a peer that shows no sign of life: less than Zenoh's queue holds."""
 
 OVERHEAD_BYTES: Final = 512
-"""What a request or reply takes besides its payload, at most about: its key and a message's end."""
-
+"""What a request or reply takes besides its payload, approximately: its key and headers."""
 
 REMEMBERED: Final = 1_000
+"""How many peers are remembered before idle ones are dropped."""
 
 
-class Peer:
-    """One other context.
+class PeerSender:
+    """The sender of requests and replies to one other context.
 
     Attributes:
         spent_bytes: How much was sent since its last sign of life.
-        send_thread: The thread for it, once there was need of one.
+        send_thread: The thread for it, once it was needed.
     """
 
     __slots__ = ("send_thread", "spent_bytes")
@@ -43,31 +43,32 @@ class Peer:
         self.send_thread: SendThread | None = None
 
 
-class Peers:
-    """The other contexts that requests or replies were sent to.
+class PeerSenders:
+    """The senders of this context, one for each context that it sends requests or replies to.
 
     Args:
-        waker: The way from threads to the loop.
+        waker: Wakes the event loop from threads.
     """
 
     def __init__(self, waker: LoopWaker) -> None:
         self._waker = waker
-        self._peers: dict[str, Peer] = {}
+        # By participant.
+        self._peers: dict[str, PeerSender] = {}
 
     def heard(self, participant: str) -> None:
-        """Note that a peer lives."""
+        """Record a sign of life of a peer."""
         peer = self._peers.get(participant)
         if peer is not None:
             peer.spent_bytes = 0
 
     def send(self, participants: Iterable[str], size_bytes: int, job: Callable[[], None]) -> None:
-        """Send something to some peers: now if that cannot block, else from a thread."""
-        slow: Peer | None = None
+        """Run `job`, which sends to some peers: at once if it cannot block, else in a thread."""
+        slow: PeerSender | None = None
         size_bytes += OVERHEAD_BYTES
         for participant in participants:
             peer = self._peers.get(participant)
             if peer is None:
-                peer = self._peers[participant] = Peer()
+                peer = self._peers[participant] = PeerSender()
             peer.spent_bytes += size_bytes
             busy = peer.send_thread is not None and peer.send_thread.busy
             if busy or peer.spent_bytes > ALLOWANCE_BYTES:
@@ -83,7 +84,7 @@ class Peers:
         slow.send_thread.submit(job)
 
     def _tidy(self) -> None:
-        """Let threads end that are idle, and forget peers if they are many."""
+        """End idle threads, and forget idle peers if there are many."""
         for peer in self._peers.values():
             if peer.send_thread is not None and not peer.send_thread.busy:
                 peer.send_thread.close()
@@ -100,7 +101,7 @@ class Peers:
         return [peer.send_thread for peer in self._peers.values() if peer.send_thread is not None]
 
     def clear(self) -> None:
-        """Forget all; what waits in a thread is not sent."""
+        """Forget all peers; jobs that wait in a thread are dropped."""
         for send_thread in self.send_threads():
             send_thread.abandon()
         self._peers.clear()

@@ -43,11 +43,11 @@ def bring(
         inline_deadline_ns = perf_ns() + MINUTE_NS
     for number in numbers:
         sample_info = SampleInfo(bytes(16), number, 0, remote=True)
-        subscription.deliver(Int32(data=number), sample_info, inline_deadline_ns)
+        subscription._reader.deliver(Int32(data=number), sample_info, inline_deadline_ns)
 
 
 class Asked(Request):
-    """A request for the sum of two and three, which notes what becomes of it."""
+    """A request for the sum of two and three, which records its answer."""
 
     def __init__(self) -> None:
         self.message = AddTwoInts.Request(a=2, b=3)
@@ -55,15 +55,15 @@ class Asked(Request):
         self.outcome: list[object] = []
 
     def reply(self, response: Any) -> None:
-        """Note a response."""
+        """Record a response."""
         self.outcome.append(response.sum)
 
     def fail(self, error_type: str, error_text: str) -> None:
-        """Note an error."""
+        """Record an error."""
         self.outcome.append(f"{error_type}: {error_text}")
 
     def drop(self) -> None:
-        """Note the end without an answer, unless there was one."""
+        """Record the end without an answer, unless there was one."""
         if not self.outcome:
             self.outcome.append("dropped")
 
@@ -118,7 +118,7 @@ async def test_without_a_time_the_callback_waits_for_its_turn(node: Node) -> Non
     assert heard == [1]
 
 
-async def test_a_local_publish_calls_nobody_back(node: Node) -> None:
+async def test_a_local_publish_runs_no_callback(node: Node) -> None:
     """Or callbacks would run inside callbacks."""
     heard: list[int] = []
     listen(node, lambda msg: heard.append(msg.data))
@@ -142,7 +142,7 @@ async def test_after_the_time_of_the_event_messages_queue(node: Node) -> None:
 
 
 async def test_what_follows_a_queued_message_queues_too(node: Node) -> None:
-    """Order is worth more than a turn of the loop."""
+    """Order matters more than an iteration of the loop."""
     heard: list[int] = []
     subscription = listen(node, lambda msg: heard.append(msg.data))
     await settle()
@@ -176,18 +176,18 @@ async def test_a_message_that_comes_during_a_callback_is_next(node: Node) -> Non
 async def test_callbacks_with_a_task_or_a_thread_of_their_own_queue(
     node: Node, options: dict[str, Any]
 ) -> None:
-    """They run beside the loop's events by the user's wish."""
+    """The user asked for them to run beside the loop's events."""
     heard: list[int] = []
     subscription = listen(node, lambda msg: heard.append(msg.data), **options)
     await settle()
     bring(subscription, 1)
-    assert len(subscription._message_queue) == 1
+    assert len(subscription._reader) == 1
     await settle()
     assert heard == [1]
 
 
 async def test_coroutine_functions_queue(node: Node) -> None:
-    """They need a task, which the pump has; objects with an async `__call__` as well."""
+    """They need a task: that of the consumer; so do objects with an async `__call__`."""
     heard: list[int] = []
 
     class Listener:
@@ -197,7 +197,7 @@ async def test_coroutine_functions_queue(node: Node) -> None:
     subscription = listen(node, Listener())
     await settle()
     bring(subscription, 1)
-    assert len(subscription._message_queue) == 1
+    assert len(subscription._reader) == 1
     await settle()
     assert heard == [1]
 
@@ -218,7 +218,7 @@ async def test_before_the_node_runs_messages_queue(context: Context) -> None:
 
 
 async def test_callbacks_are_measured(node: Node) -> None:
-    """The statistics do not tell which way a message took."""
+    """The statistics are the same for queued and inline callbacks."""
     subscription = listen(node, lambda _: None)
     await settle()
     bring(subscription, 1, 2)
@@ -262,7 +262,7 @@ async def test_callbacks_run_in_the_context_of_their_node(context: Context) -> N
 
 
 async def test_an_error_ends_the_node(context: Context) -> None:
-    """It is the pump that raises it, not the transport's event."""
+    """The consumer raises it, not the transport's event."""
 
     def fail(msg: Int32) -> None:
         raise ValueError(f"no {msg.data} please")
@@ -284,7 +284,7 @@ async def test_an_error_ends_the_node(context: Context) -> None:
 
 
 async def test_on_error_log_goes_on_at_once(node: Node, capfd: pytest.CaptureFixture[str]) -> None:
-    """Nothing is left for the pump."""
+    """Nothing is left for the consumer."""
     heard: list[int] = []
 
     def callback(msg: Int32) -> None:
@@ -313,7 +313,7 @@ async def test_on_error_may_be_a_function(node: Node) -> None:
 
 
 async def test_a_callback_that_raises_cancelled_error_ends_its_subscription(node: Node) -> None:
-    """As it does in the pump: who raises it means it."""
+    """As it does in the consumer: the callback asks for it."""
     heard: list[int] = []
 
     def callback(msg: Int32) -> None:
@@ -350,7 +350,7 @@ async def test_a_keyboard_interrupt_goes_through(node: Node) -> None:
 
 
 async def test_what_a_callback_returns_is_awaited_before_the_next_message(node: Node) -> None:
-    """By the pump, in order."""
+    """By the consumer, in order."""
     heard: list[str] = []
 
     async def work(msg: Int32) -> None:
@@ -361,7 +361,7 @@ async def test_what_a_callback_returns_is_awaited_before_the_next_message(node: 
     subscription = listen(node, lambda msg: work(msg))  # noqa: PLW0108  # not known to be async
     await settle()
     bring(subscription, 1, 2)
-    assert len(subscription._message_queue) == 1
+    assert len(subscription._reader) == 1
     await settle()
     assert heard == ["begin 1", "end 1", "begin 2", "end 2"]
     assert subscription.stats.run_time.count == 2
@@ -383,7 +383,7 @@ async def test_an_error_of_what_is_awaited_is_one_of_the_callback(node: Node) ->
     assert [type(error) for error in seen] == [CallbackCancelledError]
 
 
-async def test_what_nobody_can_await_any_more_is_closed(node: Node) -> None:
+async def test_a_coroutine_that_cannot_be_awaited_any_more_is_closed(node: Node) -> None:
     """A coroutine that never began would be reported by Python, far from its cause."""
     begun: list[int] = []
 
@@ -407,7 +407,7 @@ async def test_what_nobody_can_await_any_more_is_closed(node: Node) -> None:
     assert [coroutine.cr_frame for coroutine in coroutines] == [None]
 
 
-async def test_a_future_that_nobody_can_await_any_more_is_cancelled(node: Node) -> None:
+async def test_a_future_that_cannot_be_awaited_any_more_is_cancelled(node: Node) -> None:
     """As it would be if the wait had begun."""
     futures: list[asyncio.Future[None]] = []
 
@@ -442,7 +442,7 @@ async def test_a_callback_may_destroy_its_subscription(node: Node) -> None:
 
 
 async def test_an_error_after_destroying_ends_the_node_all_the_same(context: Context) -> None:
-    """The cancelled pump still has to raise it."""
+    """The cancelled consumer still has to raise it."""
 
     def callback(_: Int32) -> None:
         subscription.destroy()
@@ -463,7 +463,7 @@ async def test_an_error_after_destroying_ends_the_node_all_the_same(context: Con
 
 
 async def test_a_callback_may_destroy_its_node(node_factory: Callable[..., Node]) -> None:
-    """Nothing is called any more, and the node ends as if somebody else had asked for it."""
+    """Nothing is called any more, and the node ends as if it were destroyed from outside."""
     heard: list[int] = []
     node = node_factory("brief")
 
@@ -480,8 +480,8 @@ async def test_a_callback_may_destroy_its_node(node_factory: Callable[..., Node]
     assert subscription.destroyed
 
 
-async def test_a_node_that_fails_calls_nobody_back(context: Context) -> None:
-    """Its pumps are cancelled before its entities are destroyed."""
+async def test_a_node_that_fails_runs_no_callback(context: Context) -> None:
+    """Its consumers are cancelled before its entities are destroyed."""
     heard: list[int] = []
     node = Node("node", context=context)
     subscription = listen(node, lambda msg: heard.append(msg.data))
@@ -490,7 +490,7 @@ async def test_a_node_that_fails_calls_nobody_back(context: Context) -> None:
     async def transport() -> None:
         await settle()
         bring(failing, 1)
-        await checkpoint()  # the pump raises
+        await checkpoint()  # the consumer raises
         await checkpoint()  # the task group cancels the others
         bring(subscription, 1)
 
@@ -509,7 +509,7 @@ async def test_an_idle_service_answers_within_the_event(node: Node) -> None:
     service = node.create_service(AddTwoInts, "sums", add)
     await settle()
     request = Asked()
-    service.serve(request, perf_ns() + MINUTE_NS)
+    service._serve(request, perf_ns() + MINUTE_NS)
     assert request.outcome == [5]
     assert service.stats.received == service.stats.run_time.count == 1
 
@@ -521,7 +521,7 @@ async def test_a_handler_of_the_request_alone_answers_within_the_event(node: Nod
     )
     await settle()
     request = Asked()
-    service.serve(request, perf_ns() + MINUTE_NS)
+    service._serve(request, perf_ns() + MINUTE_NS)
     assert request.outcome == [2]
 
 
@@ -530,32 +530,32 @@ async def test_without_a_time_a_request_waits_for_its_turn(node: Node) -> None:
     service = node.create_service(AddTwoInts, "sums", add)
     await settle()
     requests = [Asked(), Asked()]
-    service.serve(requests[0])
-    service.serve(requests[1], perf_ns() + MINUTE_NS)
+    service._serve(requests[0])
+    service._serve(requests[1], perf_ns() + MINUTE_NS)
     assert [request.outcome for request in requests] == [[], []]
     await settle()
     assert [request.outcome for request in requests] == [[5], [5]]
 
 
 async def test_a_failing_handler_tells_the_client_at_once(node: Node) -> None:
-    """And a node that goes on does so without its pump."""
+    """And a node that continues does so without its consumer."""
     service = node.create_service(AddTwoInts, "sums", fail, on_error="log")
     await settle()
     request = Asked()
-    service.serve(request, perf_ns() + MINUTE_NS)
+    service._serve(request, perf_ns() + MINUTE_NS)
     assert request.outcome == ["ValueError: no sums today"]
     assert service.stats.errors == 1
 
 
 async def test_a_failing_handler_ends_its_node(context: Context) -> None:
-    """Through the pump, as from the queue, where `on_error` asks for it."""
+    """Through the consumer, as from the queue, if `on_error` says so."""
     node = Node("node", context=context)
     service = node.create_service(AddTwoInts, "sums", fail, on_error="raise")
     request = Asked()
 
     async def transport() -> None:
         await settle()
-        service.serve(request, perf_ns() + MINUTE_NS)
+        service._serve(request, perf_ns() + MINUTE_NS)
 
     async with asyncio.TaskGroup() as tasks:
         tasks.create_task(transport())
@@ -574,12 +574,12 @@ async def test_a_handler_that_is_cancelled_drops_its_request(node: Node) -> None
     service = node.create_service(AddTwoInts, "sums", handler)
     await settle()
     request = Asked()
-    service.serve(request, perf_ns() + MINUTE_NS)
+    service._serve(request, perf_ns() + MINUTE_NS)
     assert request.outcome == ["dropped"]
 
 
 async def test_what_a_handler_returns_is_awaited(node: Node) -> None:
-    """By the pump, which then answers."""
+    """By the consumer, which then answers."""
 
     async def work(request: AddTwoInts.Request) -> AddTwoInts.Response:
         await checkpoint()
@@ -588,18 +588,18 @@ async def test_what_a_handler_returns_is_awaited(node: Node) -> None:
     service = node.create_service(AddTwoInts, "sums", lambda request: work(request))  # noqa: PLW0108  # not known to be async
     await settle()
     request = Asked()
-    service.serve(request, perf_ns() + MINUTE_NS)
+    service._serve(request, perf_ns() + MINUTE_NS)
     assert request.outcome == []
     await settle()
     assert request.outcome == [5]
 
 
 async def test_a_request_that_was_given_up_is_not_served(node: Node) -> None:
-    """Nobody waits for the answer."""
+    """No client waits for the answer."""
     service = node.create_service(AddTwoInts, "sums", add)
     await settle()
     request = Asked()
     request.cancelled = True
-    service.serve(request, perf_ns() + MINUTE_NS)
+    service._serve(request, perf_ns() + MINUTE_NS)
     assert request.outcome == ["dropped"]
     assert service.stats.dropped == 1

@@ -1,0 +1,431 @@
+"""Publishers, subscriptions, services, clients, timers and rates of a node."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, overload
+
+from aionode import qos
+from aionode._node.parameters import NodeParameters
+from aionode.endpoints._core.graph_entry import GraphEntry
+from aionode.endpoints._core.unenforced_qos import policies_without_effect
+from aionode.endpoints.client import Client
+from aionode.endpoints.publisher import Publisher
+from aionode.endpoints.service import Service
+from aionode.endpoints.subscription import Subscription
+from aionode.endpoints.timer import Rate, Timer
+from aionode.endpoints.timer._timer import to_period_ns
+from aionode.errors import brief, shortened
+from aionode.graph import EndpointKind
+from aionode.message import Message, ServiceType, holds_arrays
+from aionode.parameter import declare_qos_overrides
+
+if TYPE_CHECKING:
+    from aionode.clock import Clock
+    from aionode.endpoints._core.callback_runner import OnError
+    from aionode.endpoints._core.entity import Entity
+    from aionode.endpoints.service import ServiceCallback
+    from aionode.endpoints.subscription import SubscriptionCallback
+    from aionode.endpoints.timer import TimerCallback
+    from aionode.message import ServiceClass
+    from aionode.parameter import QoSOverridingOptions
+    from aionode.qos import QoSProfile
+
+__all__ = ["NodeEndpoints"]
+
+MsgT = TypeVar("MsgT", bound=Message)
+RequestT = TypeVar("RequestT", bound=Message)
+ResponseT = TypeVar("ResponseT", bound=Message)
+
+
+class NodeEndpoints(NodeParameters):
+    """The part of `aionode.Node` that creates and destroys endpoints, timers and rates."""
+
+    @property
+    def publishers(self) -> list[Publisher[Any]]:
+        """The publishers of this node."""
+        return self._entities_of(Publisher)
+
+    @property
+    def subscriptions(self) -> list[Subscription[Any]]:
+        """The subscriptions of this node."""
+        return self._entities_of(Subscription)
+
+    @property
+    def services(self) -> list[Service[Any, Any]]:
+        """The services of this node."""
+        return self._entities_of(Service)
+
+    @property
+    def clients(self) -> list[Client[Any, Any]]:
+        """The clients of this node."""
+        return self._entities_of(Client)
+
+    @property
+    def timers(self) -> list[Timer]:
+        """The timers of this node."""
+        return self._entities_of(Timer)
+
+    def create_publisher(
+        self,
+        msg_type: type[MsgT],
+        topic: str,
+        qos_profile: QoSProfile | int,
+        *,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+    ) -> Publisher[MsgT]:
+        """Return a publisher of `msg_type`.
+
+        Args:
+            msg_type: A message class.
+            topic: Name of the topic; relative names are prefixed with the node's namespace.
+            qos_profile: A profile, or a depth: the number of messages to keep.
+            qos_overriding_options: Which policies parameters may override.
+
+        Raises:
+            TypeError: `msg_type` is not a message class, or `qos_profile` has the wrong type.
+            ValueError: `qos_profile` is a negative number.
+            InvalidTopicNameException: `topic` is invalid (a ValueError).
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        self._refuse_if_destroyed("publisher")
+        expect_message_type(msg_type, f"publisher of {topic}")
+        graph_entry = self._graph_entry(
+            EndpointKind.PUBLISHER, topic, msg_type, qos_profile, qos_overriding_options
+        )
+        writers = self._register(
+            lambda transport: transport.create_writer(graph_entry.endpoint, msg_type)
+        )
+        return self._add_entity(
+            Publisher(graph_entry, msg_type, writers, self.context.time_base), graph_entry
+        )
+
+    @overload
+    def create_subscription(
+        self,
+        msg_type: type[Message],
+        topic: str,
+        callback: SubscriptionCallback[bytes] | None = None,
+        qos_profile: QoSProfile | int = 10,
+        *,
+        concurrent: bool | int = False,
+        raw: Literal[True],
+        on_error: OnError = "raise",
+        offload: bool = False,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+    ) -> Subscription[bytes]: ...
+
+    @overload
+    def create_subscription(
+        self,
+        msg_type: type[MsgT],
+        topic: str,
+        callback: SubscriptionCallback[MsgT] | None = None,
+        qos_profile: QoSProfile | int = 10,
+        *,
+        concurrent: bool | int = False,
+        raw: Literal[False] = False,
+        on_error: OnError = "raise",
+        offload: bool = False,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+    ) -> Subscription[MsgT]: ...
+
+    def create_subscription(
+        self,
+        msg_type: type[Any],
+        topic: str,
+        callback: SubscriptionCallback[Any] | None = None,
+        qos_profile: QoSProfile | int = 10,
+        *,
+        concurrent: bool | int = False,
+        raw: bool = False,
+        on_error: OnError = "raise",
+        offload: bool = False,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+    ) -> Subscription[Any]:
+        """Return a subscription to `topic`.
+
+        Args:
+            msg_type: A message class.
+            topic: Name of the topic; relative names are prefixed with the node's namespace.
+            callback: Called with each message, or with message and `MessageInfo`; sync or async.
+                Without one, iterate over the subscription with ``async for``.
+            qos_profile: A profile, or a depth: the number of unread messages to keep.
+            concurrent: How many calls of an async callback may run at once: one if False, any
+                number if True, or a number.
+            raw: Whether to deliver serialized messages (CDR bytes) instead of objects.
+            on_error: What happens on an exception in the callback: ``"raise"`` ends the node,
+                ``"log"`` logs and counts it, a function is called with (exception,
+                CallbackContext).
+            offload: Whether to run a sync callback in a thread.
+            qos_overriding_options: Which policies parameters may override.
+
+        Raises:
+            TypeError: an argument has the wrong type, or the callback takes other arguments.
+            ValueError: `concurrent`, `on_error` or `qos_profile` is invalid.
+            InvalidTopicNameException: `topic` is invalid (a ValueError).
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        self._refuse_if_destroyed("subscription")
+        expect_message_type(msg_type, f"subscription of {topic}")
+        graph_entry = self._graph_entry(
+            EndpointKind.SUBSCRIPTION, topic, msg_type, qos_profile, qos_overriding_options
+        )
+        subscription: Subscription[Any] = Subscription(
+            graph_entry,
+            msg_type,
+            callback,
+            self.context.time_base,
+            concurrent=concurrent,
+            raw=raw,
+            on_error=on_error,
+            offload=offload,
+        )
+        subscription._add_registrations(
+            self._register(
+                lambda transport: transport.create_reader(
+                    graph_entry.endpoint, msg_type, subscription._reader
+                )
+            )
+        )
+        return self._add_entity(subscription, graph_entry)
+
+    def create_service(
+        self,
+        srv_type: ServiceClass[RequestT, ResponseT],
+        srv_name: str,
+        callback: ServiceCallback[RequestT, ResponseT],
+        *,
+        qos_profile: QoSProfile | int = qos.qos_profile_services_default,
+        concurrent: bool | int = False,
+        on_error: OnError = "log",
+        offload: bool = False,
+    ) -> Service[RequestT, ResponseT]:
+        """Return a service server of `srv_name`.
+
+        Args:
+            srv_type: A service class.
+            srv_name: Name of the service; relative names are prefixed with the node's namespace.
+            callback: Called with (request, response), or with (request); returns the response; sync
+                or async. The client gets an exception it raises as a `ServiceError`.
+            qos_profile: A profile, or a depth.
+            concurrent: How many requests an async callback may answer at once: one if False, any
+                number if True, or a number.
+            on_error: What happens on an exception in the callback, after the client has been
+                told: ``"log"`` logs it with its traceback, counts it and carries on, ``"raise"``
+                ends the node, a function is called with (exception, CallbackContext).
+            offload: Whether to run a sync callback in a thread.
+
+        Raises:
+            TypeError: an argument has the wrong type, or the callback takes other arguments.
+            ValueError: `concurrent`, `on_error` or `qos_profile` is invalid.
+            InvalidServiceNameException: `srv_name` is invalid (a ValueError).
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        self._refuse_if_destroyed("service")
+        expect_service_type(srv_type, f"service {srv_name}")
+        graph_entry = self._graph_entry(EndpointKind.SERVER, srv_name, srv_type, qos_profile)
+        service: Service[RequestT, ResponseT] = Service(
+            graph_entry,
+            srv_type,
+            callback,
+            concurrent=concurrent,
+            on_error=on_error,
+            offload=offload,
+        )
+        service._add_registrations(
+            self._register(
+                lambda transport: transport.create_server(
+                    graph_entry.endpoint, srv_type, service._serve
+                )
+            )
+        )
+        return self._add_entity(service, graph_entry)
+
+    def create_client(
+        self,
+        srv_type: ServiceClass[RequestT, ResponseT],
+        srv_name: str,
+        *,
+        qos_profile: QoSProfile | int = qos.qos_profile_services_default,
+    ) -> Client[RequestT, ResponseT]:
+        """Return a client of `srv_name`; await its `call`.
+
+        Args:
+            srv_type: A service class.
+            srv_name: Name of the service; relative names are prefixed with the node's namespace.
+            qos_profile: A profile, or a depth.
+
+        Raises:
+            TypeError: an argument has the wrong type.
+            InvalidServiceNameException: `srv_name` is invalid (a ValueError).
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        self._refuse_if_destroyed("client")
+        expect_service_type(srv_type, f"client of {srv_name}")
+        graph_entry = self._graph_entry(EndpointKind.CLIENT, srv_name, srv_type, qos_profile)
+        requesters = self._register(
+            lambda transport: transport.create_requester(graph_entry.endpoint, srv_type)
+        )
+        return self._add_entity(
+            Client(graph_entry, srv_type, requesters, self.context.time_base), graph_entry
+        )
+
+    def create_timer(
+        self,
+        timer_period_sec: float,
+        callback: TimerCallback,
+        clock: Clock | None = None,
+        autostart: bool = True,  # rclpy's signature
+        *,
+        on_error: OnError = "raise",
+        offload: bool = False,
+    ) -> Timer:
+        """Return a timer that calls `callback` every `timer_period_sec` seconds.
+
+        The first call is one period from now. A late call does not delay later ones, missed calls
+        are skipped, and calls never overlap.
+
+        Args:
+            timer_period_sec: The period in seconds; 0 calls as often as the event loop allows.
+            callback: Called without arguments, or with a `TimerInfo`; sync or async.
+            clock: The clock to follow; the node's clock by default.
+            autostart: Whether it starts at once; otherwise `reset` starts it.
+            on_error: What happens on an exception in the callback: ``"raise"`` ends the node,
+                ``"log"`` logs and counts it, a function is called with (exception,
+                CallbackContext).
+            offload: Whether to run a sync callback in a thread.
+
+        Raises:
+            TypeError: an argument has the wrong type, or the callback takes other arguments.
+            ValueError: the period is negative, or `on_error` is invalid.
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        self._refuse_if_destroyed("timer")
+        timer = Timer(
+            callback,
+            to_period_ns(timer_period_sec),
+            self._clock if clock is None else clock,
+            partial(self._callbacks.make_runner, on_error=on_error, offload=offload),
+            autostart=autostart,
+        )
+        return self._add_entity(timer)
+
+    def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
+        """Return a rate, for ``await rate.sleep()`` or ``async for _ in rate``.
+
+        Args:
+            frequency: Ticks per second.
+            clock: The clock to follow; the node's clock by default.
+
+        Raises:
+            TypeError: `frequency` is not a number.
+            ValueError: `frequency` is not positive.
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        self._refuse_if_destroyed("rate")
+        return self._add_entity(Rate(frequency, self._clock if clock is None else clock))
+
+    def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
+        """Destroy a publisher, as its `destroy` does; False if it is not one of this node's."""
+        return self._destroy(publisher)
+
+    def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
+        """Destroy a subscription, as its `destroy` does; False if it is not one of this node's."""
+        return self._destroy(subscription)
+
+    def destroy_service(self, service: Service[Any, Any]) -> bool:
+        """Destroy a service, as its `destroy` does; False if it is not one of this node's."""
+        return self._destroy(service)
+
+    def destroy_client(self, client: Client[Any, Any]) -> bool:
+        """Destroy a client, as its `destroy` does; False if it is not one of this node's."""
+        return self._destroy(client)
+
+    def destroy_timer(self, timer: Timer) -> bool:
+        """Destroy a timer, as its `destroy` does; False if it is not one of this node's."""
+        return self._destroy(timer)
+
+    def destroy_rate(self, rate: Rate) -> bool:
+        """Destroy a rate, as its `destroy` does; False if it is not one of this node's."""
+        return self._destroy(rate)
+
+    def _destroy(self, entity: Entity) -> bool:
+        """Destroy `entity`; return whether it belonged to this node."""
+        if entity not in self._entities:
+            return False
+        entity.destroy()
+        return True
+
+    def _graph_entry(
+        self,
+        kind: EndpointKind,
+        name: str,
+        ros_type: Any,
+        qos_profile: QoSProfile | int,
+        overriding: QoSOverridingOptions | None = None,
+    ) -> GraphEntry:
+        """Return the graph entry of a new endpoint, which `_add_entity` opens."""
+        if self._constructed:  # the built-in services are rarely called, and start without it
+            load_arrays(ros_type)
+        is_service = kind in {EndpointKind.SERVER, EndpointKind.CLIENT}
+        full_name = self._resolve(name, is_service=is_service)
+        profile = qos.as_profile(qos_profile)
+        if overriding is not None:
+            entity: Literal["publisher", "subscription"] = (
+                "publisher" if kind is EndpointKind.PUBLISHER else "subscription"
+            )
+            profile = declare_qos_overrides(self, full_name, entity, profile, overriding)
+        if self._constructed:
+            self._warn_of_no_effect(kind, full_name, profile)
+        others = [e.qos for e in self.graph.endpoints(kind.opposite, name=full_name)]
+        if kind is EndpointKind.PUBLISHER:
+            profile = qos.best_available_for_publisher(profile, others)
+        elif kind is EndpointKind.SUBSCRIPTION:
+            profile = qos.best_available_for_subscription(profile, others)
+        endpoint = self.context._describe_endpoint(
+            kind, self._info, full_name, ros_type, profile.resolved()
+        )
+        return GraphEntry(endpoint, self.graph, self._callbacks, self._affinity)
+
+    def _warn_of_no_effect(self, kind: EndpointKind, name: str, profile: QoSProfile) -> None:
+        """Log, once for each endpoint, the QoS policies that have no effect."""
+        policies = policies_without_effect(profile, sends=kind is EndpointKind.PUBLISHER)
+        subject = f"{kind.value} of {name}"
+        if policies and subject not in self._warned_about:
+            self._warned_about.add(subject)
+            self._logger.warning(
+                f"{subject}: {', '.join(policies)}: announced to others and compared with theirs, "
+                "but without effect here: no event is raised and no message dropped because of "
+                "it; to detect silence, compare the time of the last message in a timer"
+            )
+
+
+def load_arrays(ros_type: Any) -> None:
+    """Import numpy if a type has fields that are arrays, so that no callback waits for the import.
+
+    The built-in services have such fields too, but are rarely called: a node that uses no others
+    starts without it.
+    """
+    halves = (ros_type,) if issubclass(ros_type, Message) else (ros_type.Request, ros_type.Response)
+    if any(holds_arrays(half) for half in halves):
+        import numpy  # noqa: F401, ICN001  # imported ahead of use
+
+
+def expect_message_type(msg_type: object, subject: str) -> None:
+    """Raise TypeError unless `msg_type` is a message class."""
+    if not (isinstance(msg_type, type) and issubclass(msg_type, Message)):
+        raise TypeError(
+            f"{shortened(subject)}: {brief(msg_type)} is not a message class; use one such as "
+            "aionode.interfaces.std_msgs.msg.String, or derive from aionode.message.Message"
+        )
+
+
+def expect_service_type(srv_type: object, subject: str) -> None:
+    """Raise TypeError unless `srv_type` is a service class."""
+    if not (isinstance(srv_type, type) and issubclass(srv_type, ServiceType)):
+        raise TypeError(
+            f"{shortened(subject)}: {brief(srv_type)} is not a service class; use one such as "
+            "aionode.interfaces.example_interfaces.srv.AddTwoInts, or derive from "
+            "aionode.message.ServiceType"
+        )

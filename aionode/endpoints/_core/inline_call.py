@@ -1,0 +1,65 @@
+"""Callbacks that run within the event that asks for them, without waking a task."""
+
+from __future__ import annotations
+
+import asyncio
+from contextvars import Context, copy_context
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable, Callable, Coroutine
+
+__all__ = ["InlineCall"]
+
+
+class InlineCall:
+    """Runs callbacks within an event of the loop, while the task that would run them waits.
+
+    What a callback leaves, an exception or something to await, goes to that task: `after` takes it.
+    """
+
+    __slots__ = ("_context", "_error", "_rest")
+
+    def __init__(self) -> None:
+        self._context: Context | None = None
+        self._error: BaseException | None = None
+        self._rest: Coroutine[object, object, None] | None = None
+
+    def prepare(self) -> None:
+        """Let callbacks run in the context of the current task, as if it called them."""
+        if self._context is None:
+            self._context = copy_context()
+
+    def run(
+        self, handle: Callable[..., Coroutine[object, object, None] | None], *args: Any
+    ) -> bool:
+        """Call `handle`; return False if it left something for `after`. Needs `prepare` first."""
+        assert self._context is not None  # noqa: S101  # `prepare` was called
+        try:
+            self._rest = self._context.run(handle, *args)
+        except (KeyboardInterrupt, SystemExit):
+            raise
+        except BaseException as error:  # noqa: BLE001  # raised by the task, as if it had called
+            self._error = error
+        return self._rest is None and self._error is None
+
+    async def after(self, event: Awaitable[None]) -> None:
+        """Wait for `event`, then finish what `run` left; its caller sets the event in that case.
+
+        Raises:
+            BaseException: what a callback raised.
+        """
+        try:
+            await event
+        except asyncio.CancelledError:
+            if self._rest is not None:
+                self._rest.close()
+                self._rest = None
+            if self._error is None:
+                raise
+        if self._error is not None:
+            error, self._error = self._error, None
+            raise error
+        if self._rest is not None:
+            rest, self._rest = self._rest, None
+            await rest

@@ -1,0 +1,66 @@
+"""The callbacks of a node for changes of its parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from aionode.interfaces.rcl_interfaces.msg import SetParametersResult
+from aionode.parameter._value import Parameter, expect
+
+__all__ = ["OnSetCallback", "ParameterCallbacks", "PostSetCallback", "PreSetCallback"]
+
+PreSetCallback = Callable[[list[Parameter]], list[Parameter]]
+OnSetCallback = Callable[[list[Parameter]], SetParametersResult]
+PostSetCallback = Callable[[list[Parameter]], None]
+
+
+class ParameterCallbacks:
+    """The callbacks of a node for parameter changes; the newest of each kind runs first."""
+
+    def __init__(self) -> None:
+        self._pre: list[PreSetCallback] = []
+        self._on: list[OnSetCallback] = []
+        self._post: list[PostSetCallback] = []
+
+    def add_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
+        """Call `callback` before a change is checked; it returns the parameters to set instead."""
+        self._pre.insert(0, callback)
+
+    def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
+        """Call `callback` to check a change; the first that rejects it decides."""
+        self._on.insert(0, callback)
+
+    def add_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
+        """Call `callback` after a change."""
+        self._post.insert(0, callback)
+
+    def remove_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
+        """Remove a callback; a ValueError if it was not added."""
+        self._pre.remove(callback)
+
+    def remove_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
+        """Remove a callback; a ValueError if it was not added."""
+        self._on.remove(callback)
+
+    def remove_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
+        """Remove a callback; a ValueError if it was not added."""
+        self._post.remove(callback)
+
+    def _modified(self, parameters: list[Parameter]) -> list[Parameter]:
+        # As in rclpy, each callback gets the original list, and the results are concatenated.
+        if not self._pre:
+            return parameters
+        result: list[Parameter] = []
+        for callback in self._pre:
+            returned = callback(parameters)
+            expect(returned, list, f"what the pre-set callback {callback!r} returns")
+            result.extend(returned)
+        return result
+
+    def _rejection(self, parameters: list[Parameter]) -> SetParametersResult | None:
+        for callback in self._on:
+            result = callback(parameters)
+            expect(result, SetParametersResult, f"what the on-set callback {callback!r} returns")
+            if not result.successful:
+                return result
+        return None

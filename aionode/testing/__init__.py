@@ -1,0 +1,35 @@
+"""For tests of your nodes: no network, time that you step, and faults on demand.
+
+With pytest the fixtures `aionode_context`, `node_factory` and `manual_clock` are available as soon
+as aionode is installed (see `aionode.pytest_plugin`)::
+
+    async def test_the_heartbeat_comes_once_a_second(node_factory, manual_clock):
+        heart = node_factory("heart")
+        beats = []
+        heart.create_timer(1.0, lambda: beats.append(manual_clock.now()))
+        await manual_clock.advance(3.0)
+        assert len(beats) == 3
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from aionode.context import Context
+from aionode.testing._faults import FaultyTransport
+from aionode.testing._manual_clock import ManualClock
+from aionode.testing._quiescence import settle
+
+if TYPE_CHECKING:
+    from aionode.clock import TimeBase
+
+__all__ = ["FaultyTransport", "ManualClock", "local_context", "settle"]
+
+
+def local_context(*, clock: TimeBase | None = None) -> Context:
+    """Return a context without network, whose nodes reach only each other.
+
+    Args:
+        clock: Where its time comes from, such as a `ManualClock`; the machine by default.
+    """
+    return Context(transport="local", clock=clock)

@@ -1,0 +1,11 @@
+"""Constants of the encoding that need no knowledge of message types."""
+
+from __future__ import annotations
+
+__all__ = ["COUNT_SIZE", "HEADER"]
+
+HEADER = b"\x00\x01\x00\x00"
+"""Encapsulation header of every message: CDR, little endian, no options."""
+
+COUNT_SIZE = 4
+"""Size in bytes of the uint32 length of strings and sequences."""

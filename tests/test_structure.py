@@ -1,0 +1,186 @@
+"""How the modules of aionode hang together: their length, their imports, and the private line."""
+
+from __future__ import annotations
+
+import ast
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import grimp
+import pytest
+
+import aionode
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+ROOT = Path(aionode.__file__).parent
+MODULES = sorted(
+    path for path in ROOT.rglob("*.py") if path.relative_to(ROOT).parts[0] != "interfaces"
+)
+
+MAX_LINES = 600
+MAX_CHAIN = 20
+"""How many modules may import one another in a row, each at its top. The goal is 14."""
+
+LONG_FOR_NOW: frozenset[str] = frozenset(
+    {"node.py", "parameter/_store.py", "transport/_reliability.py"}
+)
+"""Modules that are being split. Take a module off the list when it fits; add none."""
+
+CYCLES_FOR_NOW = (
+    ("aionode.arguments", "aionode.parameter"),
+    ("aionode.endpoints.actions",),
+    ("aionode.message",),
+    ("aionode.transport.ipc",),
+    ("aionode.transport.zenoh",),
+)
+"""Packages with cycles of type-only imports that are being undone. Take them off, one by one."""
+
+SHARED = {
+    "aionode.arguments._parameter_yaml": "the command line reads and writes parameter files too",
+    "aionode.clock._time_base": "timers and goals have alarms, which users do not",
+    "aionode.clock._timer_heap": "the manual clock of tests keeps its alarms in one",
+    "aionode.clock._values": "the manual clock of tests converts seconds as the others do",
+    "aionode.endpoints._core": "nodes are made of it, and tools report callbacks by it",
+    "aionode.endpoints.actions": "aionode.action is its public name",
+    "aionode.endpoints.timer._timer": "Node.create_timer builds one",
+    "aionode.message._field_types": "the codec compiles the fields of a message",
+    "aionode.message._message": "definitions become message classes",
+    "aionode.message._validation": "the codec checks values by the same rules",
+    "aionode.qos._profile": "a warning names policies without effect by their fields",
+    "aionode.transport._zenoh_config": "contexts and `aionode router` and `doctor` share settings",
+    "aionode.transport.zenoh._session": "`aionode router` is a Zenoh session without nodes",
+    "aionode.wire": "the wire format belongs to the transports; nothing outside aionode needs it",
+}
+"""Private modules that other packages of aionode import, and why. A package stands for its own."""
+
+
+@cache
+def graph(*, types: bool) -> grimp.ImportGraph:
+    """Return who imports whom in aionode, with the imports for type checkers or without."""
+    return grimp.build_graph("aionode", exclude_type_checking_imports=not types, cache_dir=None)
+
+
+@pytest.mark.parametrize(
+    "module", [path for path in MODULES if path.relative_to(ROOT).as_posix() not in LONG_FOR_NOW]
+)
+def test_a_module_can_be_read_in_one_sitting(module: Path) -> None:
+    """A module beyond the limit has more than one idea: split it, do not raise the limit."""
+    assert len(module.read_text(encoding="utf-8").splitlines()) <= MAX_LINES
+
+
+def test_no_imports_form_a_cycle() -> None:
+    """Modules in a cycle can only be understood together, also where only types are imported."""
+    new = [
+        sorted(cycle)
+        for cycle in cycles(graph(types=True))
+        if not any(is_within(cycle, packages) for packages in CYCLES_FOR_NOW)
+    ]
+
+    assert new == []
+
+
+def is_within(cycle: frozenset[str], packages: tuple[str, ...]) -> bool:
+    """Whether a cycle stays in these packages."""
+    prefixes = tuple(f"{package}." for package in packages)
+    return all(f"{module}.".startswith(prefixes) for module in cycle)
+
+
+def cycles(imports: grimp.ImportGraph) -> set[frozenset[str]]:
+    """Return the sets of modules that import one another, directly or not."""
+    found = set()
+    for module in imports.modules:
+        both = imports.find_upstream_modules(module) & imports.find_downstream_modules(module)
+        if both:
+            found.add(frozenset(both | {module}))
+    return found
+
+
+def test_imports_are_not_deep() -> None:
+    """A reader who follows the imports of a module arrives at the bottom soon."""
+    chain = longest_chain()
+
+    assert len(chain) <= MAX_CHAIN, " → ".join(chain)
+
+
+def longest_chain() -> list[str]:
+    """Return the longest series of modules of which each imports the next when it is imported.
+
+    The generated modules of standard messages are not counted.
+    """
+    imports = graph(types=False)
+    chains: dict[str, list[str]] = {}
+
+    def longest_from(module: str) -> list[str]:
+        if module not in chains:
+            chains[module] = [module]  # where a cycle ends
+            below = [longest_from(imported) for imported in imported_at_once(imports, module)]
+            chains[module] = [module, *max(below, key=len, default=[])]
+        return chains[module]
+
+    return max((longest_from(module) for module in sorted(imports.modules)), key=len)
+
+
+def imported_at_once(imports: grimp.ImportGraph, module: str) -> list[str]:
+    """Return what a module imports at its top, and not in a function."""
+    return [
+        imported
+        for imported in sorted(imports.find_modules_directly_imported_by(module))
+        if not imported.startswith("aionode.interfaces")
+        and any(
+            detail["line_number"] not in deferred_lines(module)
+            for detail in imports.get_import_details(importer=module, imported=imported)
+        )
+    ]
+
+
+@cache
+def deferred_lines(module: str) -> frozenset[int]:
+    """Return the numbers of the lines of a module that are inside of functions."""
+    path = ROOT.parent.joinpath(*module.split("."))
+    path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+    return frozenset(
+        line
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and node.end_lineno
+        for line in range(node.lineno, node.end_lineno + 1)
+    )
+
+
+def test_private_modules_are_imported_within_their_package() -> None:
+    """What begins with an underscore may change without a look at other packages."""
+    broken = [
+        f"{importer} imports {imported}"
+        for importer, imported in private_imports()
+        if not exceptions_for(imported)
+    ]
+
+    assert broken == []
+
+
+def test_a_private_module_is_shared_as_long_as_it_is_imported() -> None:
+    """An exception that nothing needs is taken off the list."""
+    used = {name for _, imported in private_imports() for name in exceptions_for(imported)}
+
+    assert set(SHARED) - used == set()
+
+
+def private_imports() -> Iterator[tuple[str, str]]:
+    """Yield importer and imported, for each private module imported from outside its package."""
+    imports = graph(types=True)
+    for imported in sorted(imports.modules):
+        parts = imported.split(".")
+        private = [index for index, part in enumerate(parts) if part.startswith("_")]
+        if not private or parts[-1] == "__main__":
+            continue
+        package = ".".join(parts[: private[0]])
+        for importer in sorted(imports.find_modules_that_directly_import(imported)):
+            if not f"{importer}.".startswith(f"{package}."):
+                yield importer, imported
+
+
+def exceptions_for(imported: str) -> list[str]:
+    """Return the entries of SHARED that a module falls under."""
+    return [name for name in SHARED if f"{imported}.".startswith(f"{name}.")]
