@@ -1,7 +1,7 @@
 """Filters over the fields of messages, in the language of DDS: ``temperature > %0 AND NOT stale``.
 
 The grammar is that of the DDS specification (OMG DDS 1.4, Annex B.2, "FilterExpression"), which
-ROS 2 hands to its middleware::
+ROS 2 passes to its middleware::
 
     condition   predicate | condition AND condition | condition OR condition
                 | NOT condition | ( condition )
@@ -11,9 +11,9 @@ ROS 2 hands to its middleware::
     field       name { . name } [ "[" index "]" ]
     literal     5 | 0x1F | -2.5e3 | 'text' | TRUE | FALSE | %0 … %99
 
-NOT binds more tightly than AND, and AND more tightly than OR. Words in capitals may be written in
-small letters. LIKE knows ``%`` for any text and ``_`` for one character. A parameter, such as
-``%0``, stands for a literal that is given apart, as text.
+NOT binds more tightly than AND, and AND more tightly than OR. Keywords are not
+case-sensitive. In LIKE, ``%`` matches any text and ``_`` one character. A parameter, such as
+``%0``, stands for a literal that is passed separately, as text.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 __all__ = ["ContentFilterOptions", "compile_filter"]
 
 MAX_PARAMETERS: Final = 100
-"""As many as the grammar can name."""
+"""The grammar has names for this many."""
 
 MAX_DEPTH: Final = 50
 """How deep parentheses and NOT may be nested."""
@@ -42,7 +42,7 @@ MAX_DEPTH: Final = 50
 
 @dataclass
 class ContentFilterOptions:
-    """Which messages a subscription wants, with rclpy's names.
+    """Which messages to deliver to a subscription, with rclpy's attribute names.
 
     Attributes:
         filter_expression: A condition over the fields of the message; empty for all messages.
@@ -78,7 +78,7 @@ WORDS: Final = frozenset({"and", "or", "not", "like", "between", "true", "false"
 
 
 class Token(NamedTuple):
-    """One word of an expression; `kind` is a group of `TOKEN`, ``word``, or ``end``."""
+    """One token of an expression; `kind` is a group of `TOKEN`, ``word``, or ``end``."""
 
     kind: str
     text: str
@@ -89,7 +89,7 @@ class Operand(NamedTuple):
     """One side of a comparison.
 
     Attributes:
-        kind: ``number``, ``text`` or ``truth``: only the same can be compared.
+        kind: ``number``, ``text`` or ``truth``; only operands of one kind can be compared.
         get: Returns its value for a message.
         text: How it was written.
         is_field: Whether its value depends on the message.
@@ -104,7 +104,7 @@ class Operand(NamedTuple):
 def compile_filter(
     msg_type: type[Message], filter_expression: str, expression_parameters: Sequence[str] = ()
 ) -> Callable[[Any], bool]:
-    """Return a function that says whether a message passes.
+    """Return a predicate that is true for messages that pass the filter.
 
     Args:
         msg_type: The class of the messages.
@@ -112,18 +112,18 @@ def compile_filter(
         expression_parameters: The literals that ``%0`` and the following stand for.
 
     Raises:
-        ContentFilterError: the expression cannot be read, names a field that the message does not
-            have, or compares what cannot be compared; the text says what and where.
-        TypeError: a parameter is no text.
+        ContentFilterError: the expression is malformed, names a field that the message does not
+            have, or compares operands of different kinds; the text says what and where.
+        TypeError: a parameter is not a str.
     """
     return Parser(msg_type, filter_expression, expression_parameters).parse()
 
 
 def tokens_of(expression: str) -> list[Token]:
-    """Return the words of an expression, and the end.
+    """Return the tokens of an expression, and the end.
 
     Raises:
-        ContentFilterError: there is something that is no word of the language.
+        ContentFilterError: something is not a token of the grammar.
     """
     found = []
     position = 0

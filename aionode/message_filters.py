@@ -1,20 +1,20 @@
-"""Messages that belong together: those of several topics with the same, or nearly the same, stamp.
+"""Synchronizing messages of several topics that have the same, or nearly the same, stamp.
 
-The names and rules are those of ROS 2's Python package `message_filters`: a `Subscriber` begins a
-chain, a `Cache` remembers, and a synchronizer calls back with one message of each input. ::
+The names and rules are those of ROS 2's Python package `message_filters`: a `Subscriber` starts a
+chain, a `Cache` stores messages, and a synchronizer calls back with one message of each input. ::
 
     left = Subscriber(node, Image, "/left/image")
     right = Subscriber(node, Image, "/right/image")
     pairs = ApproximateTimeSynchronizer([left, right], queue_size=10, slop=0.05)
     pairs.registerCallback(on_pair)
 
-`synchronize` is the same for ``async for``, over subscriptions without callbacks::
+`synchronize` does the same for ``async for``, over subscriptions without callbacks::
 
     async for left, right in synchronize(left_subscription, right_subscription, slop=0.05):
         ...
 
-Nothing here grows without bound: each input keeps `queue_size` messages, and what is pushed out
-unmatched is counted as dropped.
+Memory is bounded: each input keeps `queue_size` messages, and unmatched messages beyond that are
+dropped and counted.
 """
 
 from __future__ import annotations
@@ -51,31 +51,31 @@ C = TypeVar("C")
 logger = get_logger("message_filters")
 
 
-# The rules
+# Matching
 
 
 class Matcher:
     """Finds messages of several inputs with the same stamp.
 
     Args:
-        inputs: How many there are.
-        queue_size: How many messages of each wait for the others; one more pushes out that with
-            the lowest stamp.
+        inputs: The number of inputs.
+        queue_size: How many messages of each input are kept; beyond that, the one with the lowest
+            stamp is dropped.
 
     Attributes:
-        dropped: How many messages were pushed out.
+        dropped: How many messages were dropped.
     """
 
     def __init__(self, inputs: int, queue_size: int) -> None:
         if queue_size < 1:
-            raise ValueError(f"queue_size={queue_size}; at least 1 message of each input must wait")
+            raise ValueError(f"queue_size={queue_size}; it must be at least 1")
         self.dropped = 0
         self._queue_size = queue_size
-        # For each input the messages by stamp, in nanoseconds.
+        # For each input, its unmatched messages by stamp, in nanoseconds.
         self._queues: list[dict[int, Any]] = [{} for _ in range(inputs)]
 
     def add(self, index: int, stamp_ns: int, msg: Any) -> list[tuple[Any, ...]]:
-        """Take a message of an input; return what is complete now, the oldest first."""
+        """Add a message of an input; return the sets that are now complete, the oldest first."""
         queue = self._queues[index]
         queue[stamp_ns] = msg
         while len(queue) > self._queue_size:
@@ -84,7 +84,7 @@ class Matcher:
         return [self._take(stamps) for stamps in self._matches(index, stamp_ns)]
 
     def _matches(self, index: int, stamp_ns: int) -> list[list[int]]:  # noqa: ARG002  # for subclasses
-        """Return the stamps, one of each input, of what is complete."""
+        """Return the stamps, one of each input, of each complete set."""
         common = set(self._queues[0]).intersection(*self._queues[1:])
         return [[stamp] * len(self._queues) for stamp in sorted(common)]
 
@@ -101,7 +101,7 @@ class ApproximateMatcher(Matcher):
 
     def _matches(self, index: int, stamp_ns: int) -> list[list[int]]:
         if stamp_ns not in self._queues[index]:
-            return []  # it was pushed out itself
+            return []  # it was dropped at once
         candidates = []
         for other, queue in enumerate(self._queues):
             near = [stamp for stamp in queue if abs(stamp - stamp_ns) <= self._slop_ns]
@@ -134,10 +134,10 @@ def stamp_of(msg: Any) -> Time | None:
 
 
 class Stamps:
-    """Finds the stamp of each message, or the reason why it has none, said once.
+    """Finds the stamp of each message; logs once if a message has none.
 
     Args:
-        allow_headerless: Whether a message without a header is stamped with the present time.
+        allow_headerless: Whether a message without a header gets the current time.
     """
 
     def __init__(self, *, allow_headerless: bool) -> None:
@@ -151,18 +151,18 @@ class Stamps:
             return Time(nanoseconds=self._time.system_ns(), clock_type=ClockType.ROS_TIME)
         if stamp is None:
             logger.warning(
-                f"{type(msg).__name__} has no header with a stamp, and is left out; "
-                "allow_headerless=True takes the time of arrival in its place",
+                f"{type(msg).__name__} has no header with a stamp, and is ignored; "
+                "allow_headerless=True uses the time of arrival instead",
                 once=True,
             )
         return stamp
 
 
-# With callbacks, as in ROS 2
+# Callbacks, as in ROS 2
 
 
 class SimpleFilter:
-    """A filter that calls back with its output. Its subclasses say what that is."""
+    """A filter that calls back with its output, which a subclass defines."""
 
     def __init__(self) -> None:
         self.callbacks: dict[int, tuple[Callable[..., object], tuple[Any, ...]]] = {}
@@ -180,7 +180,7 @@ class SimpleFilter:
 
 
 class Subscriber(SimpleFilter):
-    """Begins a chain: a subscription whose messages go to the filters that are connected to it.
+    """Starts a chain: a subscription whose messages go to the filters that are connected to it.
 
     Args:
         node: The node that subscribes.
@@ -205,7 +205,7 @@ class Subscriber(SimpleFilter):
 
 
 class Cache(SimpleFilter):
-    """Remembers the newest messages of another filter, and passes them on.
+    """Stores the newest messages of another filter, and passes them on.
 
     Args:
         f: The filter to remember.
@@ -223,11 +223,11 @@ class Cache(SimpleFilter):
         self.connectInput(f)
 
     def connectInput(self, f: SimpleFilter) -> None:  # noqa: N802  # ROS 2's name
-        """Remember another filter's messages as well."""
+        """Store another filter's messages as well."""
         self.incoming_connection = f.registerCallback(self.add)
 
     def add(self, msg: Any) -> None:
-        """Remember a message, and pass it on."""
+        """Store a message, and pass it on."""
         stamp = self._stamps.of(msg)
         if stamp is not None:
             self._entries.append((stamp, msg))
@@ -276,7 +276,7 @@ class TimeSynchronizer(SimpleFilter):
 
     Args:
         fs: The inputs.
-        queue_size: How many messages of each wait for the others.
+        queue_size: How many messages of each input wait for the others.
     """
 
     def __init__(self, fs: Sequence[SimpleFilter], queue_size: int) -> None:
@@ -290,11 +290,11 @@ class TimeSynchronizer(SimpleFilter):
 
     @property
     def dropped(self) -> int:
-        """How many messages were pushed out before the others came."""
+        """How many messages were dropped before the others arrived."""
         return self._matcher.dropped
 
     def add(self, msg: Any, index: int) -> None:
-        """Take a message of an input."""
+        """Add a message of an input."""
         stamp = self._stamps.of(msg)
         if stamp is not None:
             for messages in self._matcher.add(index, stamp.nanoseconds, msg):
@@ -308,9 +308,9 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
 
     Args:
         fs: The inputs.
-        queue_size: How many messages of each wait for the others.
+        queue_size: How many messages of each input wait for the others.
         slop: By how much the stamps may differ, in seconds.
-        allow_headerless: Whether a message without a header counts with its time of arrival.
+        allow_headerless: Whether to use the time of arrival for messages without a header.
     """
 
     def __init__(
@@ -326,11 +326,11 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         self._connect(fs)
 
 
-# Awaited
+# Iteration
 
 
 class Synchronized:
-    """Iterates over messages of several subscriptions that belong together; see `synchronize`."""
+    """Iterates over sets of matching messages of several subscriptions; see `synchronize`."""
 
     def __init__(
         self, subscriptions: Sequence[Subscription[Any]], matcher: Matcher, stamps: Stamps
@@ -343,7 +343,7 @@ class Synchronized:
 
     @property
     def dropped(self) -> int:
-        """How many messages were pushed out before the others came."""
+        """How many messages were dropped before the others arrived."""
         return self._matcher.dropped
 
     def __aiter__(self) -> AsyncIterator[tuple[Any, ...]]:
@@ -351,7 +351,7 @@ class Synchronized:
         return self
 
     async def __anext__(self) -> tuple[Any, ...]:
-        """Return the next messages that belong together. Cancelling loses nothing."""
+        """Return the next set of matching messages. Cancelling loses no message."""
         while not self._complete:
             if self._ended:
                 raise StopAsyncIteration
@@ -359,7 +359,7 @@ class Synchronized:
         return self._complete.popleft()
 
     async def _receive(self) -> None:
-        """Wait for the next messages, of whichever subscriptions."""
+        """Wait for the next message of any subscription."""
         try:
             async with asyncio.TaskGroup() as group:
                 receiving = [group.create_task(one.receive()) for one in self._subscriptions]
@@ -368,7 +368,7 @@ class Synchronized:
                 finally:
                     for index, task in enumerate(receiving):
                         if not task.done():
-                            task.cancel()  # a message that comes now stays in the queue
+                            task.cancel()  # a message that arrives now stays in the queue
                         elif not task.cancelled() and task.exception() is None:
                             self._take(index, task.result())
         except* EntityDestroyedError:
@@ -420,21 +420,21 @@ def synchronize(
     queue_size: int = 10,
     allow_headerless: bool = False,
 ) -> AsyncIterator[tuple[Any, ...]]:
-    """Return an iterator over messages, one of each subscription, that belong together.
+    """Return an iterator over sets of matching messages, one of each subscription.
 
     Args:
         subscriptions: Subscriptions without callbacks; the iterator reads them.
-        slop: By how much the stamps may differ, in seconds; without it they have to be equal.
-        queue_size: How many messages of each wait for the others; `dropped` of the iterator counts
-            those that were pushed out.
-        allow_headerless: Whether a message without a header counts with its time of arrival.
+        slop: By how much the stamps may differ, in seconds; by default they must be equal.
+        queue_size: How many messages of each subscription wait for the others; `dropped` of the
+            iterator counts those dropped.
+        allow_headerless: Whether to use the time of arrival for messages without a header.
 
     Raises:
         ValueError: there are fewer than two subscriptions, or `queue_size` is below 1.
     """
     count = len(subscriptions)
     if count < 2:
-        raise ValueError(f"{count} subscription(s) given; at least two can belong together")
+        raise ValueError(f"{count} subscription(s) given; pass at least two")
     matcher = (
         Matcher(count, queue_size)
         if slop is None

@@ -38,17 +38,18 @@ __all__ = ["AsyncParameterClient"]
 
 
 class AsyncParameterClient:
-    """The parameters of one other node, over its parameter services.
+    """The parameters of another node, through its parameter services.
 
-    Each method awaits one call, with what `Client.call` raises; `asyncio.timeout` limits it::
+    Each method awaits one call and raises what `Client.call` raises; limit it with
+    `asyncio.timeout`::
 
         client = AsyncParameterClient(node, "/camera")
         await client.wait_for_services()
         await client.set_parameters([Parameter("exposure", value=0.1)])
 
     Args:
-        node: The node that asks.
-        remote_node_name: Full name of the node that is asked; a relative one gets the namespace of
+        node: The node that makes the calls.
+        remote_node_name: Name of the other node; relative names are prefixed with the namespace of
             `node`.
     """
 
@@ -104,7 +105,7 @@ class AsyncParameterClient:
     async def get_parameters(self, names: Sequence[str]) -> list[Parameter]:
         """Return parameters, in the order of `names`.
 
-        The list is empty if one of them is not declared: the service says no more.
+        The list is empty if any of them is undeclared: the service gives no other answer.
         """
         response = await self._get.call(GetParameters.Request(names=list(names)))
         return [
@@ -113,18 +114,18 @@ class AsyncParameterClient:
         ]
 
     async def get_parameter_types(self, names: Sequence[str]) -> list[ParameterType]:
-        """Return types, in the order of `names`; none if one of them is not declared."""
+        """Return types, in the order of `names`; none if any of them is undeclared."""
         response = await self._types.call(GetParameterTypes.Request(names=list(names)))
         return [ParameterType(kind) for kind in bytes(response.types)]
 
     async def describe_parameters(self, names: Sequence[str]) -> list[ParameterDescriptor]:
-        """Return descriptors, in the order of `names`; none if one of them is not declared."""
+        """Return descriptors, in the order of `names`; none if any of them is undeclared."""
         response = await self._describe.call(DescribeParameters.Request(names=list(names)))
         descriptors: list[ParameterDescriptor] = response.descriptors
         return descriptors
 
     async def set_parameters(self, parameters: Iterable[Parameter]) -> list[SetParametersResult]:
-        """Set parameters one by one, and return what became of each."""
+        """Set parameters one by one, and return a result for each."""
         messages = [parameter.to_parameter_msg() for parameter in parameters]
         response = await self._set.call(SetParameters.Request(parameters=messages))
         results: list[SetParametersResult] = response.results
@@ -133,7 +134,7 @@ class AsyncParameterClient:
     async def set_parameters_atomically(
         self, parameters: Iterable[Parameter]
     ) -> SetParametersResult:
-        """Set all parameters or, if one is rejected, none."""
+        """Set all parameters, or none if one is rejected."""
         messages = [parameter.to_parameter_msg() for parameter in parameters]
         response = await self._set_atomically.call(
             SetParametersAtomically.Request(parameters=messages)
@@ -142,20 +143,20 @@ class AsyncParameterClient:
         return result
 
     async def delete_parameters(self, names: Iterable[str]) -> list[SetParametersResult]:
-        """Undeclare parameters of dynamic type one by one, and return what became of each."""
+        """Undeclare parameters of dynamic type one by one, and return a result for each."""
         return await self.set_parameters(Parameter(name) for name in names)
 
     async def load_parameter_file(
         self, path: str | Path, *, use_wildcard: bool = False
     ) -> list[SetParametersResult]:
-        """Set what a parameter file says of the node, one by one.
+        """Set the parameters that a file has for the node, one by one.
 
         Args:
             path: A YAML file with ``ros__parameters``.
-            use_wildcard: Whether its section ``/**``, for all nodes, counts too.
+            use_wildcard: Whether to include its section ``/**``, for all nodes.
 
         Raises:
-            ParameterFileError: the file cannot be read, or has nothing for the node.
+            ParameterFileError: the file cannot be read, or has no parameters for the node.
         """
         found = parameter_dict_from_yaml_file(path, use_wildcard, [self.remote_node_name])
         response = await self._set.call(SetParameters.Request(parameters=list(found.values())))
@@ -163,6 +164,6 @@ class AsyncParameterClient:
         return results
 
     def destroy(self) -> None:
-        """Destroy the six clients; calls under way are cancelled."""
+        """Destroy the six clients; pending calls are cancelled."""
         for client in self._clients:
             client.destroy()

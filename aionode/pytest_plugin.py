@@ -24,17 +24,17 @@ __all__ = ["aionode_context", "manual_clock", "node_factory", "pytest_configure"
 
 @pytest.fixture
 def manual_clock() -> ManualClock:
-    """A clock that stands still until the test moves it; `aionode_context` follows it."""
-    from aionode.testing import ManualClock  # only tests that use it pay for it
+    """A clock that stands still until the test advances it; `aionode_context` follows it."""
+    from aionode.testing import ManualClock  # imported by tests that use it only
 
     return ManualClock()
 
 
 @pytest.fixture
 def aionode_context(request: pytest.FixtureRequest) -> Context:
-    """An open context without network; its time is `manual_clock` if the test asks for that.
+    """An open context without network; its time is `manual_clock` if the test uses that fixture.
 
-    During the test it is the default context, so that nodes made without one are in it too.
+    During the test it is the default context, so nodes created without one join it too.
     """
     context: Context = async_fixture(request, "context")
     return context
@@ -42,21 +42,21 @@ def aionode_context(request: pytest.FixtureRequest) -> Context:
 
 @pytest.fixture
 def node_factory(request: pytest.FixtureRequest) -> Callable[..., Node]:
-    """Make nodes in `aionode_context` that run until the test ends.
+    """Create nodes in `aionode_context` that run until the test ends.
 
-    ``node_factory("talker")`` makes a plain node and takes what `Node` takes;
-    ``node_factory(Talker)`` makes one of your own, with the arguments that follow. A callback that
-    failed makes the test fail at its end.
+    ``node_factory("talker")`` creates a plain node and takes the arguments of `Node`;
+    ``node_factory(Talker)`` creates one of your own class, with the arguments that follow. A
+    callback that failed makes the test fail at its end.
     """
     make: Callable[..., Node] = async_fixture(request, "factory")
     return make
 
 
-# The async halves. They exist once for each plugin that can run them, and the test decides which.
+# The async fixtures exist once for each plugin that can run them; the test determines which runs.
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Give the async fixtures to the plugins that can run them."""
+    """Register the async fixtures with the plugins that can run them."""
     makers: dict[str, Callable[..., Any]] = {"anyio": pytest.fixture}
     if config.pluginmanager.hasplugin("asyncio"):
         import pytest_asyncio
@@ -79,13 +79,13 @@ def async_fixture(request: pytest.FixtureRequest, name: str) -> Any:
     if request.config.pluginmanager.hasplugin("asyncio"):
         return request.getfixturevalue(f"aionode_asyncio_{name}")
     raise pytest.UsageError(
-        f"{request.fixturename}: nothing here runs async fixtures; pip install pytest-asyncio, or "
+        f"{request.fixturename}: no plugin runs async fixtures; pip install pytest-asyncio, or "
         "mark the test with @pytest.mark.anyio"
     )
 
 
 async def open_context(request: pytest.FixtureRequest) -> AsyncIterator[Context]:
-    """Do what `aionode_context` says."""
+    """Implement `aionode_context`."""
     from aionode.context import Context  # as above
     from aionode.testing import local_context
 
@@ -98,7 +98,7 @@ async def open_context(request: pytest.FixtureRequest) -> AsyncIterator[Context]
 
 
 async def open_factory(aionode_context: Context) -> AsyncIterator[Callable[..., Node]]:
-    """Do what `node_factory` says."""
+    """Implement `node_factory`."""
     from aionode.node import Node  # as above
 
     nodes: list[Node] = []
@@ -114,7 +114,7 @@ async def open_factory(aionode_context: Context) -> AsyncIterator[Callable[..., 
         else:
             node = kind(*args, **options)
         nodes.append(node)
-        # pytest may end a fixture in another task than it began in, which a TaskGroup forbids.
+        # pytest may end a fixture in a different task, which a TaskGroup does not allow.
         runs.append(asyncio.get_running_loop().create_task(run(node)))
         return node
 

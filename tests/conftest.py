@@ -12,7 +12,7 @@ from hypothesis import settings
 from aionode.node import Node
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Generator
 
     from aionode.context import Context
 
@@ -45,3 +45,13 @@ async def node(node_factory: Callable[..., Node]) -> Node:
 async def context(aionode_context: Context) -> Context:
     """An open context without network."""
     return aionode_context
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Escape lone surrogates in captured output: pytest-xdist cannot send them."""
+    report = yield
+    report.sections = [
+        (title, text.encode(errors="backslashreplace").decode()) for title, text in report.sections
+    ]
+    return report

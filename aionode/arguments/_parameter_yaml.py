@@ -50,8 +50,8 @@ NOT_A_NUMBER = {".nan", ".NaN", ".NAN"}
 # What C's strtoll with base 0 and strtod take, which is what rcl calls.
 LONGEST_INTEGER = 100  # digits; far more than 64 bits have, far less than Python refuses
 INTEGER = r"[+-]?(?:0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)"
-DECIMAL = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
-HEXADECIMAL = r"[+-]?0[xX](?:[0-9a-fA-F]+\.?[0-9a-fA-F]*|\.[0-9a-fA-F]+)(?:[pP][+-]?[0-9]+)?"
+DECIMAL = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+HEXADECIMAL = r"[+-]?0[xX](?:[0-9a-fA-F]+(?:\.[0-9a-fA-F]*)?|\.[0-9a-fA-F]+)(?:[pP][+-]?[0-9]+)?"
 WORDS = r"(?ai)[+-]?(?:inf|infinity|nan)"
 
 DEEPEST = 100  # mappings; no name has so many parts, and Python's stack must hold them

@@ -1,4 +1,4 @@
-"""QoS that the one who starts a node may change, through parameters.
+"""QoS overrides: QoS policies that parameters can change when a node is started.
 
 The parameter ``qos_overrides./chatter.publisher.depth`` sets the depth of a publisher on
 ``/chatter``, if the node was written to allow it: with `QoSOverridingOptions`.
@@ -39,12 +39,12 @@ POLICIES = {
 
 @dataclass(frozen=True)
 class QoSOverridingOptions:
-    """Which policies of an endpoint can be set by parameters.
+    """Which policies of an endpoint parameters can override.
 
     Attributes:
         policy_kinds: The policies.
         callback: Checks the resulting profile.
-        entity_id: Tells several endpoints of one topic apart: a suffix in the parameters' names.
+        entity_id: Suffix of the parameters' names, to distinguish several endpoints of one topic.
     """
 
     policy_kinds: Iterable[QoSPolicyKind]
@@ -64,7 +64,7 @@ class QoSOverridingOptions:
 
 
 class Declarer(Protocol):
-    """A node, or whatever else declares parameters as a node does."""
+    """A node, or anything that declares parameters as a node does."""
 
     def declare_parameter(
         self, name: str, value: Any, descriptor: ParameterDescriptor
@@ -88,18 +88,18 @@ def declare_qos_overrides(
         node: The node.
         topic: Full name of the topic.
         entity: What the endpoint is.
-        profile: What it has without overrides; not changed.
-        options: Which policies may be set.
+        profile: The profile without overrides; not modified.
+        options: Which policies can be overridden.
 
     Raises:
-        InvalidQosOverridesError: A value does not fit, or the callback rejects the profile (a
+        InvalidQosOverridesError: A value is invalid, or the callback rejects the profile (a
             ValueError and a RuntimeError).
     """
     suffix = "" if options.entity_id is None else f"_{options.entity_id}"
     changes: dict[str, object] = {}
     for kind in options.policy_kinds:
         if kind is QoSPolicyKind.LIFESPAN and entity == "subscription":
-            continue  # only who sends a message knows how long it lives
+            continue  # only the publisher determines how long a message lives
         policy = kind.name.lower()
         descriptor = ParameterDescriptor(
             description=f"{policy} for {entity} `{topic}` with id `{options.entity_id}`",
@@ -136,7 +136,7 @@ def as_policy(parameter: Parameter, kind: QoSPolicyKind) -> object:
     """Return a parameter's value as a policy.
 
     Raises:
-        InvalidQosOverridesError: It is the name of none.
+        InvalidQosOverridesError: No policy has this name.
     """
     value = parameter.value
     if kind in POLICIES:

@@ -1,4 +1,4 @@
-"""What the six parameter services of a node answer."""
+"""The six parameter services of a node."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class ParameterService(NamedTuple):
     Attributes:
         name: Its name below the node.
         srv_type: Its type.
-        callback: What answers a request.
+        callback: Answers a request.
     """
 
     name: str
@@ -30,7 +30,7 @@ class ParameterService(NamedTuple):
 
 
 def parameter_services(store: ParameterStore) -> list[ParameterService]:
-    """Return the services through which others read and set the parameters of a node."""
+    """Return the services through which other nodes read and set the parameters of a node."""
     answers = Answers(store)
     return [
         ParameterService("describe_parameters", srv.DescribeParameters, answers.describe),
@@ -95,7 +95,7 @@ class Answers:
     def set_each(
         self, request: srv.SetParameters.Request, response: srv.SetParameters.Response
     ) -> srv.SetParameters.Response:
-        """Answer set_parameters: each for itself, in order."""
+        """Answer set_parameters: one by one, in order."""
         response.results = [self._set([each]) for each in request.parameters]
         return response
 
@@ -111,7 +111,7 @@ class Answers:
     def _set(self, messages: list[ParameterMsg]) -> SetParametersResult:
         try:
             parameters = [Parameter.from_parameter_msg(message) for message in messages]
-        except ValueError as error:  # a type that there is not
+        except ValueError as error:  # an unknown type
             return SetParametersResult(successful=False, reason=str(error))
         try:
             return self.store.set_parameters_atomically(parameters)

@@ -1,4 +1,4 @@
-"""Parameters as values: a name, a type, a value; and as the messages that carry them."""
+"""Parameters: a name, a type and a value, and their conversion to and from messages."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ AllowableParameterValue = (
     | Sequence[float]
     | Sequence[str]
 )
-"""What a parameter may hold."""
+"""The values that a parameter may have."""
 
 LISTS = (list, tuple, array.array)
 
@@ -60,7 +60,7 @@ class ParameterType(IntEnum):
         """Return the type of a value. An empty list counts as BYTE_ARRAY, as in rclpy.
 
         Raises:
-            TypeError: No parameter can hold it.
+            TypeError: No parameter type fits it.
         """
         if parameter_value is None:
             return cls.NOT_SET
@@ -82,7 +82,7 @@ class ParameterType(IntEnum):
         raise TypeError(message)
 
     def check(self, parameter_value: object) -> bool:
-        """Return whether a parameter of this type can hold the value."""
+        """Return whether a parameter of this type may have the value."""
         if self is ParameterType.NOT_SET:
             return parameter_value is None
         if self is ParameterType.BYTE_ARRAY:
@@ -117,7 +117,7 @@ ARRAYS = (
 
 
 def fits_element(value: object, kind: tuple[type, ...]) -> bool:
-    """Return whether a value is of this kind, where a bool is no int."""
+    """Return whether a value is of this kind; a bool does not count as an int."""
     return isinstance(value, kind) and not (isinstance(value, bool) and kind == (int,))
 
 
@@ -138,11 +138,11 @@ class Parameter:
 
     Args:
         name: The name; dots make groups.
-        type_: The type; that of the value without it.
-        value: The value. A numpy array or number is taken as a list or number.
+        type_: The type; by default that of the value.
+        value: The value. A numpy array or number is converted to a list or number.
 
     Raises:
-        TypeError: No parameter can hold the value.
+        TypeError: No parameter type fits the value.
         ValueError: The value is not of the given type.
     """
 
@@ -192,16 +192,16 @@ class Parameter:
 
     @classmethod
     def from_parameter_msg(cls, param_msg: rcl_msg.Parameter) -> Parameter:
-        """Return the parameter that a message carries.
+        """Return the parameter in a message.
 
         Raises:
-            ValueError: The message says a type that there is not.
+            ValueError: The type in the message is unknown.
         """
         type_ = ParameterType(param_msg.value.type)
         return cls(param_msg.name, type_, parameter_value_to_python(param_msg.value))
 
     def get_parameter_value(self) -> rcl_msg.ParameterValue:
-        """Return type and value as a message."""
+        """Return the type and value as a message."""
         # Empty tuples in place of the arrays that are the defaults: those need numpy, which takes
         # longer to import than a node to start, and most parameters hold no array.
         message = rcl_msg.ParameterValue(
@@ -228,10 +228,10 @@ FIELDS = {type_: f"{type_.name.lower()}_value" for type_ in ParameterType}
 
 
 def parameter_value_to_python(parameter_value: rcl_msg.ParameterValue) -> Any:
-    """Return the value that a message carries, as Python's own types; None if it is not set.
+    """Return the value in a message, as Python's built-in types; None if it is not set.
 
     Raises:
-        RuntimeError: The message says a type that there is not.
+        RuntimeError: The type in the message is unknown.
     """
     try:
         type_ = ParameterType(parameter_value.type)
@@ -244,7 +244,7 @@ def parameter_value_to_python(parameter_value: rcl_msg.ParameterValue) -> Any:
     if type_ is ParameterType.BYTE_ARRAY:
         return [bytes([each]) for each in bytes(value)]
     if hasattr(value, "tolist"):
-        return value.tolist()  # numbers of numpy would not be int and float
+        return value.tolist()  # numpy's numbers are not int and float
     return list(value) if type_ >= ParameterType.BYTE_ARRAY else value
 
 
@@ -252,7 +252,7 @@ def parameter_value_to_python(parameter_value: rcl_msg.ParameterValue) -> Any:
 
 
 def get_parameter_value(string_value: str) -> rcl_msg.ParameterValue:
-    """Return the value that a text stands for, by the rules of parameter files.
+    """Return the value of a text, by the rules of parameter files.
 
     What is no value there, such as a list of mixed types, is a string.
     """
@@ -277,12 +277,12 @@ def parameter_dict_from_yaml_file(
 
     Args:
         parameter_file: Path of the file.
-        use_wildcard: Take what stands under ``/**``, too.
-        target_nodes: Take what stands under these names of nodes; under all without.
-        namespace: Put in front of all names.
+        use_wildcard: Whether to include the section ``/**``.
+        target_nodes: The names of nodes whose sections to include; by default all.
+        namespace: Prepended to all names.
 
     Raises:
-        ParameterFileError: The file cannot be read, or has nothing for one of the nodes (a
+        ParameterFileError: The file cannot be read, or has no parameters for one of the nodes (a
             RuntimeError, as in rclpy, and a ValueError).
     """
     from aionode.arguments import read_parameter_file  # as above

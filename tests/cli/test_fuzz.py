@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time  # noqa: TID251  # CPU time of this process
 from typing import Any
 
 import pytest
@@ -77,6 +78,7 @@ def filled(msg_type: Any, text: str) -> Any:
     return Filler(msg_type, text).message(Time(seconds=1))
 
 
+@settings(deadline=None)  # the first example imports PyYAML
 @given(YAML)
 @example(DIGITS)
 @example("[" * 5000)
@@ -86,6 +88,16 @@ def test_any_text_is_a_value_of_a_parameter_or_an_error(text: str) -> None:
         parameter_value(text)
     except ParameterFileError as error:
         expect_one_line(error)
+
+
+@pytest.mark.parametrize("text", ["1" * 30_000 + "{", "0x" + "1" * 30_000 + "{"])
+def test_many_digits_are_parsed_in_linear_time(text: str) -> None:
+    """Patterns with two adjacent runs of digits took seconds for 5000 of them."""
+    begin_s = time.process_time()
+
+    parameter_value(text)
+
+    assert time.process_time() - begin_s < 2.0
 
 
 @given(st.lists(st.sampled_from([*"[].-_ ²٣", "poses", "position", "x", "0", DIGITS])).map("".join))
