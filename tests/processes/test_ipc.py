@@ -120,7 +120,7 @@ async def test_a_killed_process_ends_its_link_and_the_next_gets_one() -> None:
                     await asyncio.to_thread(lambda: None)
             while ping.there.get_subscription_count():
                 await ping.node.graph.changed()
-            while ping.back._message_queue:
+            while ping.back._reader:
                 await ping.back.receive()
 
 
@@ -138,7 +138,7 @@ async def test_a_frozen_process_costs_nothing_but_its_messages() -> None:
             ping.there.publish(Int32(data=-2))
             while (await ping.back.receive()).data != -2:
                 pass
-            while ping.back._message_queue:
+            while ping.back._reader:
                 await ping.back.receive()
             await ping.go()
 
@@ -219,7 +219,7 @@ async def test_a_sender_that_is_killed_in_mid_frame_ends_its_stream_and_the_next
                 stream.on_writable()
                 while not link.closed:
                     await checkpoint()
-                while stream.subscription._message_queue:
+                while stream.subscription._reader:
                     await stream.next()
             while stream.subscription.get_publisher_count():
                 await stream.node.graph.changed()
