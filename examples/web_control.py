@@ -146,8 +146,11 @@ async def progress(operator: Operator, distance: float) -> AsyncGenerator[tuple[
     try:
         async with asyncio.timeout(ANSWER_SEC):
             goal = await operator.drive.send_goal(Drive.Goal(distance=distance))
-    except (AionodeError, TimeoutError) as error:
+    except AionodeError as error:
         yield "failure", str(error)
+        return
+    except TimeoutError:  # of the time limit, which has no text
+        yield "failure", f"no answer from the robot within {ANSWER_SEC:g} s"
         return
     try:
         async for feedback in goal:

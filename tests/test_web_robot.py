@@ -21,6 +21,7 @@ from aionode.interfaces.geometry_msgs.msg import Twist
 from aionode.interfaces.std_msgs.msg import Float32
 from aionode.message import to_json
 from aionode.node import Node
+from examples import web_control
 from examples.web_control import Operator, make_app
 from examples.web_robot import Drive, Robot
 from tests.test_examples import Program
@@ -278,3 +279,14 @@ async def test_nodes_that_fail_are_restarted_and_nothing_drives_on(
         assert re.search(r"node /robot failed; restarting in 0\.5 s", line)
         await healthy(web, restarts=1)
         await drives_again(web, app)
+
+
+async def test_a_robot_that_does_not_answer_is_a_failure_with_a_text(
+    network: dict[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The page showed nothing: the error of a time limit has no text of its own."""
+    monkeypatch.setattr(web_control, "ANSWER_SEC", 0.2)
+    async with Context() as context, Operator(context) as operator:
+        events = [event async for event in web_control.progress(operator, 1.0)]
+
+    assert events == [("failure", "no answer from the robot within 0.2 s")]

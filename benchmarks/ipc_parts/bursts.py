@@ -36,12 +36,15 @@ class Burst:
     async def play(self) -> float:
         """Return the rate of arrival of one burst, in messages a second."""
         self._clear()
+        began_ns = time.perf_counter_ns()
         self.begin()
         self._last_ns = time.perf_counter_ns()
         # Polled, as an event would cost time with each message.
         while self._count < BURST and time.perf_counter_ns() - self._last_ns < SILENCE_NS:  # noqa: ASYNC110
             await asyncio.sleep(0.02)
         self.lost += BURST - self._count
+        if self._count == self._first:  # all of them arrived at once, or none did
+            return self._count / (self._last_ns - began_ns) * 1e9
         return (self._count - self._first) / (self._last_ns - self._first_ns) * 1e9
 
 
