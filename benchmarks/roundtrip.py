@@ -282,7 +282,7 @@ def main() -> None:
     parser.add_argument("--loop", choices=["asyncio", "uvloop"], help="only this event loop")
     parser.add_argument("--echo", choices=["zenoh", "aionode"], help=argparse.SUPPRESS)
     args = parser.parse_args()
-    os.environ["AIONODE_MEETING_PORTS"] = PORTS  # hear nobody else
+    os.environ["AIONODE_MEETING_PORTS"] = PORTS  # meet no other process
     os.environ["AIONODE_ROUTER_PORT"] = "18465"
     os.environ["AIONODE_LINK"] = "off"  # link.py measures what a link makes of it
     if args.echo:

@@ -61,7 +61,6 @@ PRESETS = [
 ]
 WITHIN = {
     "aionode.endpoints.client": {"Exchange"},  # what a client is made with
-    "aionode.endpoints.subscription": {"SubscriptionReader"},  # what transports deliver to
     "aionode.transport.ipc": {"Advertisement", "available", "can_link"},  # for Zenoh and contexts
 }
 """Names that only aionode itself uses, although their module is public."""

@@ -36,7 +36,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         status = _main.main(argv)
         # Only as the process's main program; after `run`, remaining threads are the user's.
         if argv is None and sys.argv[1:2] != ["run"]:
-            from aionode.cli._support.ending import leave_if_busy
+            from aionode.cli._support.deadline import leave_if_busy
 
             leave_if_busy(status)
     except KeyboardInterrupt:

@@ -1,9 +1,9 @@
-"""From foreign threads to the event loop, with one wake-up per burst.
+"""Queues from other threads to the event loop, with one wake-up for each burst.
 
-A thread appends to a `ThreadsafeQueue` and, if nobody has done so yet, wakes the loop. The loop
-then empties all lanes in turn, a slice at a time, so that timers and other callbacks run in
-between. Compared with `call_soon_threadsafe` for each item this takes a burst several times as
-fast, because a wake-up is a system call and most items need none.
+A thread appends to a `ThreadsafeQueue` and, unless that was done already, wakes the loop. The loop
+then empties all queues in turn, a slice at a time, so that timers and other callbacks run in
+between. This handles a burst several times as fast as `call_soon_threadsafe` for each item, because
+a wake-up is a system call and most items need none.
 """
 
 from __future__ import annotations
@@ -26,29 +26,29 @@ T = TypeVar("T")
 
 
 SLICE_ITEMS = 32
-"""How many items of one lane are taken before the next lane has its turn."""
+"""How many items of one queue are handled before it is the next queue's turn."""
 
 
 class LoopWaker:
-    """Wakes one event loop when there is something in a lane.
+    """Wakes one event loop when a queue has an item.
 
     Attributes:
-        inline_deadline_ns: Until which `perf_ns` what is called by a lane may call callbacks; 0
-            while no lane is emptied. See `Reader.deliver`.
+        inline_deadline_ns: Until which `perf_ns` a handler may call callbacks; 0 while no queue is
+            emptied. See `Reader.deliver`.
     """
 
     def __init__(self) -> None:
         self.inline_deadline_ns = 0
         self._ready: deque[ThreadsafeQueue[object]] = deque()
-        # Whether the loop will look by itself. Set by whoever wakes it, cleared by the loop before
-        # its last look: what comes later wakes it again, so nothing is missed.
+        # Whether the loop will look by itself. Set by the thread that wakes it, cleared by the loop
+        # before its last look: a later item wakes it again, so none is missed.
         self._armed = True
         self._lock = threading.Lock()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._event_fd: int | None = None
 
     def open(self, loop: asyncio.AbstractEventLoop) -> None:
-        """Begin to wake `loop`, the running one; what waits already is taken soon."""
+        """Start waking `loop`, the running one; waiting items are handled soon."""
         self._loop = loop
         if hasattr(os, "eventfd"):
             fd = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
@@ -58,7 +58,7 @@ class LoopWaker:
         loop.call_soon(self._empty)
 
     def close(self) -> None:
-        """Wake the loop no longer. What arrives meanwhile waits for the next `open`."""
+        """Stop waking the loop. Items that arrive meanwhile wait for the next `open`."""
         with self._lock:  # a thread may be about to write: never to a descriptor reused since
             self._armed = True
             loop, self._loop = self._loop, None
@@ -69,14 +69,14 @@ class LoopWaker:
             os.close(fd)
 
     def ready(self, queue: ThreadsafeQueue[object]) -> None:
-        """Note that `queue` has something; from any thread."""
+        """Schedule `queue`, which has an item. May be called from any thread."""
         self._ready.append(queue)
         if not self._armed:
             self._armed = True
             self._wake()
 
     def again(self, queue: ThreadsafeQueue[object]) -> None:
-        """Note that `queue` still has something; from `take` only, which the loop calls."""
+        """Schedule `queue` again, which has more items. Called by `take` only, on the loop."""
         self._ready.append(queue)
 
     def _wake(self) -> None:
@@ -95,7 +95,7 @@ class LoopWaker:
         self._empty()
 
     def _empty(self) -> None:
-        """Take from each lane in turn, until all are empty or the slice of time is over."""
+        """Empty the queues in turn, until all are empty or the time slice is over."""
         if self._loop is None:
             return
         ready = self._ready
@@ -114,7 +114,7 @@ class LoopWaker:
 
 
 class ThreadsafeQueue(Generic[T]):
-    """A queue from one source in foreign threads to `handle` on the loop.
+    """A queue from one source in other threads to `handle` on the loop.
 
     Args:
         waker: Wakes the loop.
@@ -137,19 +137,19 @@ class ThreadsafeQueue(Generic[T]):
         return len(self._items)
 
     def put(self, item: T) -> None:
-        """Hand `item` over; from any thread. Never waits."""
+        """Add `item`. May be called from any thread; never waits."""
         self._items.append(item)
         if not self._queued:
             self._queued = True
             self._waker.ready(self)  # type: ignore[arg-type]  # it only calls take()
 
     def take(self) -> None:
-        """Handle a slice of what waits; on the loop."""
-        self._queued = False  # before looking, so that whoever comes later queues it again
+        """Handle some of the items; on the loop."""
+        self._queued = False  # before looking, so that a later item schedules it again
         items = self._items
         left = min(len(items), SLICE_ITEMS)
         try:
-            while left and items:  # what is called may clear the lane
+            while left and items:  # the handler may clear the queue
                 left -= 1
                 self._handle(items.popleft())
         finally:
@@ -158,5 +158,5 @@ class ThreadsafeQueue(Generic[T]):
                 self._waker.again(self)  # type: ignore[arg-type]  # as above
 
     def clear(self) -> None:
-        """Forget what waits."""
+        """Drop all items."""
         self._items.clear()

@@ -1,4 +1,4 @@
-"""Sending what may block, from threads, so that the event loop never does."""
+"""Threads for sends that may block, so that the event loop never does."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ __all__ = ["SendQueue", "SendThread"]
 Job = Callable[[], None]
 
 EXIT_S: Final = 1.0
-"""How long the end of the process waits for threads that are sending."""
+"""How long the process waits at exit for threads that are sending."""
 
 
 class Worker:
     """One thread and its jobs.
 
     Attributes:
-        stopped: Whether the jobs that wait are left out.
-        thread: The thread; Python does not wait for it at its end, but `end_all` does for a while.
+        stopped: Whether waiting jobs are dropped.
+        thread: A daemon, so Python does not wait for it at exit; `end_all` does for a while.
     """
 
     def __init__(self, name: str) -> None:
@@ -69,7 +69,7 @@ workers: weakref.WeakSet[Worker] = weakref.WeakSet()
 
 @atexit.register
 def end_all() -> None:
-    """Let no thread be inside Zenoh while the interpreter ends: that would abort the process."""
+    """End all threads: one inside Zenoh while the interpreter exits would abort the process."""
     running = [worker for worker in workers if worker.thread.is_alive()]
     for worker in running:
         worker.stopped = True
@@ -83,7 +83,7 @@ class SendThread:
 
     Args:
         name: Name of the thread.
-        waker: Wakes the loop when a job is done that somebody waits for.
+        waker: Wakes the loop when a job is done that a coroutine waits for.
     """
 
     def __init__(self, name: str, waker: LoopWaker) -> None:
@@ -209,7 +209,7 @@ class SendQueue:
                 self._wake(None)
 
     def abandon(self) -> None:
-        """Drop, and count, what waits."""
+        """Drop waiting sends, and count them."""
         count = len(self._waiting)
         self._waiting.clear()
         if count:

@@ -116,7 +116,7 @@ class WriterProxy:
         return self.next <= self.last
 
     def note_in_order(self, size: int) -> None:
-        """Note that the message `expected` has come and is used. The common case of `take`."""
+        """Count the message `expected`, which is used by the caller. The common case of `take`."""
         self.next = self.expected = self.expected + 1
         self._unacked_bytes = unacked = self._unacked_bytes + size + ACK_OVERHEAD_BYTES
         if unacked >= ACK_BYTES:
@@ -175,7 +175,7 @@ class WriterProxy:
         return max((last for first, last in self._gaps if first <= self.next), default=0)
 
     def used(self, size: int) -> None:
-        """Note that the oldest message that waited for room is used now."""
+        """Count the oldest message that waited for room; it is used now."""
         self._waiting.popleft()
         self._update_expected()
         self._note_used(size)
@@ -197,7 +197,7 @@ class WriterProxy:
         self.acknowledge(ask=ask)
 
     def gap(self, first: int, last: int) -> None:
-        """Note that a range will not be sent."""
+        """Handle a GAP: a range that will not be sent."""
         self.heard_ns = self._now_ns()
         self.last = max(self.last, last)
         if last >= self.next and len(self._gaps) < MAX_GAPS:

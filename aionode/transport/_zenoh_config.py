@@ -1,11 +1,11 @@
-"""Who a context talks to: from environment variables and arguments to a Zenoh configuration.
+"""The network settings of a context: from environment variables to a Zenoh configuration.
 
 Pure functions; nothing is connected here, and zenoh is not imported.
 
 Without configuration the processes of one machine find each other over loopback: each tries to
-listen on one of three meeting ports, and dials the others and the port of a ROS 2 router. Whoever
-knows somebody introduces them to the rest, after which all are linked directly. If programs that
-do not speak Zenoh have all three, there are three more.
+listen on one of three meeting ports, and dials the others and the port of a ROS 2 router. Gossip
+then introduces all of them to each other, and they connect directly. If other programs hold all
+three ports, there are three spare ones.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class DiscoveryRange(enum.Enum):
     """How far a context looks for others by itself."""
 
     OFF = "OFF"
-    """It finds nobody and is found by nobody."""
+    """It finds no other context, and none finds it."""
     LOCALHOST = "LOCALHOST"
     """It finds the processes of its machine; nothing listens beyond loopback."""
     SUBNET = "SUBNET"
@@ -74,7 +74,7 @@ class DiscoveryRange(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class Network:
-    """What a context was told about its network.
+    """The network settings of a context.
 
     Attributes:
         domain_id: Contexts of different domains do not hear each other.
@@ -288,7 +288,7 @@ def session_settings(network: Network, taken: Iterable[int]) -> dict[str, Any]:
     """Return the settings of a session, by key path, without those of `network.overrides`.
 
     Args:
-        network: What the context was told.
+        network: The settings of the context.
         taken: Those of its meeting ports on which it cannot listen.
     """
     if network.config_file is not None:
@@ -342,8 +342,8 @@ def session_settings(network: Network, taken: Iterable[int]) -> dict[str, Any]:
 
 
 def router_settings(listen: Iterable[str] = (f"tcp/[::]:{ROUTER_PORT}",)) -> dict[str, Any]:
-    """Return the settings of a router, as those of `rmw_zenohd`: it introduces everybody."""
-    everybody = ["router", "peer"]
+    """Return the settings of a router, as those of `rmw_zenohd`: it introduces all peers."""
+    all_kinds = ["router", "peer"]
     return {
         "mode": "router",
         "listen/endpoints": list(listen),
@@ -351,14 +351,13 @@ def router_settings(listen: Iterable[str] = (f"tcp/[::]:{ROUTER_PORT}",)) -> dic
         "open/return_conditions/connect_scouted": False,
         "scouting/multicast/enabled": False,
         "scouting/gossip/enabled": True,
-        "scouting/gossip/target": {"router": everybody, "peer": ["router"]},
-        "scouting/gossip/autoconnect": {"router": [], "peer": everybody},
+        "scouting/gossip/target": {"router": all_kinds, "peer": ["router"]},
+        "scouting/gossip/autoconnect": {"router": [], "peer": all_kinds},
         "timestamping/enabled": True,
         "queries_default_timeout": 600_000,
         "transport/link/tx/lease": 60_000,
         "transport/link/tx/keep_alive": 2,
         "transport/shared_memory/enabled": False,
-        # Whoever lists what it has in its routing table could lock that for good: zenoh's pull
-        # request 2619.
+        # A query for its routing table can deadlock it: zenoh's pull request 2619.
         "adminspace/enabled": False,
     }

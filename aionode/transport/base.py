@@ -76,7 +76,7 @@ class Reader(Protocol):
     """Whether `deliver` wants the message as CDR bytes."""
 
     def deliver(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
-        """Take one message, which nobody may change from now on. Never raises, never waits.
+        """Take one message, which must not be changed from now on. Never raises, never waits.
 
         Args:
             msg: The message.
@@ -87,7 +87,7 @@ class Reader(Protocol):
         """
 
     def reject(self, error: DecodeError) -> None:
-        """Note that something came which is no message of this type. Never raises."""
+        """Count a sample that is no message of this type. Never raises."""
 
     def has_room(self) -> bool:
         """Whether a message can be taken without losing one that should be kept (KEEP_ALL)."""
@@ -128,7 +128,7 @@ class Writer(Registration):
     async def drain(self) -> None:
         """Wait until `has_room`, and what was written has been handed on."""
 
-    # For whoever looks at it; not asked for each message.
+    # For statistics; not asked for each message.
 
     @property
     def dropped(self) -> int:
@@ -153,7 +153,7 @@ class ReplyTo(Protocol):
         """Take a server's error."""
 
     def end(self) -> None:
-        """Note that no answer will come any more through this transport."""
+        """Handle the end of the answers of this transport."""
 
 
 class Call(Protocol):
@@ -253,22 +253,22 @@ class Transport(ABC):
     async def close(self) -> None:
         """Withdraw everything and disconnect, within a second; it can be opened again."""
 
-    async def all_known(self, quiet_s: float) -> bool:  # noqa: ARG002  # here nobody is waited for
-        """Wait until everybody who can be reached has said what there is.
+    async def all_known(self, quiet_s: float) -> bool:  # noqa: ARG002  # no other process
+        """Wait until the graph of all reachable peers is known.
 
-        `open` waits for that as well, but not for long. False when somebody has not, and nothing
-        has come for `quiet_s` seconds. For tools, whose answer is to be complete.
+        `open` waits for that as well, but not for long. False when a peer has not answered, and
+        nothing has come for `quiet_s` seconds. For tools, whose answer is to be complete.
         """
         return True
 
     def abandon(self) -> None:  # noqa: B027  # most have nothing to let go of
-        """Let go of what a forked child has of its parent's, without a sign to anybody.
+        """Let go of what a forked child has of its parent's, without a sign to others.
 
         Called in the child, which never uses this transport again.
         """
 
     async def link_status(self) -> LinkStatus:
-        """Return who of the others can be linked, and who is. For tools: everybody is asked."""
+        """Ask all contexts which links they offer and have. For tools."""
         return LinkStatus(set(), set())
 
     @abstractmethod

@@ -39,7 +39,7 @@ class LocalTransport(Transport):
     async def close(self) -> None:
         """There is nothing to disconnect."""
 
-    def create_node(self, node: NodeInfo) -> Registration:  # noqa: ARG002  # nobody else to tell
+    def create_node(self, node: NodeInfo) -> Registration:  # noqa: ARG002  # no other process
         """Nodes of this context are known to its graph already."""
         return _Nothing()
 
@@ -270,7 +270,7 @@ class LocalRequest(Request):
         server.unanswered.add(self)
 
     def _finish(self) -> bool:
-        """Note that the request is done with; return whether it was not yet."""
+        """Mark the request as answered; return whether this is the first time."""
         if self not in self._server.unanswered:
             return False
         self._server.unanswered.discard(self)
@@ -316,7 +316,7 @@ class LocalCall:
             self._reply_to.fail(error)
 
     def end(self) -> None:
-        """Note that one server will not answer; pass it on when it was the last."""
+        """Handle a server that will not answer; the last one ends the call."""
         self.open -= 1
         if self.open == 0 and self._reply_to is not None:
             self._reply_to.end()

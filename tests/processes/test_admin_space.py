@@ -17,14 +17,14 @@ CONTROL = "@/control/router"
 
 
 class Overheard:
-    """What was asked or written under ``@/``, by anybody behind the router."""
+    """What was asked or written under ``@/`` by any session behind the router."""
 
     def __init__(self) -> None:
         self.keys: list[str] = []
         self._control = threading.Event()
 
     def take(self, asked: zenoh.Query | zenoh.Sample) -> None:
-        """Note one key; from any thread."""
+        """Record one key; from any thread."""
         key = str(asked.key_expr)
         self.keys.append(key)
         if key == CONTROL:
@@ -63,7 +63,7 @@ def test_nodes_and_commands_ask_no_admin_space(link: str, monkeypatch: pytest.Mo
     """Two nodes with a link between them or without one, the questions of a user, and the doctor.
 
     A router holds its routing table's lock while it answers, and takes it once more for each
-    reply: with a declaration in between nobody gets into the system any more (zenoh 1.8 to 1.10).
+    reply: with a declaration in between no process can join any more (zenoh 1.8 to 1.10).
     """
     monkeypatch.setenv("AIONODE_LINK", link)
     with router_with_a_listener() as (asking, overheard), ExitStack() as stack:

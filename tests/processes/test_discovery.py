@@ -1,4 +1,4 @@
-"""Processes find each other, whoever comes, goes or hangs."""
+"""Processes find each other while others start, end or hang."""
 
 from __future__ import annotations
 
@@ -44,12 +44,16 @@ def heard_within(stack: ExitStack, limit_s: float, *others: str) -> Process:
     pytest.fail(f"newcomers took {took} s to hear {others}; {limit_s} s is the limit")
 
 
-def stop_within_a_second(*members: Process) -> None:
-    """End each with Ctrl-C."""
+FLUSH_LIMIT_S = 2.0
+"""How long a program may wait at its end for a reader that is frozen to take its last messages."""
+
+
+def stop_within_a_second(*members: Process, flush_limit_s: float = 0.0) -> None:
+    """End each with Ctrl-C: within a second of its flush limit."""
     for each in members:
         took_s, status = each.stop()
         assert status == 0, f"{status}: {each.rest()}"
-        assert took_s < 1.0
+        assert took_s < 1.0 + flush_limit_s
 
 
 @pytest.mark.parametrize("first", ["talker", "listener"])
@@ -74,7 +78,7 @@ def test_the_second_process_hears_the_first_soon_after_its_start() -> None:
 
 
 def test_a_dozen_started_at_once_all_hear_all() -> None:
-    """They race for the meeting ports; whoever loses is introduced by the others."""
+    """They race for the meeting ports; those that lose are introduced by the others."""
     names = [f"m{number}" for number in range(12)]
     with ExitStack() as stack:
         members = [stack.enter_context(member(name)) for name in names]
@@ -83,7 +87,7 @@ def test_a_dozen_started_at_once_all_hear_all() -> None:
 
 
 def test_nothing_listens_beyond_loopback() -> None:
-    """Nobody on the network can reach a node unless its user asks for it."""
+    """No other machine can reach a node unless its user asks for it."""
     with ExitStack() as stack:
         for each in group(stack, "a", "b"):
             addresses = listening_addresses(each.pid)
@@ -92,7 +96,7 @@ def test_nothing_listens_beyond_loopback() -> None:
 
 
 def test_a_killed_process_leaves_the_graph_and_ends_its_calls() -> None:
-    """Within a second, and whoever waits for an answer is told."""
+    """Within a second, and callers that wait for an answer get an error."""
     with ExitStack() as stack:
         one, two, three = group(stack, "one", "two", "three")
         one.expect("heard three")
@@ -113,17 +117,18 @@ def test_a_killed_process_leaves_the_graph_and_ends_its_calls() -> None:
 def test_newcomers_hear_everyone_when_the_holder_of_the_meeting_port_is_gone(
     number: signal.Signals,
 ) -> None:
-    """The first process holds the first port: nobody may depend on it."""
+    """The first process holds the first port: no other may depend on it."""
     with ExitStack() as stack:
         holder, *others = group(stack, "holder", "one", "two", "three")
         others[-1].expect("heard holder", "heard one", "heard two")
         holder.send(number)
         newcomer = heard_within(stack, 0.5, "one", "two", "three")
-        stop_within_a_second(newcomer, *others)
+        flush_limit_s = FLUSH_LIMIT_S if number is signal.SIGSTOP else 0.0
+        stop_within_a_second(newcomer, *others, flush_limit_s=flush_limit_s)
 
 
 def test_newcomers_hear_everyone_when_all_holders_are_killed() -> None:
-    """Whoever is left has no meeting port, and dials them."""
+    """The process that is left has no meeting port, and dials them."""
     with ExitStack() as stack:
         *holders, last = group(stack, "h1", "h2", "h3", "last")
         last.expect("heard h1", "heard h2", "heard h3")

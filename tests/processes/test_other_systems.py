@@ -56,7 +56,7 @@ def test_two_nodes_of_one_process_talk(system: str) -> None:
 
 @both_systems
 def test_two_processes_and_the_command_line_talk_over_zenoh(system: str) -> None:
-    """There are no links there, and nobody has to say so; Ctrl-C ends a program as everywhere."""
+    """There are no links there, without a setting; Ctrl-C ends a program as everywhere."""
     with Process(OTHER_SYSTEM, system, MEMBER, "talk") as talker:
         assert "answer True" in output_of(system, MEMBER, "listen")
         assert "/chatter" in output_of(system, "aionode", "topic", "list")

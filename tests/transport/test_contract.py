@@ -166,7 +166,7 @@ async def test_raw_readers_get_the_bytes(pair: Pair) -> None:
 
 
 async def test_a_value_that_does_not_fit_is_refused_by_publish(pair: Pair) -> None:
-    """Nobody hears it, and the next one arrives."""
+    """No subscription gets it, and the next one arrives."""
     reader = pair.right.create_subscription(Int8, "numbers")
     writer = pair.left.create_publisher(Int8, "numbers", 10)
     await writer.wait_for_subscribers()

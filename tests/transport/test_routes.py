@@ -50,7 +50,7 @@ async def test_a_linked_subscription_is_reached_both_ways_while_a_stranger_liste
 
 
 async def test_what_late_readers_get_goes_by_zenoh() -> None:
-    """Zenoh keeps it for them, whoever is linked."""
+    """Zenoh keeps it for them, with links or without."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
         late = nodes.a.create_publisher(Int32, "late", kept(1))
@@ -122,7 +122,7 @@ async def test_a_link_that_comes_again_is_announced_again() -> None:
 
 
 async def test_a_context_that_is_closed_or_has_no_network_knows_of_no_links() -> None:
-    """There is nobody to ask."""
+    """There is no other process to ask."""
     closed = Context(link=True)
     assert await links_seen_by(closed) == LinkStatus(set(), set())
     assert await FaultyTransport(LocalTransport()).link_status() == LinkStatus(set(), set())

@@ -123,12 +123,12 @@ def test_meeting_ports_beyond_three_are_spare() -> None:
 
 
 def settings(network: Network, *answering: int) -> dict[str, Any]:
-    """Return the settings when somebody listens on these ports."""
+    """Return the settings when other processes listen on these ports."""
     return session_settings(network, answering)
 
 
 def test_the_first_process_takes_the_first_meeting_port_and_dials_the_others() -> None:
-    """Whoever comes later finds it there; the port of a ROS router is never taken."""
+    """Later processes find it there; the port of a ROS router is never taken."""
     found = settings(Network())
 
     assert found["listen/endpoints"] == [f"tcp/127.0.0.1:{H1}", "tcp/127.0.0.1:0"]
@@ -153,7 +153,7 @@ def test_without_a_free_meeting_port_all_are_dialled() -> None:
 
 @pytest.mark.parametrize("discovery_range", DiscoveryRange)
 def test_only_subnet_listens_beyond_loopback(discovery_range: DiscoveryRange) -> None:
-    """Nobody else can reach a node unless its user asks for it."""
+    """No other machine can reach a node unless its user asks for it."""
     found = settings(Network(discovery_range=discovery_range))
     beyond = [e for e in found["listen/endpoints"] if "127.0.0.1" not in e]
 
@@ -171,7 +171,7 @@ def test_off_neither_listens_nor_dials() -> None:
 
 
 def test_the_system_default_is_that_of_rmw_zenoh() -> None:
-    """Only a router on this machine introduces anybody."""
+    """Only a router on this machine introduces peers."""
     network = Network(discovery_range=DiscoveryRange.SYSTEM_DEFAULT)
 
     assert probed_ports(network) == (ROUTER_PORT,)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from aionode.cli._support.ending import Deadline
+from aionode.cli._support.deadline import Deadline
 from aionode.cli._support.error_text import one_line, status_of
 from aionode.cli._support.output import Output
 from aionode.errors import AionodeError

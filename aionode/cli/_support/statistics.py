@@ -32,6 +32,11 @@ class Spread:
     deviation: float
     count: int
 
+    @property
+    def rate_hz(self) -> float:
+        """How many of them there are in a second; 0 if they are all zero."""
+        return 1e9 / self.mean if self.mean else 0.0
+
 
 def spread_of(values: Sequence[int]) -> Spread:
     """Return the spread of at least one duration."""

@@ -160,9 +160,8 @@ async def every_second(node: Node, follower: Follower, show: Callable[[], None])
 
 def hz_values(spread: Spread) -> tuple[str, str, str, str, str]:
     """Return the rate in Hz, extremes and deviation in seconds, and the number of intervals."""
-    rate = 1e9 / spread.mean if spread.mean else 0.0
     return (
-        f"{rate:.3f}",
+        f"{spread.rate_hz:.3f}",
         f"{spread.low / 1e9:.3f}",
         f"{spread.high / 1e9:.3f}",
         f"{spread.deviation / 1e9:.5f}",
@@ -174,7 +173,7 @@ def hz_record(name: str, spread: Spread) -> dict[str, Any]:
     """Return the record of one topic."""
     return {
         "topic": name,
-        "rate_hz": 1e9 / spread.mean if spread.mean else 0.0,
+        "rate_hz": spread.rate_hz,
         "min_s": spread.low / 1e9,
         "max_s": spread.high / 1e9,
         "std_dev_s": spread.deviation / 1e9,

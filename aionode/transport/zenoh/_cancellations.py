@@ -1,8 +1,8 @@
-"""Telling servers that a client has given a request up.
+"""Sending servers the cancellations of requests.
 
-ROS has no message for it, and a query cannot be taken back from the one who answers it. So each
-context listens on a key of its own, and the context of a client puts the number of the request
-there. ROS nodes neither send nor hear this.
+ROS has no message for this, and a Zenoh query cannot be cancelled at its queryable. So each context
+subscribes to a key of its own, and the context of the client publishes the sequence number of the
+request there. ROS nodes do not take part.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ LIMIT = 1_000
 
 
 class Cancellations:
-    """The cancellations that this context sends and hears.
+    """The cancellations that this context sends and receives.
 
     Attributes:
         listeners: Called with the gid of the client and its number of the request.
@@ -48,21 +48,21 @@ class Cancellations:
         self._queue: ThreadsafeQueue[zenoh.Sample] = ThreadsafeQueue(waker, self._take, LIMIT)
 
     def start(self, session: zenoh.Session) -> None:
-        """Listen."""
+        """Subscribe."""
         self._session = session
         self._subscriber = session.declare_subscriber(
             self._key(self._participant), direct(self._queue.put)
         )
 
     def stop(self) -> None:
-        """Listen no longer."""
+        """Unsubscribe."""
         subscriber, self._subscriber = self._subscriber, None
         self._session = None
         if subscriber is not None:
             subscriber.undeclare()
 
     def tell(self, participants: Iterable[str], gid: bytes, sequence: int) -> None:
-        """Tell the contexts `participants` that a request need not be served."""
+        """Send the cancellation of a request to some contexts."""
         if self._session is not None:
             for participant in participants:
                 self._session.put(

@@ -1,4 +1,4 @@
-"""What publishers, subscriptions and services on Zenoh share: limits, sizes, QoS."""
+"""Limits, sizes and QoS that publishers, subscriptions and services over Zenoh share."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ BULK_BYTES = 60_000
 """From this size on a message is sent from a thread: it takes more than one packet of Zenoh's."""
 
 FLUSH_NS = int(FLUSH_S * 1e9)
-"""How long what was published has to arrive after the publisher was destroyed."""
+"""How long a destroyed publisher waits for acknowledgements while there is progress."""
 
 STILL_NS = 500_000_000
-"""The same while nothing moves."""
+"""How long it waits without progress."""
 
 GIVEN_UP_NS = BLOCK_US * 900
-"""What took so long to send was given up by Zenoh."""
+"""A send that took so long was given up by Zenoh."""
 
 BLOCK = zenoh.CongestionControl.BLOCK
 

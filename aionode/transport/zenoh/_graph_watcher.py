@@ -1,4 +1,4 @@
-"""The graph of others, from their liveliness tokens."""
+"""The graph of other contexts, from their liveliness tokens."""
 
 from __future__ import annotations
 
@@ -51,16 +51,16 @@ class NodeDeclaration(Declaration):
 
 
 def ignore(_: zenoh.Reply) -> None:
-    """Do nothing with an answer."""
+    """Ignore a reply."""
 
 
 class Check:
-    """What is there now, to be compared with what is known.
+    """A query for all tokens, whose replies are compared with the known ones.
 
     Attributes:
-        found: The tokens that were found.
-        changed: Those that have come or gone meanwhile, of which the answers may be older.
-        failed: Whether there may be more.
+        found: The tokens in the replies.
+        changed: Tokens that were declared or undeclared meanwhile; replies may be older.
+        failed: Whether replies may be missing.
     """
 
     def __init__(self) -> None:
@@ -70,10 +70,10 @@ class Check:
 
 
 class Watcher:
-    """Keeps the graph as the tokens of others say.
+    """Keeps the graph up to date with the tokens of other contexts.
 
     Attributes:
-        newest_ns: When the newest token came, by `perf_ns`.
+        newest_ns: When the newest token arrived, by `perf_ns`.
     """
 
     def __init__(self, state: SessionState) -> None:
@@ -91,15 +91,15 @@ class Watcher:
         self._queue = state.queue(self._take)
 
     def start(self, session: zenoh.Session) -> None:
-        """Begin to listen; what exists already comes at once."""
+        """Subscribe to the tokens; existing ones arrive at once."""
         with translated("the graph"):
-            # Of all domains: a node that is not heard because of its domain can be named.
+            # Of all domains, so that a node with another domain id can be named in the log.
             self._subscriber = session.liveliness().declare_subscriber(
                 f"{PREFIX}/**", direct(self._queue.put), history=True
             )
 
     def stop(self) -> None:
-        """Listen no longer, and forget what was known."""
+        """Unsubscribe, and forget all tokens."""
         if self._subscriber is not None:
             self._subscriber.undeclare()
             self._subscriber = None
@@ -114,13 +114,13 @@ class Watcher:
 
     @property
     def other_domains(self) -> frozenset[int]:
-        """The domains of nodes that are there and are not heard; a hundred at most."""
+        """The domains of reachable nodes with another domain id; a hundred at most."""
         return frozenset(self._foreign)
 
     def ask(self, session: zenoh.Session, answered: asyncio.Future[None]) -> None:
-        """Resolve `answered` when the tokens of everyone connected now are in the graph."""
-        # The answers themselves are the same tokens that the subscriber gets, and they may be older
-        # than a withdrawal that it has got since: only their end is of interest.
+        """Resolve `answered` when the tokens of all connected peers are in the graph."""
+        # The subscriber gets the same tokens, and a reply may be older than an undeclaration that
+        # it has got since: only the end of the replies is of interest.
         session.liveliness().get(
             f"{PREFIX}/{self._state.domain_id}/**",
             direct(ignore, lambda: self._queue.put(answered)),
@@ -128,11 +128,11 @@ class Watcher:
         )
 
     def check(self) -> None:
-        """Compare the graph with the tokens that are there, and mend it.
+        """Compare the graph with the tokens that exist, and correct it.
 
-        While connections break and are made anew Zenoh may tell in the wrong order that one token
-        has gone over the one and has come over the other. At the same time it may answer without
-        some that are there: one has gone if it is missing twice, and whose it is not connected.
+        While connections break and are made anew, Zenoh may deliver the end of a token on the old
+        one after its declaration on the new one. At the same time its replies may lack existing
+        tokens: one is removed if it is missing twice, and its context is not connected.
         """
         session = self._state.session
         if session is None or self._check is not None:
@@ -225,7 +225,7 @@ class Watcher:
                 update()
 
     def note_domains(self) -> None:
-        """Say whether there are nodes of other domains, and from now on when more come."""
+        """Log nodes of other domains, now and whenever more appear."""
         self._opening = False
         self._tell_domains()
 
@@ -240,9 +240,9 @@ class Watcher:
                 self._tell_domains()
 
     def _tell_domains(self) -> None:
-        """Name a few of the other domains, and then only each time that there are many more.
+        """Log a few of the other domains; again only when there are ten times as many.
 
-        A warning if there is nobody else: then the domain is likely to be a mistake.
+        A warning if no node of this domain is known: then the domain id is probably a mistake.
         """
         count = len(self._foreign)
         alone = not self._known

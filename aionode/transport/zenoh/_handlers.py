@@ -1,4 +1,4 @@
-"""Small things around Zenoh's own calls."""
+"""Helpers for calls of Zenoh: priorities, error texts, handlers."""
 
 from __future__ import annotations
 
@@ -20,34 +20,34 @@ __all__ = [
     "translated",
 ]
 
-# Zenoh has a queue for each priority and peer. Who waits for room in one (congestion control BLOCK,
-# and for a moment DROP) holds it, and everyone else who wants to put something there waits too, on
-# whatever thread. So what the loop sends itself has a queue in which nobody ever waits; Zenoh's
-# default, DATA, is left to what Zenoh sends itself and to replies to ROS 2 nodes.
+# Zenoh has a queue for each priority and peer. A thread that waits for room in one (congestion
+# control BLOCK, and for a moment DROP) locks it, and all other threads that put into it wait too.
+# So messages from the event loop have a queue of their own, in which no thread ever waits. Zenoh's
+# default, DATA, is left to Zenoh's own messages and to replies to ROS 2 nodes.
 
 LOOP_PRIORITY = zenoh.Priority.DATA_HIGH
-"""Of what the loop's thread puts itself: always with congestion control DROP."""
+"""Of messages from the event loop: always with congestion control DROP."""
 
 CALL_PRIORITY = zenoh.Priority.INTERACTIVE_LOW
-"""Of requests and their replies, which BLOCK."""
+"""Of requests and their replies, sent with BLOCK."""
 
 BULK_PRIORITY = zenoh.Priority.DATA_LOW
-"""Of large messages, sent from a thread: DROP, but each fragment may wait."""
+"""Of large messages, sent from a thread with DROP; each fragment may wait."""
 
 PATIENT_PRIORITY = zenoh.Priority.BACKGROUND
-"""Of what has to arrive at readers that do not acknowledge, sent from threads that BLOCK."""
+"""Of reliable messages for readers that do not acknowledge, sent from threads with BLOCK."""
 
 T = TypeVar("T")
 
 
 def reason(error: zenoh.ZError) -> str:
-    """Return what went wrong, without the place in Zenoh's own source."""
+    """Return the text of an error without the position in Zenoh's source."""
     return str(error).partition(" at /")[0]
 
 
 @contextmanager
 def translated(what: str) -> Iterator[None]:
-    """Turn Zenoh's errors into ours, which say what was being done."""
+    """Raise `TransportError`, which names the subject, for Zenoh's errors."""
     try:
         yield
     except zenoh.ZError as error:
@@ -57,8 +57,8 @@ def translated(what: str) -> Iterator[None]:
 def direct(
     callback: Callable[[T], None], drop: Callable[[], None] | None = None
 ) -> zenoh.handlers.Callback[T]:
-    """Return a handler that runs in Zenoh's network thread, for what comes seldom.
+    """Return a handler that runs in Zenoh's network thread, for infrequent samples.
 
-    It saves a thread for each entity and each call, and costs some latency where much comes.
+    It saves a thread for each entity and each call, and costs latency where samples are frequent.
     """
     return zenoh.handlers.Callback(callback, drop, indirect=False)

@@ -1,4 +1,4 @@
-"""Who is connected, and which contexts of aionode say more of themselves than ROS asks for."""
+"""The connected sessions, and the tokens of aionode contexts beside the ROS graph."""
 
 from __future__ import annotations
 
@@ -25,27 +25,27 @@ logger = logging.getLogger("aionode.transport.zenoh")
 PREFIX: Final = "@aionode"
 
 LINKS_S: Final = 0.5
-"""How long `links` waits for everybody's answers; it takes a millisecond."""
+"""How long `link_status` waits for replies; they take a millisecond."""
 
 
 class ZenohPeerDirectory:
-    """Tokens beside the ROS graph, the sessions that are connected, and a box for post.
+    """Tokens beside the ROS graph, connected sessions, and retransmissions between contexts.
 
-    A session is known once it has announced a node or a context of aionode, in any domain: then
-    it announces its subscriptions as well. Anybody else is a stranger, who may subscribe to
-    anything: a session that is connected, as long as it has not announced itself; and a router,
-    since nothing tells who is behind it. It could be asked through its admin space, but must not
-    be: it holds its routing table's lock while it answers, and takes it once more for each reply.
-    With a declaration in between it never lets go (zenoh 1.8 to 1.10, pull request 2619), and no
-    newcomer of the whole system gets in any more.
+    A session is known once it has announced a node or an aionode context, in any domain: then it
+    announces its subscriptions as well. All others are unannounced peers, which may subscribe to
+    anything: a connected session that has not announced itself; and a router, as the sessions
+    behind it are not visible. A router could be asked through its admin space, but must not be: it
+    holds the lock of its routing table while it answers, and takes it once more for each reply.
+    With a declaration in between it deadlocks (zenoh 1.8 to 1.10, pull request 2619), and no other
+    process can join the system any more.
 
     Attributes:
-        advertisement: What to announce, as chunks of a key that begin with the participant; None
-            for nothing, and then nothing is looked for either.
-        on_advertisement: Called with what another context announces, and whether it is there.
-        has_unannounced_peers: Whether somebody can be reached whose subscriptions nobody announces.
+        advertisement: What this context announces, as chunks of a key that begin with the
+            participant; None to announce and look for nothing.
+        on_advertisement: Called with the advertisement of another context, and whether it exists.
+        has_unannounced_peers: Whether a peer can be reached whose subscriptions are not announced.
         on_unannounced_peers: Called with `has_unannounced_peers` when that has changed.
-        on_retransmit: Called with what others have sent to this context; in order for each of them.
+        on_retransmit: Called with what other contexts have sent; in order for each of them.
     """
 
     def __init__(self, state: SessionState) -> None:
@@ -60,20 +60,20 @@ class ZenohPeerDirectory:
         self._nodes = state.queue(self._take_node)
         self._changes = state.queue(self._take_change)
         self._retransmits = state.queue(self._take_retransmit)
-        # The tokens of each session that has announced itself. It stays known without any while
-        # it can be reached: a context announces its subscriptions, with a node or without.
+        # The tokens of each session that has announced itself. A connected session stays here
+        # without any: a context announces its subscriptions, with a node or without.
         self._known: dict[str, set[str]] = {}
-        # Contexts with strangers whom only they see.
+        # Contexts that have announced unannounced peers that only they see.
         self._hosts: set[str] = set()
         self._connected: dict[str, zenoh.WhatAmI] = {}
         self._declared: list[Any] = []
         self._warning: zenoh.LivelinessToken | None = None
-        # By the other context, in this session; only the thread that sends touches them.
+        # The token of each link, by the other context; used by the bulk thread only.
         self._linked: dict[str, zenoh.LivelinessToken] = {}
         self._session: zenoh.Session | None = None
 
     def start(self, session: zenoh.Session) -> None:
-        """Announce and listen; what exists already comes at once."""
+        """Declare the token, and subscribe to those of others; existing ones arrive at once."""
         if self.advertisement is None:
             return
         self._session = session
@@ -99,7 +99,7 @@ class ZenohPeerDirectory:
         self._update()
 
     def stop(self) -> None:
-        """Announce nothing, and listen no longer."""
+        """Undeclare everything, and forget all peers."""
         self._session = None
         self._warn(needed=False)
         declared, self._declared = self._declared, []
@@ -113,17 +113,17 @@ class ZenohPeerDirectory:
         self.has_unannounced_peers = False
 
     def retransmit(self, participant: str, data: bytes) -> None:
-        """Send `data` to another context, from a thread; nothing is dropped while both are open."""
+        """Send `data` to another context from the bulk thread; not dropped while both are open."""
         session = self._session
         if session is not None:
             key = self._retransmit_key(participant)
             self._state.bulk.submit(lambda: send(session, key, data))
 
     def announce_link(self, participant: str, on: bool) -> None:
-        """Tell whoever asks that there is a link to another context, or no longer.
+        """Declare or undeclare a token for a link to another context.
 
-        Of the two the one with the smaller id does it. From a thread, since the other end may hang
-        just now, and Zenoh may wait for it.
+        Of the two contexts, the one with the smaller id does so, from the bulk thread: the other
+        end may be stalled, and Zenoh may wait for it.
         """
         session, linked = self._session, self._linked
         if session is None or participant < self._state.participant:
@@ -143,7 +143,7 @@ class ZenohPeerDirectory:
         self._state.bulk.submit(announce)
 
     async def link_status(self) -> LinkStatus:
-        """Ask everybody who can be linked, and who is; without answers after a while, nobody."""
+        """Ask all contexts which links they offer and have; empty without replies in time."""
         session = self._state.session
         advertisements: set[str] = set()
         pairs: set[frozenset[str]] = set()
@@ -176,7 +176,7 @@ class ZenohPeerDirectory:
     def _take_retransmit(self, sample: zenoh.Sample) -> None:
         self.on_retransmit(sample.payload.to_bytes())
 
-    # Who is there
+    # Peers
 
     def _take_token(self, sample: zenoh.Sample) -> None:
         key = str(sample.key_expr)
@@ -210,7 +210,7 @@ class ZenohPeerDirectory:
             del self._known[zid]
 
     def _take_change(self, event: zenoh.TransportEvent) -> None:
-        # `transports()` may still have one whose end is being told.
+        # `transports()` may still list one whose end is being reported.
         zid = str(event.transport.zid)
         if event.kind == zenoh.SampleKind.PUT:
             self._connected[zid] = event.transport.whatami
@@ -223,12 +223,12 @@ class ZenohPeerDirectory:
         return {zid for zid, whatami in self._connected.items() if whatami == kind}
 
     def _update(self) -> None:
-        """Find out whether there are strangers, and tell."""
+        """Update `has_unannounced_peers`, and call back if it has changed."""
         if self._session is None:
             return
         # A router announces nothing, and stays unknown.
         unknown = {zid for zid in self._connected if zid not in self._known and not is_look(zid)}
-        # Everybody reaches the clients of this session, but nobody else sees them.
+        # All other contexts reach the clients of this session, but do not see them.
         self._warn(needed=bool(unknown & self._of_kind(zenoh.WhatAmI.CLIENT)))
         has_unannounced_peers = bool(unknown or self._hosts)
         if has_unannounced_peers != self.has_unannounced_peers:
@@ -236,7 +236,7 @@ class ZenohPeerDirectory:
             self.on_unannounced_peers(has_unannounced_peers)
 
     def _warn(self, *, needed: bool) -> None:
-        """Tell other contexts of strangers here, or no longer."""
+        """Announce to other contexts that this one has unannounced peers, or no longer."""
         if self._warning is not None and not needed:
             self._warning.undeclare()
             self._warning = None
@@ -248,7 +248,7 @@ class ZenohPeerDirectory:
 
 
 def send(session: zenoh.Session, key: str, data: bytes) -> None:
-    """Send post; in a thread."""
+    """Send `data`; runs in a thread."""
     try:
         session.put(
             key,

@@ -243,13 +243,13 @@ class ZenohWriter(Declaration, Writer):
         )
         if history is not None and graph is not None and publisher is not None:
             acknowledging, others = self._matched(graph)
-            # The token of a reader can arrive before Zenoh has a route to it; what is lost until
-            # then is sent again. A subscriber without a token may match too; beside readers that
-            # acknowledge, nothing is known of it.
-            self.active = self.active or bool(acknowledging)
-            history.has_other_readers = others or not acknowledging
-            self._update_route()
             self._update_readers(history, acknowledging)
+            # The token of a reader can arrive before Zenoh has a route to it; what is lost until
+            # then is sent again, and so is what is published while a reader is away. A subscriber
+            # without a token may match too; beside readers that acknowledge, none is known.
+            self.active = self.active or bool(history.readers)
+            history.has_other_readers = others or not history.readers
+            self._update_route()
         if self.active and self._encode is None:
             self._encode = cdr.encoder(self._msg_type)
 
@@ -454,7 +454,12 @@ class ZenohWriter(Declaration, Writer):
 
     def _tick(self) -> bool:
         history = self._history
-        again = history is not None and history.tick()
+        again = False
+        if history is not None:
+            known = len(history.readers)
+            again = history.tick()
+            if len(history.readers) != known:
+                self._update()
         self._progress()
         if self in self.state.lingering:
             now_ns = perf_ns()

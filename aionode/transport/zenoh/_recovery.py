@@ -1,14 +1,15 @@
-"""Has processes introduced again whose connection was lost while both live.
+"""Reconnects to processes whose connection was lost while both ends are alive.
 
-Zenoh dials the endpoints of its configuration for ever, but somebody whom gossip has introduced
-only when gossip names it. A router or a peer does that whenever it is connected anew, and only
-then: 3 ms after a process that was frozen has lost that connection, and perhaps before it has seen
-that others are lost as well. Those are named too early, and never again.
+Zenoh keeps dialling the endpoints of its configuration, but a peer that gossip has named only when
+gossip names it again. A router or a peer gossips when it is connected anew, and only then: 3 ms
+after a process that was frozen has lost that connection, and perhaps before it has noticed the loss
+of others. Those are named too early, and never again.
 
-So after a connection was lost we compare what we see with what whoever introduces sees: it is
-asked for the tokens of the domain, by a second session that is open for some milliseconds. If it
-sees somebody whom we do not, or to whom we have lost the connection, or does not see us, the
-connection to it is cut, and Zenoh makes it anew at once.
+So after the loss of a connection, the tokens that this session sees are compared with those that
+its introducer (a router, or the peer at a configured endpoint) sees. A second session, open for
+some milliseconds, queries them. If the introducer sees a participant that this session does not, or
+to which it has lost the connection, or does not see this session, the connection to the introducer
+is cut, and Zenoh makes it anew at once.
 """
 
 from __future__ import annotations
@@ -43,39 +44,38 @@ __all__ = ["Recovery", "is_look"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 LOOK_IDS: Final = "a10de10c"
-"""How the ids of sessions begin that are open for one look only."""
+"""The prefix of the ids of sessions that are open for one look only."""
 
 FIRST_S: Final = 0.5
-"""How long after a connection was lost, or made, we look; Zenoh needs some milliseconds."""
+"""The first look is so long after a connection was lost or made; Zenoh needs milliseconds."""
 
 AGAIN_S: Final = 3.0
-"""How often we look after that: one that was frozen comes back without telling us."""
+"""The interval of further looks: a process that was frozen returns without a sign."""
 
 WATCH_S: Final = 120.0
-"""For how long after the last connection was lost."""
+"""How long looks are repeated after the loss of the last connection."""
 
 SURE_S: Final = 0.3
-"""For how long somebody has to be missing. Who has just started is, for some milliseconds."""
+"""How long a participant must be missing. One that is starting is, for some milliseconds."""
 
 ANSWER_S: Final = 1.0
-"""How long the tokens may take to come; it takes a millisecond."""
+"""How long the query for tokens may take; it takes a millisecond."""
 
 ATTEMPTS: Final = 4
-"""How often somebody is introduced again; some can be seen, but not be reached from here."""
-
+"""How often the connection is cut for one participant; some are visible, but not reachable."""
 
 CHECKS: Final = 3
 """How often the graph is compared after connections have come or gone."""
 
 
 def is_look(zid: str) -> bool:
-    """Whether a session is one of ours that is open for a moment, and subscribes to nothing."""
+    """Return whether a session is open for one look only, and subscribes to nothing."""
     return zid.startswith(LOOK_IDS) and len(zid) == 32
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
-    """A connection that we have dialled, and Zenoh dials again when it is lost."""
+class Connection:
+    """A connection that this session has dialled, and that Zenoh dials again when it is lost."""
 
     zid: str
     source: tuple[str, int]
@@ -84,12 +84,12 @@ class Way:
 
 
 class Recovery:
-    """Looks for processes that are not connected any more, though they live.
+    """Looks for processes that are alive, but not connected any more.
 
     Args:
         state: The connection of the context.
-        network: Whom it dials.
-        on_change: Called some times after connections have come or gone.
+        network: The settings of the context, with the endpoints that it dials.
+        on_change: Called some times after connections were made or lost.
     """
 
     def __init__(
@@ -106,16 +106,16 @@ class Recovery:
         self._timer: asyncio.TimerHandle | None = None
         self._looking = False
         self._until_s = 0.0
-        # Whose connection was lost, and not made anew. A router may bring what they send meanwhile,
-        # but not always what we send.
+        # Participants whose connection was lost and not made anew. A router may forward what they
+        # send meanwhile, but not always what this session sends.
         self._lost: set[str] = set()
-        # How often those who are missing were introduced again.
+        # How often the connection was cut for each missing participant.
         self._attempts: dict[str, int] = {}
 
     def start(self, session: zenoh.Session) -> None:
-        """Begin to watch the connections of a session."""
+        """Start watching the connections of a session."""
         if not introducers(self._network):
-            return  # nobody is dialled again
+            return  # no endpoint is dialled again
         self._session = session
         with translated("connections"):
             self._listener = session.info.declare_transport_events_listener(
@@ -123,7 +123,7 @@ class Recovery:
             )
 
     def stop(self) -> None:
-        """Watch no longer; a look that is under way ends by itself."""
+        """Stop watching; a look that is under connection ends by itself."""
         self._session = None
         listener, self._listener = self._listener, None
         if listener is not None:
@@ -146,7 +146,7 @@ class Recovery:
         zid = str(event.transport.zid)
         if event.kind == zenoh.SampleKind.DELETE:
             if now_s >= self._until_s:
-                self._lost.clear()  # nobody looks for those any more
+                self._lost.clear()  # the looks for those have ended
             self._until_s = now_s + WATCH_S
             self._lost.add(zid)
         else:
@@ -175,29 +175,29 @@ class Recovery:
     def _look_in_thread(self, session: zenoh.Session, lost: set[str]) -> None:
         missing: set[str] = set()
         with suppress(zenoh.ZError, ConfigurationError):
-            way = way_to_introducer(session, self._network)
-            if way is not None:
-                missing = self._missing(session, way, lost)
+            connection = introducer_connection(session, self._network)
+            if connection is not None:
+                missing = self._missing(session, connection, lost)
                 if missing:
                     threading.Event().wait(SURE_S)
-                    missing &= self._missing(session, way, lost)
+                    missing &= self._missing(session, connection, lost)
                 missing = {zid for zid in missing if self._attempts.get(zid, 0) < ATTEMPTS}
                 if missing:
-                    cut(way)
+                    cut(connection)
         self._looks.put(missing)
 
-    def _missing(self, session: zenoh.Session, way: Way, lost: set[str]) -> set[str]:
-        """Return who is seen at the other end of a way and not here, or the other way round we."""
-        there = self._seen_at(way)
+    def _missing(self, session: zenoh.Session, connection: Connection, lost: set[str]) -> set[str]:
+        """Return those that only the introducer sees, and this one if the introducer does not."""
+        there = self._seen_at(connection)
         here = participants(session, self._state.domain_id)
         connected = {str(transport.zid) for transport in session.info.transports()}
         unseen = {self._state.participant} & here - there
         return (there - here) | (there & lost - connected) | unseen
 
-    def _seen_at(self, way: Way) -> set[str]:
-        """Return the participants that are seen at the other end of a way."""
+    def _seen_at(self, connection: Connection) -> set[str]:
+        """Return the participants that are visible at the other end of a connection."""
         look_id = LOOK_IDS + secrets.token_hex(12)
-        config = load_config(self._network, {}, look_id, look_settings(way.endpoint))
+        config = load_config(self._network, {}, look_id, look_settings(connection.endpoint))
         with closing(zenoh.open(config)) as look:
             return participants(look, self._state.domain_id)
 
@@ -230,23 +230,23 @@ def participants(session: zenoh.Session, domain_id: int) -> set[str]:
     return found
 
 
-def way_to_introducer(session: zenoh.Session, network: Network) -> Way | None:
-    """Return a connection to somebody who introduces others, a router if there is one."""
+def introducer_connection(session: zenoh.Session, network: Network) -> Connection | None:
+    """Return a connection to an introducer, a router if there is one."""
     routers = {str(zid) for zid in session.info.routers_zid()}
-    ways = []
+    connections = []
     dialled = {
         address: endpoint for endpoint in introducers(network) for address in addresses_of(endpoint)
     }
     for each in session.info.links():
         source, target = address_in(str(each.src)), address_in(str(each.dst))
         if source is not None and target in dialled:
-            ways.append(Way(str(each.zid), source, target, dialled[target]))
-    ways.sort(key=lambda way: way.zid not in routers)
-    return ways[0] if ways else None
+            connections.append(Connection(str(each.zid), source, target, dialled[target]))
+    connections.sort(key=lambda connection: connection.zid not in routers)
+    return connections[0] if connections else None
 
 
 def address_in(locator: str) -> tuple[str, int] | None:
-    """Return host and port of ``tcp/127.0.0.1:7447?…``, None if it has none."""
+    """Return host and port of a locator such as ``tcp/127.0.0.1:7447?…``; None without a port."""
     text = locator.partition("/")[2].partition("?")[0].partition("#")[0]
     host, colon, port = text.rpartition(":")
     if not (colon and port.isdigit()):
@@ -255,7 +255,7 @@ def address_in(locator: str) -> tuple[str, int] | None:
 
 
 def addresses_of(endpoint: str) -> Iterator[tuple[str, int]]:
-    """Yield where an endpoint is, by number."""
+    """Yield the numeric addresses of an endpoint."""
     address = address_in(endpoint)
     if address is not None:
         with suppress(OSError):
@@ -263,17 +263,17 @@ def addresses_of(endpoint: str) -> Iterator[tuple[str, int]]:
                 yield str(found[0]), int(found[1])
 
 
-def cut(way: Way) -> None:
-    """End a connection of Zenoh's, as the network would."""
+def cut(connection: Connection) -> None:
+    """Shut a connection of Zenoh down, as the network would."""
     for one in own_sockets():
         with closing(one), suppress(OSError):
             ends = one.getsockname()[:2], one.getpeername()[:2]
-            if ends == (way.source, way.target):
+            if ends == (connection.source, connection.target):
                 one.shutdown(socket.SHUT_RDWR)
 
 
 def own_sockets() -> Iterator[socket.socket]:
-    """Yield a second descriptor of each socket of this process, where the system lists them."""
+    """Yield a duplicate of each socket of this process, where the system lists them."""
     for folder in ("/proc/self/fd", "/dev/fd"):
         with suppress(OSError):
             names = [entry.name for entry in Path(folder).iterdir()]

@@ -37,7 +37,7 @@ FOREVER_S = 1e9
 """Timeout of a request for the result of a goal, which may take any time."""
 
 LONG_S = 600.0
-"""Timeout of a request, as in ROS; whoever calls sets the limit that counts, and cancels."""
+"""Timeout of a request, as in ROS; the effective limit is the caller's, which cancels the call."""
 
 SHORT_S = 30.0
 """Timeout of the requests of a client that calls often."""
@@ -58,7 +58,7 @@ AT_ONCE_NS = 50_000_000
 ARRIVING_REQUESTS = 50_000
 """How many requests wait for the loop at most, before the service counts and refuses them.
 
-One more ends the oldest, whose client is told that nothing will come.
+One more ends the oldest, whose client gets an error.
 """
 
 REMEMBERED_CLIENTS = 10_000
@@ -73,7 +73,7 @@ def error_payload(error_type: str, error_text: str) -> bytes:
 
 
 def parse_error(payload: bytes, service: str) -> ServiceError:
-    """Return the error that a server sent: ours with its type, or anybody's plain text."""
+    """Return the error that a server sent: with its type, if the server runs aionode."""
     text = payload.decode(errors="replace")
     try:
         fields = json.loads(text)
@@ -133,7 +133,7 @@ class ZenohServer(Declaration):
         super().close()
 
     def cancel(self, gid: bytes, sequence: int) -> None:
-        """Note that a client has given a request up."""
+        """Handle the cancellation of a request by its client."""
         request = self.unanswered.get((gid, sequence))
         if request is not None:
             request.cancelled = True
@@ -220,7 +220,7 @@ class ZenohRequest(Request):
         server.unanswered[self._id] = self
 
     def _finish(self) -> bool:
-        """Note that the request is done with; return whether it was not yet."""
+        """Mark the request as answered; return whether this is the first time."""
         return self._server.unanswered.pop(self._id, None) is not None
 
     def reply(self, response: Any) -> None:
@@ -440,7 +440,7 @@ class ZenohCall:
             self.end()
 
     def end(self) -> None:
-        """Note that nothing will come any more."""
+        """Handle the end of the replies."""
         reply_to = self._reply_to
         self._finish()
         if reply_to is None:
@@ -455,7 +455,7 @@ class ZenohCall:
         self._requester.unanswered.discard(self)
 
     def cancel(self) -> None:
-        """Forget the call, and tell the servers, as far as they can be told."""
+        """Forget the call, and send a cancellation to those servers that run aionode."""
         if self._reply_to is None:
             return
         self._finish()

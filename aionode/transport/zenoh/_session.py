@@ -1,4 +1,4 @@
-"""Opening and closing a Zenoh session, without blocking the event loop."""
+"""Opening and closing Zenoh sessions without blocking the event loop."""
 
 from __future__ import annotations
 
@@ -52,25 +52,25 @@ PROBE_S = 0.2
 """How long a port on this machine may take to accept a connection; it takes 0.1 ms."""
 
 SPEAK_S = 0.5
-"""How long somebody may take to answer Zenoh's first message; it takes a millisecond."""
+"""How long a program may take to answer Zenoh's first message; it takes a millisecond."""
 
 TURN_S = 1.0
-"""How long others may take to open their sessions before this one goes ahead; each takes 10 ms."""
+"""How long this process waits for its turn to open a session; each turn takes 10 ms."""
 
 TURN_POLL_S = 0.002
-"""How often the turn is asked for: in a thread, and only while many start at once."""
+"""The polling interval for the turn: in a thread, and only while many start at once."""
 
 FIRST_LINK_S = 1.0
-"""How long `open` waits for the first of those who accept connections; a frozen one never comes."""
+"""How long `open` waits for the first peer that accepts connections; a frozen one never answers."""
 
 NEXT_LINK_S = 0.3
 """How long it waits for each further one."""
 
 QUIET_S = 0.015
-"""For so long nobody new has come when everybody is there: the first ones introduce the others."""
+"""All peers are taken to be connected after so long without a new one: gossip is faster."""
 
 CLOSE_S = 0.8
-"""How long closing may hold its caller up. A frozen peer can take longer, and ends in the back."""
+"""How long `close` may take. With a frozen peer it goes on in a thread."""
 
 
 INIT: Final = 1
@@ -79,7 +79,7 @@ KIND: Final = 0x1F
 """Kinds of Zenoh's messages, and the bits of the first byte that say so."""
 
 INIT_SYN: Final = bytes([INIT, 9, 0xF1])
-"""How a session introduces itself: version 9, a peer whose id of 16 bytes follows."""
+"""The first message of a session: version 9, a peer whose id of 16 bytes follows."""
 
 
 async def run_in_own_thread(work: Callable[[], T], late: Callable[[T], object] | None = None) -> T:
@@ -103,7 +103,7 @@ async def run_in_own_thread(work: Callable[[], T], late: Callable[[T], object] |
         result, error = None, None
         try:
             result = work()
-        except BaseException as raised:  # noqa: BLE001  # goes to whoever waits
+        except BaseException as raised:  # noqa: BLE001  # raised by the caller
             error = raised
         try:
             loop.call_soon_threadsafe(deliver, result, error)
@@ -111,7 +111,7 @@ async def run_in_own_thread(work: Callable[[], T], late: Callable[[T], object] |
             if error is None and late is not None:
                 late(result)  # type: ignore[arg-type]  # there is one without an error
 
-    # Python waits for it at its end: a thread inside Zenoh at that moment would abort the process.
+    # No daemon, so that Python waits for it at exit: a thread inside Zenoh would abort the process.
     thread = threading.Thread(target=run, name="aionode-zenoh")
     thread.start()
     try:
@@ -132,10 +132,10 @@ def answering_ports(ports: Iterable[int]) -> list[int]:
             probe.setblocking(False)
             pending[probe.fileno()] = (port, probe)
             with suppress(BlockingIOError):
-                # Refused at once is as good as refused later: select() shows both.
+                # An immediate refusal is reported by select() too.
                 probe.connect_ex((LOOPBACK, port))
         while pending and (left_s := (ends_ns - perf_ns()) / 1e9) > 0:
-            # Windows tells of a refused connection in the third list.
+            # Windows reports a refused connection in the third list.
             _, writable, failed = select.select([], list(pending), list(pending), left_s)
             for fd in {*writable, *failed}:
                 port, probe = pending.pop(fd)
@@ -152,7 +152,7 @@ def meeting(network: Network, answering: set[int]) -> tuple[Network, set[int]]:
     """Return a network whose ports can be met on, and those of them that are taken.
 
     Args:
-        network: What the context was told.
+        network: The settings of the context.
         answering: Those of its ports that accept a connection; if Zenoh answers at none of the
             meeting ports, these are removed, and spare ones where it does are added.
     """
@@ -187,7 +187,7 @@ def meeting(network: Network, answering: set[int]) -> tuple[Network, set[int]]:
 
 
 def can_listen(address: str, port: int) -> bool:
-    """Whether nobody else has a port, listening or not."""
+    """Return whether a port is free."""
     with socket.socket() as one:
         if os.name == "posix":  # elsewhere it means something else
             one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -200,7 +200,7 @@ def can_listen(address: str, port: int) -> bool:
 
 
 def speaking_ports(ports: Iterable[int]) -> set[int]:
-    """Return ports of this machine where Zenoh answers; those that do so first are enough."""
+    """Return those ports of this machine where Zenoh answers; not all, if one answers at once."""
     syn = INIT_SYN + os.urandom(16)
     probes: dict[socket.socket, int] = {}
     speaking: set[int] = set()
@@ -225,9 +225,9 @@ def speaking_ports(ports: Iterable[int]) -> set[int]:
 def one_at_a_time(port: int | None) -> Iterator[None]:
     """Let the processes of this machine look for a free meeting port, and take it, in turn.
 
-    Two that look at the same moment would both want the first one; the loser would have none, and
-    not dial the winner either. Whoever holds the UDP port of this number has the turn: unlike a
-    file it belongs to no user, and goes with its process.
+    Two that look at the same moment would both choose the first one; the loser would have none, and
+    not dial the winner either. The process that holds the UDP port of this number has the turn:
+    unlike a lock file it belongs to no user, and ends with its process.
     """
     if port is None:
         yield
@@ -283,7 +283,7 @@ def load_config(
 
 
 async def open_session(network: Network, participant: str) -> tuple[zenoh.Session, int]:
-    """Open a session, and return it with the number of neighbours that are about to be linked.
+    """Open a session; return it and the number of peers that are about to be connected.
 
     Raises:
         ConfigurationError: the configuration cannot be used.
@@ -303,7 +303,7 @@ async def open_session(network: Network, participant: str) -> tuple[zenoh.Sessio
                 f"Zenoh: no session could be opened: {reason(error)}; look at "
                 "ZENOH_SESSION_CONFIG_URI, ZENOH_CONFIG_OVERRIDE and Context(config=...)"
             ) from error
-        # Whoever was configured is hoped for, but may not be there.
+        # Configured peers may be absent; one of them is waited for.
         configured = bool(network.static_peers or network.config_file)
         return session, len(answering) + configured
 
@@ -311,7 +311,7 @@ async def open_session(network: Network, participant: str) -> tuple[zenoh.Sessio
 
 
 async def open_router(listen: Iterable[str]) -> zenoh.Session:
-    """Open a router for those who have no `rmw_zenohd`; `close_session` ends it.
+    """Open a router, as `rmw_zenohd` is; `close_session` ends it.
 
     ``ZENOH_CONFIG_OVERRIDE`` is honoured, for TLS and access control.
 
@@ -336,7 +336,7 @@ async def open_router(listen: Iterable[str]) -> zenoh.Session:
 
 
 async def close_session(session: zenoh.Session) -> None:
-    """Close a session; when that takes too long it goes on without its caller."""
+    """Close a session; if that takes too long, it goes on in a thread."""
 
     def work() -> None:
         try:
@@ -350,7 +350,7 @@ async def close_session(session: zenoh.Session) -> None:
 
 
 class ConnectionWatcher:
-    """The connections of a session to others, as they come."""
+    """Waits for the first connections of a session."""
 
     def __init__(self, session: zenoh.Session, queue: Callable[..., ThreadsafeQueue[Any]]) -> None:
         self._session = session
@@ -359,13 +359,13 @@ class ConnectionWatcher:
         self._listener = session.info.declare_transport_events_listener(direct(self._queue.put))
 
     def close(self) -> None:
-        """Look no longer."""
+        """Stop watching."""
         self._listener.undeclare()
 
     async def wait_until_connected(self, expected: int) -> None:
-        """Return when `expected` neighbours, and those whom they introduce, are linked.
+        """Wait until `expected` peers, and those that gossip names, are connected.
 
-        Or when it seems that they will not be, which takes a second at most.
+        Give up if they do not connect in time, after about a second.
         """
         if expected == 0:
             return

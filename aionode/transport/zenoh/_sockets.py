@@ -1,9 +1,9 @@
-"""Cutting the connections of peers that take nothing any more, so that a session can be closed.
+"""Cutting connections whose peer has stopped reading, so that a session can be closed.
 
-Zenoh waits in `close`, and in what blocks, until such a peer reads on or the connection is lost;
-with its socket shut down it is lost at once. Closing the socket then waits for another ten seconds
-(SO_LINGER), unless that is switched off first (zenoh 1.10). Linux only: elsewhere closing takes as
-long as Zenoh waits.
+Zenoh waits in `close`, and in blocking sends, until such a peer reads on or the connection is lost;
+shutting the socket down loses it at once. Closing the socket would then wait for ten more seconds
+(SO_LINGER), unless that is switched off first (zenoh 1.10). On Linux only: elsewhere closing takes
+as long as Zenoh waits.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ logger = logging.getLogger("aionode.transport.zenoh")
 DESCRIPTORS: Final = Path("/proc/self/fd")
 
 STUCK_S: Final = 0.1
-"""A peer that takes not one byte for so long, with some waiting, is not waited for."""
+"""A peer that reads not one byte for so long, while some wait, is not waited for."""
 
 NO_LINGER: Final = struct.pack("ii", 1, 0)
 
 
 @contextmanager
 def connections() -> Iterator[list[tuple[str, socket.socket]]]:
-    """Return the TCP connections of this process, with the address of the other end."""
+    """Yield the TCP connections of this process, each with the address of its peer."""
     with ExitStack() as stack:
         found = []
         for entry in list(DESCRIPTORS.iterdir()):
@@ -54,7 +54,7 @@ def connections() -> Iterator[list[tuple[str, socket.socket]]]:
 
 
 def waiting_bytes(session: zenoh.Session) -> dict[str, int]:
-    """Return how many bytes wait for each peer of a session, where there are some."""
+    """Return how many bytes wait in the socket of each peer of a session; not those with none."""
     try:
         import fcntl
         import termios
@@ -81,7 +81,7 @@ def cut(peers: set[str]) -> None:
 
 
 async def cut_stuck(session: zenoh.Session) -> None:
-    """Cut the connections of a session that is about to be closed whose peers take nothing."""
+    """Cut those connections of a session that is about to be closed whose peers do not read."""
     if not sys.platform.startswith("linux"):
         return
     before = waiting_bytes(session)
@@ -93,5 +93,5 @@ async def cut_stuck(session: zenoh.Session) -> None:
     after = waiting_bytes(session)
     stuck = {peer for peer, size in before.items() if after.get(peer, 0) >= size}
     if stuck:
-        logger.debug("%s: nothing is taken any more; the connection is cut", ", ".join(stuck))
+        logger.debug("%s: the peer has stopped reading; the connection is cut", ", ".join(stuck))
         cut(stuck)

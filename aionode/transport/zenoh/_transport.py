@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["ZenohTransport"]
 
 KNOWN_S = 0.3
-"""How long `open` waits for the graph of those who are linked; it takes a millisecond."""
+"""How long `open` waits for the graph of connected peers; it takes a millisecond."""
 
 
 class ZenohTransport(Transport):
@@ -39,7 +39,7 @@ class ZenohTransport(Transport):
         network: Domain, discovery and peers.
 
     Attributes:
-        peer_directory: Who is there, for links beside this transport.
+        peer_directory: The other contexts, for links beside this transport.
     """
 
     def __init__(self, participant: str, network: Network) -> None:
@@ -47,9 +47,9 @@ class ZenohTransport(Transport):
         self._state = SessionState(participant, network.domain_id)
         self._watcher = Watcher(self._state)
         self.peer_directory = ZenohPeerDirectory(self._state)
-        # Done when those who are linked have said what there is.
+        # Done when the tokens of all connected peers are in the graph.
         self._answered: asyncio.Future[None] | None = None
-        self._missing = 0  # so many who accept connections were not linked in time
+        self._missing = 0  # how many peers that accept connections were not connected in time
         self._recovery = Recovery(self._state, network, self._watcher.check)
 
     def __repr__(self) -> str:
@@ -70,25 +70,25 @@ class ZenohTransport(Transport):
         return self._watcher.other_domains
 
     async def link_status(self) -> LinkStatus:
-        """Ask everybody who can be linked, and who is."""
+        """Ask all contexts which links they offer and have."""
         return await self.peer_directory.link_status()
 
     async def open(self, graph: Graph) -> None:
-        """Connect; return when those who are there are known, as far as can be told."""
-        session, peer_directory = await open_session(self.network, self._state.participant)
+        """Connect; return when the running peers are known, as far as that can be determined."""
+        session, expected = await open_session(self.network, self._state.participant)
         self._state.waker.open(asyncio.get_running_loop())
-        # Before waiting for others, so that who comes meanwhile sees everything. What fails from
-        # here on is undone by `close`, which knows the session now.
+        # Before waiting for others, so that peers that connect meanwhile see everything. After a
+        # failure from here on, `close` closes the session.
         self._state.connect(session, graph)
         links = ConnectionWatcher(session, self._state.queue)
         try:
             self._watcher.start(session)
             self.peer_directory.start(session)
             self._recovery.start(session)
-            await links.wait_until_connected(peer_directory)
-            # Of those who were configured nobody knows whether they are there.
+            await links.wait_until_connected(expected)
+            # Configured peers may be absent, so they are not counted as missing.
             hoped_for = bool(self.network.static_peers or self.network.config_file)
-            self._missing = peer_directory - hoped_for - len(session.info.transports())
+            self._missing = expected - hoped_for - len(session.info.transports())
             self._answered = asyncio.get_running_loop().create_future()
             self._watcher.ask(session, self._answered)
             with suppress(TimeoutError):
@@ -99,7 +99,7 @@ class ZenohTransport(Transport):
             links.close()
 
     async def all_known(self, quiet_s: float) -> bool:
-        """Wait until everybody who can be reached has said what there is."""
+        """Wait until the tokens of all reachable peers are in the graph."""
         answered = self._answered
         while answered is not None and not answered.done():
             left_s = quiet_s - (perf_ns() - self._watcher.newest_ns) / 1e9
@@ -111,7 +111,7 @@ class ZenohTransport(Transport):
         return self._missing <= 0
 
     async def close(self) -> None:
-        """Withdraw everything and disconnect, within a second after `SessionState.flush`."""
+        """Undeclare everything and disconnect, within a second after `SessionState.flush`."""
         state = self._state
         self._answered = None
         await state.flush()
@@ -125,25 +125,25 @@ class ZenohTransport(Transport):
         state.waker.close()
 
     def create_node(self, node: NodeInfo) -> Registration:
-        """Announce a node."""
+        """Declare a node."""
         return NodeDeclaration(self._state, node)
 
     def create_writer(self, endpoint: EndpointInfo, msg_type: type[Any]) -> Writer:
-        """Announce a publisher."""
+        """Declare a publisher."""
         return ZenohWriter(self._state, endpoint, msg_type)
 
     def create_reader(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
     ) -> Registration:
-        """Announce a subscription."""
+        """Declare a subscription."""
         return ZenohReader(self._state, endpoint, msg_type, reader)
 
     def create_server(
         self, endpoint: EndpointInfo, srv_type: type[Any], serve: Serve
     ) -> Registration:
-        """Announce a server."""
+        """Declare a server."""
         return ZenohServer(self._state, endpoint, srv_type, serve)
 
     def create_requester(self, endpoint: EndpointInfo, srv_type: type[Any]) -> Requester:
-        """Announce a client."""
+        """Declare a client."""
         return ZenohRequester(self._state, endpoint, srv_type)

@@ -7,6 +7,8 @@ from typing import Any
 
 import pytest
 
+from aionode._concurrency import checkpoint
+from aionode.graph import EndpointKind
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.qos import QoSProfile, ReliabilityPolicy
 from aionode.transport._writer_proxy import WriterProxy
@@ -180,3 +182,47 @@ async def test_a_subscription_that_was_frozen_does_not_give_its_publisher_up() -
         assert proxy.next == 1
         assert not reader.tick()
         assert proxy.next == 4
+
+
+async def test_what_is_published_while_a_frozen_reader_is_away_is_sent_on_its_return() -> None:
+    """Its lease has ended, and Zenoh sees no subscriber: the publisher still writes for it."""
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        publisher = a.create_publisher(Int32, "n", KEEP_ALL)
+        subscription: Any = b.create_subscription(Int32, "n", None, KEEP_ALL)
+        await publisher.wait_for_subscribers()
+        publisher.publish(Int32(data=0))
+        assert (await subscription.receive()).data == 0
+        await acknowledged(publisher)
+
+        writer: Any = writer_of(publisher)
+        graph = writer.state.graph
+        reader: Any = next(
+            each for each in subscription._registrations if isinstance(each, ZenohReader)
+        )
+        readers = reader.state.acknowledgements.readers
+        del readers[reader.gid]
+        for subscriber in reader._subscribers:
+            subscriber.undeclare()
+        reader._subscribers.clear()
+        publisher.publish(Int32(data=1))
+        writer._history.readers[reader.gid].heard_ns = 0
+        info = next(iter(graph.endpoints(EndpointKind.SUBSCRIPTION, name="/n")))
+        graph.remove_endpoint(info)
+        writer._update()
+        while writer._publisher.matching_status.matching:
+            await checkpoint()
+        writer._update()
+        for number in (2, 3):
+            publisher.publish(Int32(data=number))
+
+        readers[reader.gid] = reader
+        reader.declare_data(reader.state.session)
+        graph.add_endpoint(info)
+        writer._update()
+        assert [(await subscription.receive()).data for _ in range(3)] == [1, 2, 3]
+        assert subscription.stats.lost == 0
+        assert publisher.stats.dropped == 0

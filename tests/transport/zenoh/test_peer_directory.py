@@ -63,7 +63,7 @@ async def context(
 
 @pytest.fixture
 async def heard() -> AsyncIterator[Heard]:
-    """A context with nobody else around, yet."""
+    """A context without any peers yet."""
     async with context("a1") as transport:
         yield Heard(transport)
 
@@ -80,7 +80,7 @@ async def router() -> AsyncIterator[zenoh.Session]:
 
 @contextmanager
 def client(port: str) -> Iterator[zenoh.Session]:
-    """A plain Zenoh program that sees nobody but the one that it dials."""
+    """A plain Zenoh program that sees only the session that it dials."""
     config = zenoh_config(
         {
             "mode": "client",
@@ -116,12 +116,12 @@ async def until_nodes(transport: ZenohTransport, count: int) -> None:
     await graph.until(lambda: len(graph.nodes()) == count)
 
 
-def nobody(_: object) -> None:
+def ignore(_: object) -> None:
     """Take what was subscribed to."""
 
 
 async def test_a_plain_session_is_a_stranger_while_it_is_connected(heard: Heard) -> None:
-    """It may subscribe to anything, and nobody would know."""
+    """It may subscribe to anything without a sign."""
     assert not heard.peer_directory.has_unannounced_peers
 
     with raw_session():
@@ -187,7 +187,7 @@ async def test_a_context_is_no_stranger(heard: Heard, domain_id: int) -> None:
 
 
 async def test_a_router_is_a_stranger(heard: Heard) -> None:
-    """Nothing tells who listens behind it, also if everybody that can be seen is known."""
+    """The sessions behind it are not visible, even if all visible ones are known."""
     async with context("b2"):
         async with router():
             await heard.until(True)
@@ -195,7 +195,7 @@ async def test_a_router_is_a_stranger(heard: Heard) -> None:
 
 
 async def test_our_own_router_answers_no_question_of_its_admin_space() -> None:
-    """Whoever lists what it has in its routing table could lock that for good."""
+    """A query for its routing table can deadlock it."""
     session = await open_router([f"tcp/127.0.0.1:{router_port()}"])
     try:
         with client(router_port()) as asking:
@@ -263,7 +263,7 @@ async def test_nothing_is_declared_without_a_beacon() -> None:
 
 
 async def test_closing_leaves_nothing_behind() -> None:
-    """No timer, no token, and nobody is known when it opens again."""
+    """No timer, no token, and no peer is known when it opens again."""
     with ExitStack() as stack:
         async with router(), context("b2"):
             async with context("a1") as transport:

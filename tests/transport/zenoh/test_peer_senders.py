@@ -32,7 +32,7 @@ class Sent:
         self.threads: list[threading.Thread] = []
 
     def __call__(self) -> None:
-        """Note the thread."""
+        """Record the thread."""
         self.threads.append(threading.current_thread())
 
     @property
@@ -42,7 +42,7 @@ class Sent:
 
 
 def waited(gate: threading.Event) -> None:
-    """Hang until somebody opens the gate."""
+    """Hang until the gate is opened."""
     gate.wait()
 
 

@@ -14,7 +14,13 @@ from aionode._concurrency import checkpoint
 from aionode.graph import Graph
 from aionode.transport._zenoh_config import network_from
 from aionode.transport.zenoh import _recovery as recovery
-from aionode.transport.zenoh._recovery import Recovery, Way, address_in, addresses_of, is_look
+from aionode.transport.zenoh._recovery import (
+    Connection,
+    Recovery,
+    address_in,
+    addresses_of,
+    is_look,
+)
 from aionode.transport.zenoh._transport import ZenohTransport
 from tests.support.peers import DOMAIN_ID, Collector, ros_router, ros_session
 
@@ -23,7 +29,7 @@ LIMIT_S = 5.0
 
 @pytest.fixture(autouse=True)
 def soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Look as soon as that makes sense: nobody else uses this machine's ports."""
+    """Look as early as possible: no other process uses these ports."""
     monkeypatch.setattr(recovery, "FIRST_S", 0.1)
     monkeypatch.setattr(recovery, "SURE_S", 0.05)
 
@@ -82,7 +88,7 @@ async def until_seen(transport: ZenohTransport, *names: str) -> None:
         await graph.until(lambda: names_in(transport) == set(names))
 
 
-def ways_between(transport: ZenohTransport, zid: str) -> list[Way]:
+def ways_between(transport: ZenohTransport, zid: str) -> list[Connection]:
     """Return the connections to another session."""
     session = transport._state.session
     assert session is not None
@@ -90,7 +96,7 @@ def ways_between(transport: ZenohTransport, zid: str) -> list[Way]:
     for each in session.info.links():
         source, target = address_in(str(each.src)), address_in(str(each.dst))
         if str(each.zid) == zid and source and target:
-            ways.append(Way(zid, source, target, ""))
+            ways.append(Connection(zid, source, target, ""))
     return ways
 
 
@@ -151,8 +157,8 @@ async def test_processes_without_a_meeting_port_find_each_other_again() -> None:
 async def test_one_that_ended_is_looked_for_and_nothing_is_cut(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Nobody else sees it either."""
-    cuts: list[Way] = []
+    """No other session sees it either."""
+    cuts: list[Connection] = []
     monkeypatch.setattr(recovery, "cut", cuts.append)
     looks = Collector()
     take_look = Recovery._take_look
@@ -183,7 +189,7 @@ async def test_one_whose_connection_was_lost_is_missing_though_a_router_brings_i
         assert session is not None
         await until_seen(ours, "b2")
         token = announce(session, "c3", "brought")
-        way = Way("", ("", 0), ("", 0), "")
+        way = Connection("", ("", 0), ("", 0), "")
         missing = await asyncio.to_thread(
             lambda: ours._recovery._missing(session, way, {"b2", "c3"})
         )
@@ -200,7 +206,9 @@ async def test_a_look_makes_no_stranger() -> None:
         await until_seen(second, "a1")
         session = second._state.session
         assert session is not None
-        way = await asyncio.to_thread(lambda: recovery.way_to_introducer(session, second.network))
+        way = await asyncio.to_thread(
+            lambda: recovery.introducer_connection(session, second.network)
+        )
         assert way is not None
         missing = await asyncio.to_thread(lambda: second._recovery._missing(session, way, set()))
 
@@ -255,7 +263,7 @@ async def test_the_graph_is_compared_with_the_tokens_that_are_there() -> None:
 async def test_nothing_is_watched_where_nobody_is_dialled(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Then nobody could introduce anybody."""
+    """Then no session could introduce others."""
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")
     async with context("a1") as transport:
         assert transport._recovery._session is None

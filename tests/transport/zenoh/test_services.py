@@ -172,7 +172,7 @@ async def test_a_failing_handler_tells_the_client_at_once() -> None:
 
 
 async def test_a_server_that_goes_away_ends_the_call_at_once() -> None:
-    """Nobody waits for ever, and the next server is used."""
+    """No caller waits for ever, and the next server is used."""
     async with (
         two_contexts() as (first, second),
         quiet_node("server", first) as server,
@@ -200,7 +200,7 @@ async def test_a_server_that_goes_away_ends_the_call_at_once() -> None:
 
 
 async def test_a_request_that_was_given_up_is_not_served() -> None:
-    """The server is told, so that it does no work for nobody."""
+    """The server gets the cancellation, and does no useless work."""
     async with (
         two_contexts() as (first, second),
         quiet_node("server", first) as server,
@@ -403,7 +403,7 @@ async def test_a_request_that_found_no_way_is_sent_again() -> None:
 async def test_strange_requests_are_answered_with_an_error_and_stop_nothing(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """Anybody may call anything with anything."""
+    """Any process may call any service with any data."""
     good = cdr.encode(AddTwoInts.Request(a=1, b=2))
     async with quiet_node("server") as node:
         node.create_service(AddTwoInts, "add", add)

@@ -325,7 +325,7 @@ async def test_a_topic_without_bytes_has_one_key() -> None:
 async def test_garbage_is_counted_logged_once_and_stops_nothing(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """Anybody may put anything on a key."""
+    """Any process may put any data on a key."""
     async with quiet_node("listener") as node:
         subscription = node.create_subscription(String, "chatter")
         with raw_session() as session:
@@ -349,7 +349,7 @@ async def test_garbage_is_counted_logged_once_and_stops_nothing(
 async def test_strange_tokens_are_counted_and_the_graph_goes_on(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """Anybody may declare anything below the prefix of tokens."""
+    """Any process may declare any token below the prefix."""
     strange = ["x", "a/0/0/NN/%/%/n", "z/0/0/XX/%/%/n", "z/0/1/MP/%/%/n/%t/not_dds/h/::,1:,:,:,,"]
     good = "zz/0/0/NN/%/%/fine"
     async with quiet_node("watcher") as node:
@@ -494,7 +494,7 @@ def transport_of(node: Node) -> Any:
 
 
 async def matched(publisher: Any) -> None:
-    """Wait until somebody without a token listens."""
+    """Wait until a subscriber without a token matches."""
     writer = publisher._writers[1]
     if writer.active:
         return
