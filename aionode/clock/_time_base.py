@@ -86,7 +86,7 @@ def kernel_alarms(loop: asyncio.AbstractEventLoop) -> KernelAlarms | None:
         return KERNEL_ALARMS[loop]
     except KeyError:
         pass
-    from aionode.clock._timerfd import KernelAlarms  # for the first alarm of a loop, on Linux
+    from aionode.clock._timerfd import KernelAlarms  # with the first alarm of a loop
 
     try:
         alarms = KernelAlarms(loop)
