@@ -24,9 +24,6 @@ MAX_LINES = 600
 MAX_CHAIN = 14
 """How many modules may import one another in a row, each at its top."""
 
-CYCLES_FOR_NOW = (("aionode.transport.zenoh",),)
-"""Packages with cycles of type-only imports that are being undone. Take them off, one by one."""
-
 SHARED = {
     "aionode.arguments._parameter_yaml": "the command line reads and writes parameter files too",
     "aionode.clock._time_base": "timers and goals have alarms, which users do not",
@@ -62,19 +59,9 @@ def test_a_module_can_be_read_in_one_sitting(module: Path) -> None:
 
 def test_no_imports_form_a_cycle() -> None:
     """Modules in a cycle can only be understood together, also where only types are imported."""
-    new = [
-        sorted(cycle)
-        for cycle in cycles(graph(types=True))
-        if not any(is_within(cycle, packages) for packages in CYCLES_FOR_NOW)
-    ]
+    found = [sorted(cycle) for cycle in cycles(graph(types=True))]
 
-    assert new == []
-
-
-def is_within(cycle: frozenset[str], packages: tuple[str, ...]) -> bool:
-    """Whether a cycle stays in these packages."""
-    prefixes = tuple(f"{package}." for package in packages)
-    return all(f"{module}.".startswith(prefixes) for module in cycle)
+    assert found == []
 
 
 def cycles(imports: grimp.ImportGraph) -> set[frozenset[str]]:
