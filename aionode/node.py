@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from aionode import qos
+from aionode import names, qos
 from aionode._node import builtin_services
 from aionode._node.endpoints import NodeEndpoints
+from aionode._node.graph import NodeGraphQueries
+from aionode.context import Context
 from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.message import Message
 
@@ -14,7 +16,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from aionode.action import ActionClient, ActionServer, ServerGoalHandle
-    from aionode.context import Context
     from aionode.endpoints._core.callback_runner import OnError
     from aionode.message import ActionClass
     from aionode.parameter import Parameter
@@ -27,7 +28,7 @@ ResultT = TypeVar("ResultT", bound=Message)
 FeedbackT = TypeVar("FeedbackT", bound=Message)
 
 
-class Node(NodeEndpoints):
+class Node(NodeEndpoints, NodeGraphQueries):
     """A participant in the ROS graph, with publishers, subscriptions, services, clients and timers.
 
     A node and its entities can be created at any time, with or without a running event loop. Their
@@ -81,10 +82,12 @@ class Node(NodeEndpoints):
         enable_logger_service: bool = False,
         callback_budget_ms: float = 10.0,
     ) -> None:
+        names.validate_node_name(node_name)
+        namespace = names.normalize_namespace(namespace)
         super().__init__(
             node_name,
             namespace,
-            context,
+            Context.default() if context is None else context,
             cli_args,
             use_global_arguments=use_global_arguments,
             callback_budget_ms=callback_budget_ms,

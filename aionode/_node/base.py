@@ -11,7 +11,6 @@ from aionode._concurrency import to_the_end
 from aionode._node.end import EndRecord, NodeEnd
 from aionode.arguments import Arguments, Usage, parse_arguments
 from aionode.clock import ROSClock
-from aionode.context import Context
 from aionode.endpoints._core.callback_runner import Callbacks
 from aionode.endpoints._core.entity import EndStage
 from aionode.endpoints._core.loop_affinity import LoopAffinity
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from types import TracebackType
 
     from aionode.clock import Clock
+    from aionode.context import Context
     from aionode.endpoints._core.entity import Entity
     from aionode.endpoints._core.graph_entry import GraphEntry
     from aionode.graph import Graph
@@ -39,8 +39,8 @@ RegisteredT = TypeVar("RegisteredT", bound="Registration")
 class NodeBase:
     """The part of `aionode.Node` that starts, stops, and owns entities.
 
-    `Node` is one class whose methods are spread over a line of base classes, one for each subject:
-    `NodeBase`, `NodeGraphQueries`, `NodeParameters`, `NodeEndpoints`, `Node`.
+    `Node` is one class whose methods are spread over base classes, one for each subject:
+    `NodeGraphQueries` and `NodeParameters` extend this one, `NodeEndpoints` that with parameters.
     """
 
     def __init_subclass__(cls, **options: Any) -> None:
@@ -52,16 +52,14 @@ class NodeBase:
     def __init__(
         self,
         node_name: str,
-        namespace: str | None,
-        context: Context | None,
+        namespace: str,
+        context: Context,
         cli_args: Sequence[str] | None,
         *,
         use_global_arguments: bool,
         callback_budget_ms: float,
     ) -> None:
-        names.validate_node_name(node_name)
-        namespace = names.normalize_namespace(namespace)
-        self.context = Context.default() if context is None else context
+        self.context = context
         # The node's own arguments take precedence over the shared ones. Of remap rules the first
         # match wins, so its own come first; of parameters the last value, in `NodeParameters`.
         own = parse_arguments(cli_args or ())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from aionode._node.graph import NodeGraphQueries
+from aionode._node.base import NodeBase
 from aionode.parameter import Parameter, ParameterStore, declare_struct
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ __all__ = ["NodeParameters"]
 StructT = TypeVar("StructT")
 
 
-class NodeParameters(NodeGraphQueries):
+class NodeParameters(NodeBase):
     """The part of `aionode.Node` that has parameters.
 
     `ParameterStore` describes each method step by step, and every exception.
@@ -38,8 +38,8 @@ class NodeParameters(NodeGraphQueries):
     def __init__(
         self,
         node_name: str,
-        namespace: str | None,
-        context: Context | None,
+        namespace: str,
+        context: Context,
         cli_args: Sequence[str] | None,
         *,
         use_global_arguments: bool,

@@ -13,10 +13,10 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Protocol
 from weakref import WeakKeyDictionary
 
-from aionode.clock._timerfd import KernelAlarms
-
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from aionode.clock._timerfd import KernelAlarms
 
 __all__ = ["Alarm", "MachineTime", "TimeBase", "perf_ns"]
 
@@ -86,6 +86,8 @@ def kernel_alarms(loop: asyncio.AbstractEventLoop) -> KernelAlarms | None:
         return KERNEL_ALARMS[loop]
     except KeyError:
         pass
+    from aionode.clock._timerfd import KernelAlarms  # with the first alarm of a loop
+
     try:
         alarms = KernelAlarms(loop)
     except (OSError, NotImplementedError):

@@ -727,7 +727,7 @@ async def test_a_loop_that_cannot_wait_for_files_rings_all_the_same(
     before = open_files()
     alarms = timerfd.KernelAlarms
     loop = mock.Mock(wraps=asyncio.get_running_loop(), add_reader=refuse)
-    monkeypatch.setattr(time_base, "KernelAlarms", lambda _: alarms(loop))
+    monkeypatch.setattr(timerfd, "KernelAlarms", lambda _: alarms(loop))
     machine = MachineTime()
     rung = asyncio.Event()
     machine.call_at(machine.steady_ns() + 1_000_000, rung.set)

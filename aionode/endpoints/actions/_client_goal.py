@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Protocol, Self, TypeVar
 
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints.actions._goal import GoalStatus
@@ -15,7 +15,6 @@ from aionode.message import Message
 if TYPE_CHECKING:
     from types import TracebackType
 
-    from aionode.endpoints.actions._client import ActionClient
     from aionode.endpoints.client import Exchange
     from aionode.errors import GoalLostError
 
@@ -23,6 +22,7 @@ __all__ = ["ActionResult", "ClientGoalHandle"]
 
 ResultT = TypeVar("ResultT", bound=Message)
 FeedbackT = TypeVar("FeedbackT", bound=Message)
+T = TypeVar("T")
 
 KEPT_FEEDBACK = 100
 """How many feedback messages are kept for the reader; the oldest is dropped first."""
@@ -43,6 +43,18 @@ class ActionResult(Generic[ResultT]):
     status: GoalStatus
     result: ResultT
     error_text: str = ""
+
+
+class GoalClient(Protocol):
+    """What a goal handle needs of its `ActionClient`, which describes each method."""
+
+    action_name: str
+    _subject: str
+
+    def _in_future(self, work: Coroutine[Any, Any, T]) -> asyncio.Future[T]: ...
+    async def _awaiting(self, goal: Any, wait: Awaitable[T]) -> T: ...
+    def _withdraw(self, goal: Any) -> None: ...
+    async def _request_cancel(self, goal: Any) -> Any: ...
 
 
 class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
@@ -70,7 +82,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
 
     def __init__(
         self,
-        client: ActionClient[Any, ResultT, FeedbackT],
+        client: GoalClient,
         goal_id: Any,
         feedback_callback: Callable[[Any], Any] | None,
     ) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from aionode.endpoints.actions._goal import TRANSITIONS, GoalEvent, GoalKey, GoalStatus, next_status
 from aionode.errors import GoalTransitionError
@@ -11,8 +11,6 @@ from aionode.message import Message
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-    from aionode.endpoints.actions._server import ActionServer
 
 __all__ = ["ServerGoalHandle"]
 
@@ -22,6 +20,21 @@ FeedbackT = TypeVar("FeedbackT", bound=Message)
 
 NO_END_TEXT = "execute_callback returned without calling succeed(), abort() or canceled()"
 STOPPED_TEXT = "the action server stopped"
+
+
+class GoalServer(Protocol):
+    """What a goal handle needs of its `ActionServer`, which describes each method."""
+
+    action_name: str
+    destroyed: bool
+    _checked_result: Callable[[Any], Any]
+
+    def _in_loop(self, action: Callable[..., None], *args: Any) -> None: ...
+    def _enqueue(self, goal: Any, execute_callback: Callable[..., Any] | None) -> None: ...
+    def _publish_feedback(self, goal: Any, feedback: Any) -> None: ...
+    def _publish_status(self) -> None: ...
+    def _warn(self, text: str) -> None: ...
+    def _keep(self, goal: Any) -> None: ...
 
 
 class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
@@ -37,7 +50,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
 
     def __init__(
         self,
-        server: ActionServer[GoalT, ResultT, FeedbackT],
+        server: GoalServer,
         request: GoalT,
         info: Any,
         key: GoalKey,

@@ -10,16 +10,18 @@ from __future__ import annotations
 
 import asyncio
 import logging
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Final, Protocol
 
 import zenoh
 
+from aionode.transport._loop_waker import ThreadsafeQueue
 from aionode.transport.zenoh._handlers import LOOP_PRIORITY, direct, reason, translated
 from aionode.wire import _acknack as acknack
 from aionode.wire._acknack import Submessage
 
 if TYPE_CHECKING:
-    from aionode.transport.zenoh._session_state import SessionState
+    from aionode.transport._loop_waker import LoopWaker
 
 __all__ = ["Acknowledgements", "StatefulReader", "StatefulWriter"]
 
@@ -57,23 +59,39 @@ class StatefulReader(Protocol):
 class Acknowledgements:
     """The submessages that this context sends and receives.
 
+    Args:
+        participant: The id of this context.
+        domain_id: The ROS domain.
+        waker: Wakes the event loop from Zenoh's threads.
+        note_malformed: Called with the key of a malformed sample, and what it should be.
+        on_participant: Called when another context is known to acknowledge.
+
     Attributes:
         participants: The other contexts that acknowledge.
         writers: The publishers of this context that want acknowledgements, by gid.
         readers: The subscriptions of this context that acknowledge, by gid.
     """
 
-    def __init__(self, state: SessionState) -> None:
+    def __init__(
+        self,
+        participant: str,
+        domain_id: int,
+        waker: LoopWaker,
+        note_malformed: Callable[[str, str], None],
+        on_participant: Callable[[], None],
+    ) -> None:
         self.participants: set[str] = set()
         self.writers: dict[bytes, StatefulWriter] = {}
         self.readers: dict[bytes, StatefulReader] = {}
-        self._state = state
-        self._prefix = f"{PREFIX}/{state.domain_id}/"
+        self._participant = participant
+        self._note_malformed = note_malformed
+        self._on_participant = on_participant
+        self._prefix = f"{PREFIX}/{domain_id}/"
         self._suffix = f"/reliable/{acknack.VERSION}"
         self._session: zenoh.Session | None = None
         self._declared: list[zenoh.Subscriber[None] | zenoh.LivelinessToken] = []
-        self._queue = state.queue(self._take, LIMIT)
-        self._tokens = state.queue(self._take_token)
+        self._queue: ThreadsafeQueue[zenoh.Sample] = ThreadsafeQueue(waker, self._take, LIMIT)
+        self._tokens: ThreadsafeQueue[zenoh.Sample] = ThreadsafeQueue(waker, self._take_token)
         self._busy: dict[StatefulWriter | StatefulReader, None] = {}
         self._timer: asyncio.TimerHandle | None = None
 
@@ -81,7 +99,7 @@ class Acknowledgements:
         """Subscribe, and declare the token. To be called before any endpoint is declared."""
         self._session = session
         liveliness = session.liveliness()
-        own = self._prefix + self._state.participant + self._suffix
+        own = self._prefix + self._participant + self._suffix
         with translated("acknowledgements"):
             self._declared = [
                 session.declare_subscriber(own, direct(self._queue.put)),
@@ -138,7 +156,7 @@ class Acknowledgements:
     def _take(self, sample: zenoh.Sample) -> None:
         submessage = acknack.unpack(sample.payload.to_bytes())
         if submessage is None:
-            self._state.note_malformed(str(sample.key_expr), "an acknowledgement")
+            self._note_malformed(str(sample.key_expr), "an acknowledgement")
         elif submessage.kind is acknack.SubmessageKind.ACKNACK:
             writer = self.writers.get(submessage.writer)
             if writer is not None:
@@ -150,12 +168,10 @@ class Acknowledgements:
 
     def _take_token(self, sample: zenoh.Sample) -> None:
         participant = str(sample.key_expr).removeprefix(self._prefix).removesuffix(self._suffix)
-        if participant == self._state.participant:
+        if participant == self._participant:
             return
         # A participant stays in the set when its token goes: its endpoints have tokens of their
         # own, and it may come back.
         if sample.kind == zenoh.SampleKind.PUT and participant not in self.participants:
             self.participants.add(participant)
-            for updates in list(self._state.on_reader.values()):
-                for update in list(updates):
-                    update()
+            self._on_participant()

@@ -84,7 +84,9 @@ class SessionState:
         self.send_threads = {self.bulk}
         self.peer_senders = PeerSenders(self.waker)
         self.burst = Burst()
-        self.acknowledgements = Acknowledgements(self)
+        self.acknowledgements = Acknowledgements(
+            participant, domain_id, self.waker, self.note_malformed, self._readers_changed
+        )
         self.lingering: dict[LingeringWriter, None] = {}
         self.malformed: Counter[str] = Counter()
         self.own_gids: set[bytes] = set()
@@ -168,6 +170,12 @@ class SessionState:
         self.acknowledgements.stop()
         self.graph = None
         return session
+
+    def _readers_changed(self) -> None:
+        """Tell all publishers: the readers of another context are now known to acknowledge."""
+        for updates in list(self.on_reader.values()):
+            for update in list(updates):
+                update()
 
     def note_malformed(self, key: str, problem: str) -> None:
         """Count a malformed sample; the first on each key is logged."""
