@@ -13,10 +13,10 @@ from aionode.endpoints._core.callback_runner import accepts, consume
 from aionode.endpoints._core.entity import EndStage, Entity
 from aionode.endpoints._core.future import Futures, asks
 from aionode.endpoints._core.message_queue import MessageQueue
+from aionode.endpoints.actions._cancel_request import CancelRequest
 from aionode.endpoints.actions._client_goal import ActionResult, ClientGoalHandle
 from aionode.endpoints.actions._common import expect_action_type, reason_id
 from aionode.endpoints.actions._goal import GoalStatus
-from aionode.endpoints.actions._withdrawal import Withdrawal
 from aionode.endpoints.stats import CallbackStats
 from aionode.errors import (
     GoalAbortedError,
@@ -124,7 +124,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         # What tasks of the user wait for here, to be cancelled with the client.
         self._waits: set[asyncio.Future[Any]] = set()
         self._futures = Futures(self._subject)
-        self._withdrawals: dict[Withdrawal, None] = {}  # those that have not ended
+        self._cancel_requests: dict[CancelRequest, None] = {}  # those that have not ended
         self._expect_at_end = node._expect_at_end
 
         impl = self.action_type.Impl
@@ -343,7 +343,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
             handle._sending = self._send_goal._begin(
                 self.action_type.Impl.SendGoalService.Request(goal_id=handle.goal_id, goal=goal)
             )
-            # It continues when the caller is cancelled, so that `Withdrawal` learns the answer.
+            # It continues when the caller is cancelled, so that `CancelRequest` learns the answer.
             response = await self._awaiting(handle, self._kept(handle._sending.answer))
         except BaseException:
             self._forget(handle)
@@ -377,31 +377,31 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
             return await wait
         except asyncio.CancelledError:
             if not (self.destroyed or goal.done):
-                self._withdraw(goal)
+                self._cancel_at_server(goal)
             raise
         finally:
             goal._waiting -= 1
 
-    def _withdraw(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
+    def _cancel_at_server(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
         """Begin to cancel `goal` at the server, without waiting. For its handle."""
         if goal._sending is not None and not goal._sending.calls:
             goal._sending.cancel()  # no server can have received it
-        elif not goal._withdrawn:
-            goal._withdrawn = True  # one request is enough, however many tasks wait
+        elif not goal._cancel_sent:
+            goal._cancel_sent = True  # one request is enough, however many tasks wait
 
             def answered(_: asyncio.Future[Any]) -> None:
-                goal._withdrawn = False
+                goal._cancel_sent = False
 
             self._begin_to_cancel(goal).answer.add_done_callback(answered)
 
-    def _begin_to_cancel(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> Withdrawal:
-        withdrawal = Withdrawal(self._cancel_goal, goal, self._on_withdrawn)
-        self._withdrawals[withdrawal] = None
-        self._expect_at_end(withdrawal.answer)
-        return withdrawal
+    def _begin_to_cancel(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> CancelRequest:
+        request = CancelRequest(self._cancel_goal, goal, self._on_cancel_answered)
+        self._cancel_requests[request] = None
+        self._expect_at_end(request.answer)
+        return request
 
-    def _on_withdrawn(self, withdrawal: Withdrawal) -> None:
-        self._withdrawals.pop(withdrawal, None)
+    def _on_cancel_answered(self, request: CancelRequest) -> None:
+        self._cancel_requests.pop(request, None)
         if self.destroyed:
             self._close_parts()
 
@@ -510,9 +510,9 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         """
         for goal in self._goals.values():
             if goal._waiting and not goal.done:
-                self._withdraw(goal)
-        for withdrawal in list(self._withdrawals):
-            withdrawal.end_with_answer()
+                self._cancel_at_server(goal)
+        for request in list(self._cancel_requests):
+            request.end_with_answer()
         for wait in list(self._waits):  # first, since closing the parts changes the graph
             wait.cancel(f"{self._subject}: destroyed")
         self._futures.close()
@@ -524,7 +524,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
     def _close_parts(self) -> None:
         """Destroy all parts, except those that are still needed to cancel goals."""
         for part in self._parts:
-            if not (self._withdrawals and part in (self._send_goal, self._cancel_goal)):
+            if not (self._cancel_requests and part in (self._send_goal, self._cancel_goal)):
                 part.destroy()
 
 

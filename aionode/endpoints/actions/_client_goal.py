@@ -53,7 +53,7 @@ class GoalClient(Protocol):
 
     def _in_future(self, work: Coroutine[Any, Any, T]) -> asyncio.Future[T]: ...
     async def _awaiting(self, goal: Any, wait: Awaitable[T]) -> T: ...
-    def _withdraw(self, goal: Any) -> None: ...
+    def _cancel_at_server(self, goal: Any) -> None: ...
     async def _request_cancel(self, goal: Any) -> Any: ...
 
 
@@ -93,7 +93,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         self._feedback_callback = feedback_callback
         # The exchange that sends the goal, from when that begins.
         self._sending: Exchange | None = None
-        self._withdrawn = False  # whether a cancel request is under way
+        self._cancel_sent = False  # whether a cancel request is under way
         self._waiting = 0  # how many tasks wait for the goal
         self._client = client
         self._feedback: MessageQueue[FeedbackT] = MessageQueue(KEPT_FEEDBACK, CallbackStats())
@@ -142,7 +142,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
     ) -> None:
         """Cancel the goal if it has not ended, without waiting for the answer."""
         if not self.done:
-            self._client._withdraw(self)
+            self._client._cancel_at_server(self)
 
     # What a caller awaits
 

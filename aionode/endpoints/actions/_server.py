@@ -58,8 +58,8 @@ FeedbackT = TypeVar("FeedbackT", bound=Message)
 UNLIMITED = 2**63 - 1
 """Depth of the queues of goals: `goal_callback` limits their number."""
 
-WITHDRAWN_NS = 10_000_000_000
-REMEMBERED_WITHDRAWN = 1000
+EARLY_CANCEL_NS = 10_000_000_000
+MAX_EARLY_CANCELS = 1000
 """How long, and how many, ids of goals are kept that were cancelled before they were accepted."""
 
 DRAIN_LIMIT_S = 1.0
@@ -171,7 +171,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         # By goal id: goals that are active or whose results are kept; cancel requests that came
         # before their goal, with their steady time; and when kept results are dropped.
         self._goals: dict[bytes, ServerGoalHandle[GoalT, ResultT, FeedbackT]] = {}
-        self._withdrawn: dict[bytes, int] = {}
+        self._early_cancels: dict[bytes, int] = {}
         self._alarms: dict[bytes, Alarm] = {}
         self._accepted: MessageQueue[Any] = MessageQueue(UNLIMITED, CallbackStats(), keep_all=True)
         self._waiting: MessageQueue[Any] = MessageQueue(UNLIMITED, self.stats, keep_all=True)
@@ -312,18 +312,18 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
 
     def _is_refused(self, goal_id: bytes) -> bool:
         """Return whether the goal is known already, or was cancelled before it came."""
-        return goal_id in self._goals or goal_id in self._withdrawn
+        return goal_id in self._goals or goal_id in self._early_cancels
 
-    def _note_withdrawn(self, goal_id: bytes) -> None:
+    def _note_early_cancel(self, goal_id: bytes) -> None:
         """Keep for a while that a goal was cancelled before it was accepted.
 
         Its request is still queued, or its `goal_callback` is running.
         """
         now_ns = self._time_base.steady_ns()
-        for known, since_ns in list(self._withdrawn.items()):
-            if now_ns - since_ns > WITHDRAWN_NS or len(self._withdrawn) >= REMEMBERED_WITHDRAWN:
-                del self._withdrawn[known]
-        self._withdrawn[goal_id] = now_ns
+        for known, since_ns in list(self._early_cancels.items()):
+            if now_ns - since_ns > EARLY_CANCEL_NS or len(self._early_cancels) >= MAX_EARLY_CANCELS:
+                del self._early_cancels[known]
+        self._early_cancels[goal_id] = now_ns
 
     async def _welcomes(self, goal: GoalT) -> bool:
         if self._goal_callback is None:
@@ -457,7 +457,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         code, meant = candidates([goal._current_key for goal in self._goals.values()], asked)
         response = self.action_type.Impl.CancelGoalService.Response()
         if code is CancelCode.UNKNOWN_GOAL_ID:
-            self._note_withdrawn(asked.goal_id)
+            self._note_early_cancel(asked.goal_id)
         refused = False
         for goal_id in meant:
             goal = self._goals.get(goal_id)

@@ -239,7 +239,7 @@ async def test_a_block_leaves_a_goal_alone_that_has_ended(ends: Ends) -> None:
         outcome = await goal.result()
 
     assert outcome.status is GoalStatus.SUCCEEDED
-    assert not ends.client._withdrawals
+    assert not ends.client._cancel_requests
 
 
 async def test_a_request_goes_on_when_who_awaits_its_answer_is_cancelled(ends: Ends) -> None:
@@ -282,10 +282,10 @@ async def test_a_goal_that_is_cancelled_while_the_server_thinks_is_never_execute
             tasks.start_soon(ends.client.call, Fibonacci.Goal())
             await door.asked.get()
             scope.cancel()
-    await until(lambda: ends.server._withdrawn)
+    await until(lambda: ends.server._early_cancels)
     door.may_answer.set()
 
-    await until(lambda: not ends.client._withdrawals)
+    await until(lambda: not ends.client._cancel_requests)
     assert ends.worker.begun.empty()
     assert not ends.server._goals
 
@@ -302,11 +302,11 @@ async def test_a_goal_that_is_cancelled_in_the_queue_of_the_server_is_never_exec
     await checkpoint()  # lets it be sent
     second.cancel()
     await asyncio.wait([second])
-    await until(lambda: ends.server._withdrawn)
+    await until(lambda: ends.server._early_cancels)
     door.may_answer.set()
 
     await first
-    await until(lambda: not ends.client._withdrawals)
+    await until(lambda: not ends.client._cancel_requests)
     assert (await ends.worker.begun.get()).request.order == 1
     assert ends.worker.begun.empty()
     assert door.asked.empty()
@@ -316,7 +316,7 @@ async def test_a_goal_that_another_server_accepts_after_its_cancellation_is_canc
     ends: Ends, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """One that is not of aionode says that it does not know the goal, and accepts it later."""
-    monkeypatch.setattr(ends.server, "_note_withdrawn", lambda _goal_id: None)
+    monkeypatch.setattr(ends.server, "_note_early_cancel", lambda _goal_id: None)
     door = Doorkeeper()
     ends.server.register_goal_callback(door)
     task = beside(ends.client.call(Fibonacci.Goal()))
@@ -335,7 +335,7 @@ async def test_a_goal_without_a_server_leaves_nothing_behind(ends: Ends) -> None
     with anyio.move_on_after(0.01):
         await client.call(Fibonacci.Goal())
 
-    assert not client._withdrawals
+    assert not client._cancel_requests
     assert not client._send_goal._answers
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from aionode.endpoints.actions._client_goal import ClientGoalHandle
     from aionode.endpoints.client import Client, Exchange
 
-__all__ = ["Withdrawal"]
+__all__ = ["CancelRequest"]
 
 FIRST_RETRY_S = 0.1
 LONGEST_RETRY_S = 5.0
@@ -22,7 +22,7 @@ ATTEMPTS = 14
 """How many requests are sent at most, which takes 45 s; after that only answers are awaited."""
 
 
-class Withdrawal:
+class CancelRequest:
     """A request to cancel a goal, sent at once and repeated until the server has answered.
 
     It runs in callbacks of the loop and not in a task, so that no cancellation can stop it. If the
@@ -44,7 +44,7 @@ class Withdrawal:
         self,
         client: Client[Any, Any],
         goal: ClientGoalHandle[Any, Any],
-        on_end: Callable[[Withdrawal], None],
+        on_end: Callable[[CancelRequest], None],
     ) -> None:
         self._loop = asyncio.get_running_loop()
         self.answer: asyncio.Future[Any] = self._loop.create_future()
