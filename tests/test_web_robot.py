@@ -257,7 +257,7 @@ async def test_a_bad_request_takes_nothing_away_from_others(
         response = await web.post("/speed", json={"speed": 17.0})
 
         assert response.status_code == 400
-        assert "ValueError: speed=17.0 m/s; above 0 and up to 1.0 fits" in response.text
+        assert "ValueError: speed=17.0 m/s; expected above 0, at most 1.0" in response.text
         assert (await web.post("/speed", json={"speed": "fast"})).status_code == 422
         assert (await web.post("/speed", json={"speed": 1.0})).json() == {"speed": 1.0}
         assert "distance" in await event(lines, "feedback")
