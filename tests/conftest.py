@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING
+import functools
+import inspect
+from typing import TYPE_CHECKING, Any
 
 import pytest
 import uvloop
@@ -12,7 +14,7 @@ from hypothesis import settings
 from aionode.node import Node
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator
+    from collections.abc import Awaitable, Callable, Generator
 
     from aionode.context import Context
 
@@ -26,6 +28,25 @@ def debugging_loop() -> asyncio.AbstractEventLoop:
     loop.set_debug(True)
     loop.slow_callback_duration = 60.0  # measuring is the business of benchmarks
     return loop
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Let no async test wait for ever: uvloop swallows what pytest-timeout's signal raises."""
+    for item in items:
+        if isinstance(item, pytest.Function) and inspect.iscoroutinefunction(item.obj):
+            marker = item.get_closest_marker("timeout")
+            item.obj = bounded(item.obj, marker.args[0] if marker and marker.args else 60.0)
+
+
+def bounded(test: Callable[..., Awaitable[None]], limit_s: float) -> Callable[..., Awaitable[None]]:
+    """Return `test` with a time limit a little below that of pytest-timeout."""
+
+    @functools.wraps(test)
+    async def run(*args: Any, **fixtures: Any) -> None:
+        async with asyncio.timeout(limit_s * 0.9):
+            await test(*args, **fixtures)
+
+    return run
 
 
 def pytest_asyncio_loop_factories(

@@ -17,6 +17,9 @@ from aionode.transport.zenoh._session import close_session, open_router
 from aionode.transport.zenoh._transport import ZenohTransport
 from tests.support.peers import DOMAIN_ID, Collector, known, raw_session, ros_router, zenoh_config
 
+PATIENCE_S = 20.0
+"""How long a test waits for a connection to come or go."""
+
 
 class Heard:
     """Lets a test wait until a context has been told whether there are strangers."""
@@ -35,15 +38,17 @@ class Heard:
 
     async def until(self, has_unannounced_peers: bool) -> None:
         """Wait until there are strangers, or none."""
-        while self.peer_directory.has_unannounced_peers != has_unannounced_peers:
-            self._changed.clear()
-            await self._changed.wait()
+        async with asyncio.timeout(PATIENCE_S):
+            while self.peer_directory.has_unannounced_peers != has_unannounced_peers:
+                self._changed.clear()
+                await self._changed.wait()
 
     async def past(self) -> None:
         """Wait until there were strangers, and are none now; both may have been told before."""
-        while not self.told or self.peer_directory.has_unannounced_peers:
-            self._changed.clear()
-            await self._changed.wait()
+        async with asyncio.timeout(PATIENCE_S):
+            while not self.told or self.peer_directory.has_unannounced_peers:
+                self._changed.clear()
+                await self._changed.wait()
 
 
 @asynccontextmanager
@@ -147,8 +152,9 @@ async def test_strangers_are_told_with_the_connection(
             there.set()
 
     monkeypatch.setattr(heard.peer_directory, "_update", on_connected)
-    with raw_session():
-        await there.wait()
+    async with asyncio.timeout(PATIENCE_S):
+        with raw_session():
+            await there.wait()
 
     assert seen[0]
 
