@@ -13,7 +13,7 @@ from functools import cache
 from typing import Any, TypeAlias, TypeVar
 
 from aionode.errors import MessageError
-from aionode.message import Message, fields, snapshotter, type_name
+from aionode.message import Message, fields, snapshotter, type_name, unserialized
 from aionode.wire.cdr._decoder import generate_decoder
 from aionode.wire.cdr._encoder import FALLBACK_ERRORS, JOIN, generate_encoder, views
 from aionode.wire.cdr._fallback_decoder import decode_slowly
@@ -116,6 +116,8 @@ def new_encoder(
 ) -> Callable[[Any], Encoded]:
     """Return a new encoder of a class; `finish` as for `generate_encoder`."""
     fields(cls)  # raises TypeError for a service class
+    if unserialized(cls) is not cls:
+        return lambda msg: finish((msg.data,))
     take = snapshotter(cls)
 
     def encode_unusual(msg: Any) -> Encoded:
@@ -135,6 +137,8 @@ def new_encoder(
 def new_decoder(cls: type[Message]) -> Callable[[Any], Any]:
     """Return a new decoder of a class."""
     fields(cls)  # raises TypeError for a service class
+    if unserialized(cls) is not cls:
+        return cls
 
     def decode_carefully(data: bytes) -> Any:
         return decode_slowly(cls, memoryview(data))
