@@ -11,9 +11,9 @@ from functools import cache
 from typing import Any
 
 from aionode.message import unserialized
-from aionode.wire._type_description import describe, description_message
+from aionode.wire._type_description import describe, description_message, referenced_types
 
-__all__ = ["description_message", "type_hash"]
+__all__ = ["description_message", "referenced_types", "type_hash"]
 
 
 @cache

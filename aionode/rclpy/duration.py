@@ -1,0 +1,5 @@
+"""Durations."""
+
+from aionode.clock import Duration, Infinite
+
+__all__ = ["Duration", "Infinite"]

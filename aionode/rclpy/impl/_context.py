@@ -1,0 +1,99 @@
+"""The handle of a context: its arguments, and the thread in which it talks to others."""
+
+from __future__ import annotations
+
+import atexit
+import weakref
+from typing import TYPE_CHECKING
+
+from aionode import Context
+from aionode.arguments import parse_arguments
+from aionode.rclpy.impl._destroyable import Destroyable
+from aionode.rclpy.impl._errors import InvalidHandle, RCLError
+from aionode.rclpy.impl._io import IoThread
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = ["ContextHandle", "living_contexts"]
+
+living_contexts: weakref.WeakSet[ContextHandle] = weakref.WeakSet()
+"""Those that are not shut down, for signal handlers."""
+
+
+class ContextHandle(Destroyable):
+    """A context that is initialised. `signal` is woken by its shutdown.
+
+    Args:
+        args: The command line.
+        domain_id: The domain, or None for that of the environment.
+
+    Attributes:
+        io: The thread that works for it.
+        arguments: Its ROS arguments.
+
+    Raises:
+        UnknownROSArgsError: an argument between ``--ros-args`` and ``--`` is unknown.
+        InvalidROSArgsError: an argument is malformed.
+        TransportError: a transport cannot connect.
+    """
+
+    def __init__(self, args: Sequence[str], domain_id: int | None) -> None:
+        super().__init__()
+        self._shut_down = False
+        arguments = parse_arguments(list(args))
+        arguments.refuse_unknown()
+        context = Context(domain_id=domain_id)
+        context.arguments = arguments
+        self.arguments = arguments
+        self.io = IoThread(context)
+        self.io.start()
+        living_contexts.add(self)
+
+    def ok(self) -> bool:
+        """Return whether it is not shut down."""
+        return not self._shut_down
+
+    def get_domain_id(self) -> int:
+        """Return the ROS domain."""
+        return self.io.context.domain_id
+
+    def refuse_if_destroyed(self) -> None:
+        """Raise InvalidHandle after `destroy_when_not_in_use`."""
+        if not self.is_valid:
+            raise InvalidHandle("cannot use Destroyable because destruction was requested")
+
+    def mark_shut_down(self) -> None:
+        """Shut down as far as a signal handler may: no lock is taken, nobody is waited for."""
+        self._shut_down = True
+        self.signal.notify()
+
+    def shutdown(self) -> None:
+        """Shut down: executors stop to spin.
+
+        Raises:
+            RCLError: it is shut down already.
+        """
+        if self._shut_down:
+            raise RCLError(
+                "failed to shutdown: rcl_shutdown already called on the given context"
+            )
+        self.mark_shut_down()
+        living_contexts.discard(self)
+
+    def close(self) -> None:
+        """Send what was published, leave the graph, and end the thread."""
+        self.io.stop()
+
+    def _destroy(self) -> None:
+        self._shut_down = True
+        if hasattr(self, "io"):
+            self.io.stop()
+
+
+@atexit.register
+def close_all() -> None:
+    """Send what a program has published that ends without `shutdown`."""
+    for context in list(living_contexts):
+        context.mark_shut_down()
+        context.close()

@@ -1,0 +1,45 @@
+"""The messages and services that rclpy itself uses."""
+
+from __future__ import annotations
+
+from aionode.rclpy._rosidl import message_class, service_class
+
+__all__ = [
+    "Clock",
+    "DescribeParameters",
+    "GetLoggerLevels",
+    "GetParameterTypes",
+    "GetParameters",
+    "GetTypeDescription",
+    "ListParameters",
+    "ListParametersResult",
+    "LoggerLevel",
+    "Parameter",
+    "ParameterDescriptor",
+    "ParameterEvent",
+    "ParameterValue",
+    "SetLoggerLevels",
+    "SetLoggerLevelsResult",
+    "SetParameters",
+    "SetParametersAtomically",
+    "SetParametersResult",
+]
+
+Clock = message_class("rosgraph_msgs/msg/Clock")
+ListParametersResult = message_class("rcl_interfaces/msg/ListParametersResult")
+LoggerLevel = message_class("rcl_interfaces/msg/LoggerLevel")
+Parameter = message_class("rcl_interfaces/msg/Parameter")
+ParameterDescriptor = message_class("rcl_interfaces/msg/ParameterDescriptor")
+ParameterEvent = message_class("rcl_interfaces/msg/ParameterEvent")
+ParameterValue = message_class("rcl_interfaces/msg/ParameterValue")
+SetLoggerLevelsResult = message_class("rcl_interfaces/msg/SetLoggerLevelsResult")
+SetParametersResult = message_class("rcl_interfaces/msg/SetParametersResult")
+DescribeParameters = service_class("rcl_interfaces/srv/DescribeParameters")
+GetLoggerLevels = service_class("rcl_interfaces/srv/GetLoggerLevels")
+GetParameterTypes = service_class("rcl_interfaces/srv/GetParameterTypes")
+GetParameters = service_class("rcl_interfaces/srv/GetParameters")
+ListParameters = service_class("rcl_interfaces/srv/ListParameters")
+SetLoggerLevels = service_class("rcl_interfaces/srv/SetLoggerLevels")
+SetParameters = service_class("rcl_interfaces/srv/SetParameters")
+SetParametersAtomically = service_class("rcl_interfaces/srv/SetParametersAtomically")
+GetTypeDescription = service_class("type_description_interfaces/srv/GetTypeDescription")
