@@ -156,9 +156,7 @@ def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None 
         uninstall_signal_handlers()
 
 
-def try_shutdown(
-    *, context: Context | None = None, uninstall_handlers: bool | None = None
-) -> None:
+def try_shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
     """Shut a context down, unless that has happened; see `shutdown`."""
     is_default = context is None or context is get_default_context()
     utilities.try_shutdown(context=context)

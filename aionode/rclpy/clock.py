@@ -172,6 +172,8 @@ class ROSClock(Clock):
             TypeError: `time` is not a `Time`.
         """
         if not isinstance(time, Time):
-            raise TypeError(f"Time must be specified as rclpy.time.Time. Received type: {type(time)}")
+            raise TypeError(
+                f"Time must be specified as rclpy.time.Time. Received type: {type(time)}"
+            )
         with self._handle:
             self._handle.clock.set_ros_time_override(time)

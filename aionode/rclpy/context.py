@@ -93,9 +93,7 @@ class Context:
         """
         with self._lock:
             if domain_id is not None and domain_id < 0:
-                raise RuntimeError(
-                    f"Domain id ({domain_id}) should not be lower than zero."
-                )
+                raise RuntimeError(f"Domain id ({domain_id}) should not be lower than zero.")
             if self._handle is not None:
                 raise RuntimeError("Context.init() must only be called once")
             self._handle = ContextHandle(sys.argv if args is None else args, domain_id)

@@ -696,9 +696,7 @@ class MultiThreadedExecutor(Executor):
         future._wake_when_done(self.wake)
         self._spin_once_until_future_complete(future, timeout_sec)
 
-    def shutdown(
-        self, timeout_sec: float | None = None, *, wait_for_threads: bool = True
-    ) -> bool:
+    def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool = True) -> bool:
         """Begin no more callbacks, wait for those that run, and end the threads."""
         success = super().shutdown(timeout_sec)
         self._executor.shutdown(wait=wait_for_threads)

@@ -27,8 +27,7 @@ class LoggingService:
 
     def _get_logger_levels(self, request: Any, response: Any) -> Any:
         response.levels = [
-            msg.LoggerLevel(name=name, level=int(get_logger_level(name)))
-            for name in request.names
+            msg.LoggerLevel(name=name, level=int(get_logger_level(name))) for name in request.names
         ]
         return response
 

@@ -312,9 +312,7 @@ class Node(NodeParameters, NodeGraph):
         profile = as_profile(qos_profile)
         group = callback_group or self.default_callback_group
         name = self.resolve_topic_name(topic)
-        profile = _declare_qos_parameters(
-            Subscription, self, name, profile, qos_overriding_options
-        )
+        profile = _declare_qos_parameters(Subscription, self, name, profile, qos_overriding_options)
         check_is_valid_msg_type(msg_type)
         with self.handle:
             handle = SubscriptionHandle(

@@ -53,9 +53,7 @@ class Type(IntEnum):
             if isinstance(parameter_value, kind):
                 return type_
         if not isinstance(parameter_value, list | tuple | array.array):
-            raise TypeError(
-                f"The given value is not one of the allowed types '{parameter_value}'."
-            )
+            raise TypeError(f"The given value is not one of the allowed types '{parameter_value}'.")
         for kind, type_ in ELEMENTS:
             if all(isinstance(element, kind) for element in parameter_value):
                 return type_
@@ -235,9 +233,7 @@ def parameter_dict_from_yaml_file(
     for key in keys:
         section = content[key]
         if not isinstance(section, dict) or "ros__parameters" not in section:
-            raise RuntimeError(
-                f"YAML file is not a valid ROS parameter file for node {key}"
-            )
+            raise RuntimeError(f"YAML file is not a valid ROS parameter file for node {key}")
         values.update(section["ros__parameters"])
     return messages_of(values, namespace)
 

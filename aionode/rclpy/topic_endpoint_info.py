@@ -111,19 +111,21 @@ class TopicEndpointInfo:
         if profile.history == QoSHistoryPolicy.KEEP_LAST:
             history = f"{history} ({profile.depth})"
         gid = ".".join(format(number, "02x") for number in self.endpoint_gid)
-        return "\n".join((
-            f"Node name: {self.node_name}",
-            f"Node namespace: {self.node_namespace}",
-            f"Topic type: {self.topic_type}",
-            f"Topic type hash: {self.topic_type_hash}",
-            f"Endpoint type: {self.endpoint_type.name}",
-            f"GID: {gid}",
-            "QoS profile:",
-            f"  Reliability: {profile.reliability.name}",
-            f"  History (Depth): {history}",
-            f"  Durability: {profile.durability.name}",
-            f"  Lifespan: {profile.lifespan}",
-            f"  Deadline: {profile.deadline}",
-            f"  Liveliness: {profile.liveliness.name}",
-            f"  Liveliness lease duration: {profile.liveliness_lease_duration}",
-        ))
+        return "\n".join(
+            (
+                f"Node name: {self.node_name}",
+                f"Node namespace: {self.node_namespace}",
+                f"Topic type: {self.topic_type}",
+                f"Topic type hash: {self.topic_type_hash}",
+                f"Endpoint type: {self.endpoint_type.name}",
+                f"GID: {gid}",
+                "QoS profile:",
+                f"  Reliability: {profile.reliability.name}",
+                f"  History (Depth): {history}",
+                f"  Durability: {profile.durability.name}",
+                f"  Lifespan: {profile.lifespan}",
+                f"  Deadline: {profile.deadline}",
+                f"  Liveliness: {profile.liveliness.name}",
+                f"  Liveliness lease duration: {profile.liveliness_lease_duration}",
+            )
+        )

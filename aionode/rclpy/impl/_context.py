@@ -75,9 +75,7 @@ class ContextHandle(Destroyable):
             RCLError: it is shut down already.
         """
         if self._shut_down:
-            raise RCLError(
-                "failed to shutdown: rcl_shutdown already called on the given context"
-            )
+            raise RCLError("failed to shutdown: rcl_shutdown already called on the given context")
         self.mark_shut_down()
         living_contexts.discard(self)
 

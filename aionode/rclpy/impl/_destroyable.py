@@ -91,9 +91,7 @@ class Destroyable:
     def __enter__(self) -> Self:
         with self._use_lock:
             if self._unwanted:
-                raise InvalidHandle(
-                    "cannot use Destroyable because destruction was requested"
-                )
+                raise InvalidHandle("cannot use Destroyable because destruction was requested")
             self._uses += 1
         return self
 

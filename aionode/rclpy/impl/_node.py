@@ -94,9 +94,7 @@ class NodeHandle(Destroyable):
         """Return the name of the node's logger."""
         return names.logger_name(self._namespace, self._name)
 
-    def resolve(
-        self, name: str, *, only_expand: bool = False, is_service: bool = False
-    ) -> str:
+    def resolve(self, name: str, *, only_expand: bool = False, is_service: bool = False) -> str:
         """Return the full name of a topic or service, remapped unless `only_expand`.
 
         Raises:
@@ -112,9 +110,7 @@ class NodeHandle(Destroyable):
 
     def get_parameters(self, parameter_class: Any) -> dict[str, Any]:
         """Return the parameters that arguments give, by name."""
-        return {
-            name: parameter_class(name, value=value) for name, value in self._overrides.items()
-        }
+        return {name: parameter_class(name, value=value) for name, value in self._overrides.items()}
 
     # Graph
 

@@ -160,9 +160,7 @@ class NodeGraph:
         """
         return self._of_node(EndpointKind.CLIENT, node_name, node_namespace)
 
-    def _of_node(
-        self, kind: EndpointKind, node_name: str, node_namespace: str
-    ) -> NamesAndTypes:
+    def _of_node(self, kind: EndpointKind, node_name: str, node_namespace: str) -> NamesAndTypes:
         with self._handle:
             return self._handle.names_and_types_of(kind, node_name, node_namespace)
 

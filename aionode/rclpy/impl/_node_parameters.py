@@ -136,9 +136,7 @@ class NodeParameters:
         if known:
             raise ParameterAlreadyDeclaredException(known)
         for parameter, descriptor in declared:
-            result = self._set_atomically(
-                [parameter], {parameter.name: descriptor}, declaring=True
-            )
+            result = self._set_atomically([parameter], {parameter.name: descriptor}, declaring=True)
             if result.successful:
                 continue
             if result.reason.startswith("Wrong parameter type"):
@@ -161,7 +159,9 @@ class NodeParameters:
             )
         name = entry[0]
         if not isinstance(name, str):
-            raise TypeError(f"First element {name} at index {index} in parameters list is not a str.")
+            raise TypeError(
+                f"First element {name} at index {index} in parameters list is not a str."
+            )
         if namespace:
             name = f"{namespace}{PARAMETER_SEPARATOR_STRING}{name}"
         validate_parameter_name(name)
@@ -465,9 +465,7 @@ class NodeParameters:
                 return failure("Static parameter cannot be undeclared")
         elif parameter.type_ != descriptor.type:
             expected = Parameter.Type(descriptor.type)
-            return failure(
-                f"Wrong parameter type, expected '{expected}' got '{parameter.type_}'"
-            )
+            return failure(f"Wrong parameter type, expected '{expected}' got '{parameter.type_}'")
         if parameter.type_ is Parameter.Type.INTEGER and descriptor.integer_range:
             return integer_in_range(parameter, descriptor.integer_range[0])
         if parameter.type_ is Parameter.Type.DOUBLE and descriptor.floating_point_range:

@@ -210,9 +210,7 @@ class ClientHandle(Destroyable):
         """Return whether a response waits."""
         return bool(self._replies.items) and not self._unwanted
 
-    def send_request(
-        self, request: Any, on_response: Callable[[Any], None] | None = None
-    ) -> int:
+    def send_request(self, request: Any, on_response: Callable[[Any], None] | None = None) -> int:
         """Send a request and return its number.
 
         Args:

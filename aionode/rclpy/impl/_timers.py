@@ -16,9 +16,7 @@ __all__ = ["ClockHandle", "GuardConditionHandle", "TimerHandle"]
 
 SWITCHES = (ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED)
 
-ANY_JUMP = JumpThreshold(
-    min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1)
-)
+ANY_JUMP = JumpThreshold(min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1))
 
 steady_ns = MachineTime().steady_ns
 

@@ -213,9 +213,7 @@ class SubscriptionHandle(Destroyable):
                 continue
             message = data
             if not raw:
-                support = (
-                    self._support if msg_type is self.msg_type else message_support(msg_type)
-                )
+                support = self._support if msg_type is self.msg_type else message_support(msg_type)
                 try:
                     message = support.decode(data)
                 except DecodeError as error:

@@ -21,9 +21,7 @@ __all__ = ["describe"]
 def describe(node: Any, request: Any, response: Any) -> Any:
     """Fill in the response to a GetTypeDescription request."""
     found = {
-        type_hash(kind): kind
-        for kind in types_of(node)
-        if type_name(kind) == request.type_name
+        type_hash(kind): kind for kind in types_of(node) if type_name(kind) == request.type_name
     }
     kind = found.get(request.type_hash) if request.type_hash else next(iter(found.values()), None)
     if kind is None:
@@ -35,9 +33,7 @@ def describe(node: Any, request: Any, response: Any) -> Any:
         )
         return response
     response.successful = True
-    response.type_description = in_class_of(
-        response.type_description, description_message(kind)
-    )
+    response.type_description = in_class_of(response.type_description, description_message(kind))
     if request.include_type_sources:
         response.type_sources = [source_of(part) for part in (kind, *referenced_types(kind))]
     return response

@@ -12,7 +12,14 @@ from aionode.wire import cdr
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["MessageSupport", "ServiceSupport", "aionode_class", "message_support", "ros_name", "service_support"]
+__all__ = [
+    "MessageSupport",
+    "ServiceSupport",
+    "aionode_class",
+    "message_support",
+    "ros_name",
+    "service_support",
+]
 
 
 class MessageSupport(NamedTuple):
@@ -68,9 +75,7 @@ def support(cls: Any, wire_type: Any) -> MessageSupport:
     """Return how to send messages of `cls` as `wire_type`."""
     if is_own(cls):
         return MessageSupport(cls, wire_type, cdr.encoder(cls), cdr.decoder(cls))
-    return MessageSupport(
-        cls, wire_type, _rosidl.encode, lambda data: _rosidl.decode(cls, data)
-    )
+    return MessageSupport(cls, wire_type, _rosidl.encode, lambda data: _rosidl.decode(cls, data))
 
 
 @cache
