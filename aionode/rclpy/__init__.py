@@ -1,0 +1,1 @@
+"""rclpy's API on aionode, for programs that run on rclpy today."""
