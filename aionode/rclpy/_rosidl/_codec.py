@@ -79,23 +79,12 @@ def described(cls: type[Any]) -> type[Message]:
 
 
 def from_aionode(msg: Message) -> Any:
-    """Return a message of aionode as one of rosidl's kind; they share no mutable data."""
-    cls = type(msg)
-    return constructor(cls)(*(rosidl_value(getattr(msg, f.name), f.type) for f in fields(cls)))
+    """Return a message of aionode as one of rosidl's kind; they share no mutable data.
 
-
-def rosidl_value(value: Any, type_: FieldType) -> Any:
-    """Return a value of a field of aionode in the form that constructors take."""
-    if type_.nested is not None:
-        many = type_.container != "single"
-        return [from_aionode(one) for one in value] if many else from_aionode(value)
-    if is_numeric(type_) or (type_.kind == "bool" and type_.container != "single"):
-        import numpy as np
-
-        from aionode.message import DTYPES
-
-        return np.ascontiguousarray(value, DTYPES[type_.kind])
-    return value
+    Raises:
+        MessageError: A value does not fit its field.
+    """
+    return decode(python_class(type(msg)), encode(msg))
 
 
 def to_aionode(msg: Any) -> Message:
