@@ -154,14 +154,11 @@ def new_encoder(
 ) -> Callable[[Any], Encoded]:
     """Return a new encoder of a class; arguments as for `generate_encoder`."""
     fields(cls)  # raises TypeError for a service class
-<<<<<<< HEAD
     if unserialized(cls) is not cls:
         return lambda msg: finish((msg.data,))
-=======
     if family is not OWN:
         own = new_encoder(cls, finish, OWN)
         return generate_encoder(cls, lambda msg: own(family.adopt(msg)), finish, family)
->>>>>>> w/rosmsg
     take = snapshotter(cls)
 
     def encode_unusual(msg: Any) -> Encoded:
