@@ -14,7 +14,11 @@ from aionode.rclpy.callback_groups import (
 from aionode.rclpy.client import Client
 from aionode.rclpy.clock import Clock, ROSClock
 from aionode.rclpy.constants import S_TO_NS
-from aionode.rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from aionode.rclpy.event_handler import (
+    DefaultHandler,
+    PublisherEventCallbacks,
+    SubscriptionEventCallbacks,
+)
 from aionode.rclpy.exceptions import InvalidHandle, NotInitializedException
 from aionode.rclpy.executors import Executor
 from aionode.rclpy.guard_condition import GuardCondition
@@ -274,8 +278,7 @@ class Node(NodeParameters, NodeGraph):
             raise
         self._publishers.append(publisher)
         self._wake_executor()
-        for handler in publisher.event_handlers:
-            self.add_waitable(handler)
+        self._add_event_handlers(publisher)
         return publisher
 
     def create_subscription(
@@ -335,8 +338,7 @@ class Node(NodeParameters, NodeGraph):
         group.add_entity(subscription)
         self._subscriptions.append(subscription)
         self._wake_executor()
-        for handler in subscription.event_handlers:
-            self.add_waitable(handler)
+        self._add_event_handlers(subscription)
         return subscription
 
     def create_client(
@@ -497,6 +499,11 @@ class Node(NodeParameters, NodeGraph):
         success = self.destroy_timer(rate._timer)
         rate.destroy()
         return success
+
+    def _add_event_handlers(self, entity: Any) -> None:
+        for handler in entity.event_handlers:
+            if not isinstance(handler, DefaultHandler):
+                self.add_waitable(handler)
 
     def _remove_event_handlers(self, entity: Any, entities: list[Any]) -> None:
         if entity in entities:

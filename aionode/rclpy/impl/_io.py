@@ -34,6 +34,8 @@ class IoThread:
 
     Attributes:
         context: The context; it and all that belongs to it are used in this thread only.
+        assertions: Called in the thread with the gid of each publisher of this context that shows
+            that it is alive.
     """
 
     def __init__(self, context: Context) -> None:
@@ -44,6 +46,8 @@ class IoThread:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._stopping: asyncio.Event | None = None
         self._opened: Future[None] = Future()
+        self._graph_watchers: list[Callable[[], None]] = []
+        self.assertions: list[Callable[[bytes], None]] = []
         # A daemon, as the interpreter waits for others before it calls what `atexit` has.
         self._thread = Thread(target=self._main, name="rclpy-io", daemon=True)
 
@@ -160,11 +164,35 @@ class IoThread:
                 self._drain()
 
     async def _run(self) -> None:
-        async with self.context:
+        async with self.context, asyncio.TaskGroup() as tasks:
             self._loop = asyncio.get_running_loop()
             self._stopping = asyncio.Event()
+            watching = tasks.create_task(self._watch_graph())
             self._opened.set_result(None)
             await self._stopping.wait()
+            watching.cancel()
+
+    # In the thread
+
+    @property
+    def loop(self) -> asyncio.AbstractEventLoop:
+        """Its event loop."""
+        assert self._loop is not None  # noqa: S101  # `start` has returned
+        return self._loop
+
+    def watch_graph(self, watcher: Callable[[], None]) -> None:
+        """Call `watcher` after each change of the graph; from the thread only, as `unwatch_graph`."""
+        self._graph_watchers.append(watcher)
+
+    def unwatch_graph(self, watcher: Callable[[], None]) -> None:
+        """Undo `watch_graph`."""
+        self._graph_watchers.remove(watcher)
+
+    async def _watch_graph(self) -> None:
+        while True:
+            await self.context.graph.changed()
+            for watcher in list(self._graph_watchers):
+                watcher()
 
 
 def loop_factory() -> Callable[[], asyncio.AbstractEventLoop] | None:

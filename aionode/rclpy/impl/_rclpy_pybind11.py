@@ -19,6 +19,7 @@ from aionode.rclpy.impl._errors import (
     TimerCancelledError,
     UnsupportedEventTypeError,
 )
+from aionode.rclpy.impl._events import EventHandle
 from aionode.rclpy.impl._node import NodeHandle as Node
 from aionode.rclpy.impl._qos import rmw_qos_profile_t
 from aionode.rclpy.impl._services import ClientHandle as Client
@@ -41,6 +42,7 @@ __all__ = [
     "ClockType",
     "Context",
     "Destroyable",
+    "EventHandle",
     "GuardCondition",
     "InvalidHandle",
     "Node",

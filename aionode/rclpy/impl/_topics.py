@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 
 __all__ = ["PublisherHandle", "SubscriptionHandle"]
 
+Feed = list["Callable[[SampleInfo | None], None]"]
+"""What is told of each message, in the thread of the context, by those who watch for events."""
+
 logger = logging.getLogger("aionode.rclpy")
 
 now_ns = MachineTime().system_ns
@@ -40,18 +43,17 @@ class PublisherHandle(Destroyable):
         self._node = node
         self.msg_type = msg_type
         self._support = message_support(msg_type)
-        self._io = node.io
+        self.io = node.io
         name = node.resolve(topic)
-        self._bare: BarePublisher = node.io.call(
+        self.bare: BarePublisher = node.io.call(
             node.bare.create_publisher, self._support.wire_type, name, profile_of(qos_profile)
         )
-        self.on_published: Callable[[], None] | None = None
-        self._waiting: deque[tuple[Any, int]] = deque()  # for KEEP_ALL readers of this context
+        self.feed: Feed = []
 
     @property
     def endpoint(self) -> EndpointInfo:
         """What the graph knows of it."""
-        return self._bare.endpoint
+        return self.bare.endpoint
 
     def publish(self, msg: Any) -> None:
         """Send a message."""
@@ -64,20 +66,20 @@ class PublisherHandle(Destroyable):
 
     def publish_raw(self, data: bytes) -> None:
         """Send a message that is encoded already."""
-        self._io.post(partial(self._send, self._support.wire_type(data), now_ns()))
+        self.io.post(partial(self._send, self._support.wire_type(data), now_ns()))
 
     def _send(self, msg: Any, source_ns: int) -> None:
         try:
-            self._bare.publish(msg, source_ns)
+            self.bare.publish(msg, source_ns)
         except QueueFullError:
             # The local KEEP_ALL readers are full: the newest is dropped, as with a history limit.
             logger.debug("%s: a KEEP_ALL subscription is full", self.endpoint.name)
-        if self.on_published is not None:
-            self.on_published()
+        for listener in self.feed:
+            listener(None)
 
     def get_subscription_count(self) -> int:
         """Return how many subscriptions are matched."""
-        return len(self._io.call(self._bare.matched))
+        return len(self.io.call(self.bare.matched))
 
     def get_topic_name(self) -> str:
         """Return the full name of the topic."""
@@ -87,16 +89,26 @@ class PublisherHandle(Destroyable):
         """Return the name of the node's logger."""
         return self._node.logger_name()
 
+    def assert_liveliness(self) -> None:
+        """Show that the publisher is alive."""
+        self.io.post(self._assert_liveliness)
+
+    def _assert_liveliness(self) -> None:
+        for listener in self.feed:
+            listener(None)
+        for assertion in self.io.assertions:
+            assertion(self.endpoint.gid)
+
     def wait_for_all_acked(self, timeout: Any) -> bool:
         """Wait until everything is handed to the transports; they repeat what is lost."""
         del timeout
-        self._io.call(lambda: None)
+        self.io.call(lambda: None)
         return True
 
     def _destroy(self) -> None:
-        bare = getattr(self, "_bare", None)
+        bare = getattr(self, "bare", None)
         if bare is not None:
-            self._io.post(bare.destroy)
+            self.io.post(bare.destroy)
 
 
 class Inbox:
@@ -118,7 +130,7 @@ class Inbox:
         self.dropped = 0
         self.rejected = 0
         self.accept: Callable[[bytes], bool] | None = None
-        self.on_delivered: Callable[[SampleInfo], None] | None = None
+        self.feed: Feed = []
         self._signal = signal
         self._room_waiters: list[Callable[[], None]] = []
 
@@ -132,8 +144,8 @@ class Inbox:
             if self.keep_all:
                 return
         items.append((msg.data, sample_info, sample_info.arrived_ns or now_ns()))
-        if self.on_delivered is not None:
-            self.on_delivered(sample_info)
+        for listener in self.feed:
+            listener(sample_info)
         self._signal.notify()
 
     def reject(self, error: DecodeError) -> None:
@@ -170,19 +182,20 @@ class SubscriptionHandle(Destroyable):
     ) -> None:
         super().__init__(node.signal)
         self._node = node
-        self._io = node.io
+        self.io = node.io
         self.msg_type = msg_type
         self._support = message_support(msg_type)
         self._filter_options = content_filter_options
         profile = profile_of(qos_profile)
         self.inbox = Inbox(profile, node.signal)
+        self.feed = self.inbox.feed
         if content_filter_options is not None:
             self._set_filter(
                 content_filter_options.filter_expression,
                 content_filter_options.expression_parameters,
             )
         name = node.resolve(topic)
-        self._bare: BareEndpoint = node.io.call(
+        self.bare: BareEndpoint = node.io.call(
             node.bare.create_subscription, self._support.wire_type, name, profile, self.inbox
         )
         self._lifespans: dict[bytes, int] = {}
@@ -192,7 +205,7 @@ class SubscriptionHandle(Destroyable):
     @property
     def endpoint(self) -> EndpointInfo:
         """What the graph knows of it."""
-        return self._bare.endpoint
+        return self.bare.endpoint
 
     def ready(self) -> bool:
         """Return whether a message waits."""
@@ -208,7 +221,7 @@ class SubscriptionHandle(Destroyable):
                 return None
             if inbox.keep_all:
                 for waiter in inbox.made_room():
-                    self._io.post(waiter)
+                    self.io.post(waiter)
             if self._has_expired(sample_info):
                 continue
             message = data
@@ -242,19 +255,19 @@ class SubscriptionHandle(Destroyable):
         """Whether the lifespan that the publisher gave its messages has passed."""
         lifespan_ns = self._lifespans.get(sample_info.gid)
         if lifespan_ns is None:
-            lifespan_ns = self._io.call(self._lifespan_of, sample_info.gid)
+            lifespan_ns = self.io.call(self._lifespan_of, sample_info.gid)
             self._lifespans[sample_info.gid] = lifespan_ns
         return bool(lifespan_ns) and now_ns() - sample_info.source_ns > lifespan_ns
 
     def _lifespan_of(self, gid: bytes) -> int:
-        for publisher in self._bare.matched():
+        for publisher in self.bare.matched():
             if publisher.gid == gid and not is_unlimited(publisher.qos.lifespan):
                 return publisher.qos.lifespan.nanoseconds
         return 0
 
     def get_publisher_count(self) -> int:
         """Return how many publishers are matched."""
-        return len(self._io.call(self._bare.matched))
+        return len(self.io.call(self.bare.matched))
 
     def get_topic_name(self) -> str:
         """Return the full name of the topic."""
@@ -306,7 +319,7 @@ class SubscriptionHandle(Destroyable):
         return self._filter_options
 
     def _destroy(self) -> None:
-        bare = getattr(self, "_bare", None)
+        bare = getattr(self, "bare", None)
         if bare is not None:
-            self._io.post(bare.destroy)
+            self.io.post(bare.destroy)
         self.signal.notify()
