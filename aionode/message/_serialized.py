@@ -1,4 +1,4 @@
-"""Classes whose messages stay in their encoded form, for programs with message classes of their own.
+"""Classes whose messages stay in their encoded form, for programs with other message classes.
 
 A transport carries such a message without looking into it: encoding returns its bytes, and decoding
 keeps them.

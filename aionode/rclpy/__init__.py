@@ -16,7 +16,7 @@ from aionode.rclpy import task as task
 from aionode.rclpy import utilities as utilities
 from aionode.rclpy.context import Context
 from aionode.rclpy.parameter import Parameter
-from aionode.rclpy.qos import QoSProfile, qos_profile_rosout_default
+from aionode.rclpy.qos import QoSProfile
 from aionode.rclpy.signals import (
     SignalHandlerOptions,
     install_signal_handlers,
@@ -133,7 +133,7 @@ def get_global_executor() -> Executor:
 
 
 def _reset_executor() -> None:
-    global _executor  # noqa: PLW0603  # as above
+    global _executor  # one for the process, as in rclpy
     executor, _executor = _executor, None
     if executor is not None:
         executor.shutdown()

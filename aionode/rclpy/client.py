@@ -90,7 +90,7 @@ class Client(Generic[RequestT, ResponseT]):
                 self._handle.forget(sequence)
                 if not responses:
                     raise TimeoutError
-            response: ResponseT = self._handle.decode_response(responses[0])
+            response: ResponseT = self._handle.receive(sequence, responses[0])
         return response
 
     def call_async(self, request: RequestT) -> Future[ResponseT]:

@@ -4,9 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from aionode.clock import ClockChange, ClockType, JumpThreshold, MachineTime, Time, TimeJump
-from aionode.clock import Duration
-from aionode.clock import JumpHandle
+from aionode.clock import (
+    ClockChange,
+    ClockType,
+    Duration,
+    JumpHandle,
+    JumpThreshold,
+    MachineTime,
+    Time,
+    TimeJump,
+)
 from aionode.rclpy.exceptions import NotInitializedException
 from aionode.rclpy.impl._destroyable import Wakeup
 from aionode.rclpy.impl._timers import ClockHandle

@@ -85,30 +85,6 @@ class TimeoutObject:
         self._timeout = timeout
 
 
-class WorkTracker:
-    """Counts the callbacks that run, so that `shutdown` can wait for them."""
-
-    def __init__(self) -> None:
-        self._running = 0
-        self._condition = threading.Condition()
-
-    def __enter__(self) -> None:
-        with self._condition:
-            self._running += 1
-
-    def __exit__(self, *exc_info: object) -> None:
-        with self._condition:
-            self._running -= 1
-            self._condition.notify_all()
-
-    def wait(self, timeout_sec: float | None) -> bool:
-        """Wait until none runs; return whether that is so in time."""
-        if timeout_sec is not None and timeout_sec < 0:
-            timeout_sec = None
-        with self._condition:
-            return self._condition.wait_for(lambda: not self._running, timeout_sec)
-
-
 def never() -> bool:
     """Return False."""
     return False
@@ -132,7 +108,6 @@ class Executor:
         self._tasks_lock = threading.Lock()
         self._wakeup = Wakeup()
         self._is_shutdown = False
-        self._work_tracker = WorkTracker()
         self._shutdown_lock = threading.Lock()
         self._cb_iter: Generator[Work, None, None] | None = None
         self._last_args: tuple[Any, ...] = ()
@@ -194,20 +169,19 @@ class Executor:
         self._wakeup.wake()
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Begin no more callbacks, and wait for those that run.
+        """Begin no more callbacks, and let go of the nodes.
+
+        As in rclpy, it does not wait for callbacks that run: it may be called in one.
 
         Args:
-            timeout_sec: The longest wait in seconds; None or negative for ever.
+            timeout_sec: Ignored.
 
         Returns:
-            Whether all have ended.
+            True.
         """
         with self._shutdown_lock:
-            first = not self._is_shutdown
             self._is_shutdown = True
         self.wake()
-        if first and not self._work_tracker.wait(timeout_sec):
-            return False
         for node in self.get_nodes():
             self.remove_node(node)
         if self._context.handle is not None:
@@ -231,7 +205,6 @@ class Executor:
             future: The future.
             timeout_sec: The longest time in seconds; None or negative for ever.
         """
-        future.add_done_callback(lambda _: self.wake())
         future._wake_when_done(self.wake)
         if timeout_sec is None or timeout_sec < 0:
             while self._goes_on(future):
@@ -389,21 +362,16 @@ class Executor:
             if waitables:
                 found += self._ready_waitables(waitables, node)
         for node in nodes:
-            for timer in node._timers:
-                if timer.handle.ready() and can_execute(timer):
-                    found.append((timer, node, self._take_timer))
-            for subscription in node._subscriptions:
-                if subscription.handle.ready() and can_execute(subscription):
-                    found.append((subscription, node, self._take_subscription))
-            for guard in node._guards:
-                if guard.handle.ready() and can_execute(guard):
-                    found.append((guard, node, self._take_guard_condition))
-            for client in node._clients:
-                if client.handle.ready() and can_execute(client):
-                    found.append((client, node, self._take_client))
-            for service in node._services:
-                if service.handle.ready() and can_execute(service):
-                    found.append((service, node, self._take_service))
+            for entities, take in (
+                (node._timers, self._take_timer),
+                (node._subscriptions, self._take_subscription),
+                (node._guards, self._take_guard_condition),
+                (node._clients, self._take_client),
+                (node._services, self._take_service),
+            ):
+                for entity in entities:
+                    if entity.handle.ready() and can_execute(entity):
+                        found.append((entity, node, take))
         return found
 
     def _ready_waitables(
@@ -471,20 +439,19 @@ class Executor:
                 entity._executor_event = False
                 self.wake()
                 return
-            with self._work_tracker:
-                try:
-                    call = take(entity)
-                    entity._executor_event = False
-                    self.wake()
-                    if call is not None:
-                        result = call()
-                        if inspect.iscoroutine(result):
-                            await result
-                finally:
-                    entity._executor_event = False
-                    if group is not None:
-                        group.ending_execution(entity)
-                    self.wake()
+            try:
+                call = take(entity)
+                entity._executor_event = False
+                self.wake()
+                if call is not None:
+                    result = call()
+                    if inspect.iscoroutine(result):
+                        await result
+            finally:
+                entity._executor_event = False
+                if group is not None:
+                    group.ending_execution(entity)
+                self.wake()
 
         task: Task[Any] = Task(handle, executor=self)
         with self._tasks_lock:

@@ -6,6 +6,8 @@ import weakref
 from typing import TYPE_CHECKING, Any, Self
 
 from aionode.errors import NodeNameNonExistentError
+from aionode.rclpy._node_graph import NodeGraph
+from aionode.rclpy._node_parameters import NodeParameters
 from aionode.rclpy.callback_groups import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
@@ -24,8 +26,6 @@ from aionode.rclpy.executors import Executor
 from aionode.rclpy.guard_condition import GuardCondition
 from aionode.rclpy.impl import _messages as msg
 from aionode.rclpy.impl._node import NodeHandle
-from aionode.rclpy.impl._node_graph import NodeGraph
-from aionode.rclpy.impl._node_parameters import NodeParameters
 from aionode.rclpy.impl._services import ClientHandle, ServiceHandle
 from aionode.rclpy.impl._topics import PublisherHandle, SubscriptionHandle
 from aionode.rclpy.logging import get_logger
@@ -527,16 +527,17 @@ class Node(NodeParameters, NodeGraph):
         """Destroy its entities, and leave the graph. Calling it again has no effect."""
         self._context.untrack_node(self)
         self._parameter_event_publisher = None
-        for entities, destroy in (
+        ends: tuple[tuple[list[Any], Callable[[Any], bool]], ...] = (
             (self._publishers, self.destroy_publisher),
             (self._subscriptions, self.destroy_subscription),
             (self._clients, self.destroy_client),
             (self._services, self.destroy_service),
             (self._timers, self.destroy_timer),
             (self._guards, self.destroy_guard_condition),
-        ):
+        )
+        for entities, destroy in ends:
             while entities:
-                destroy(entities[0])  # type: ignore[operator] # of its kind
+                destroy(entities[0])
         self._type_description_service.destroy()
         self._handle.destroy_when_not_in_use()
         self._wake_executor()

@@ -74,10 +74,12 @@ class Type(IntEnum):
                 return False
         kind = next(kind for kind, type_ in ELEMENTS if self is type_)
         return all(
-            isinstance(element, kind) and (kind is not bytes or len(element) == 1)
+            isinstance(element, kind) and (not isinstance(element, bytes) or len(element) == 1)
             for element in parameter_value
         )
 
+
+ParameterType = Type  # `Parameter.Type` hides the name in the class
 
 # bool before int, as True is an int to Python
 SINGLE: tuple[tuple[type, Type], ...] = (
@@ -115,7 +117,7 @@ class Parameter(Generic[AllowableParameterValueT]):
 
     Type = Type
 
-    def __init__(self, name: str, type_: Type | None = None, value: Any = None) -> None:
+    def __init__(self, name: str, type_: ParameterType | None = None, value: Any = None) -> None:
         if type_ is None:
             type_ = Type.from_parameter_value(value)
         if not isinstance(type_, Type):
@@ -143,7 +145,7 @@ class Parameter(Generic[AllowableParameterValueT]):
         return self._name
 
     @property
-    def type_(self) -> Type:
+    def type_(self) -> ParameterType:
         """The type."""
         return self._type_
 

@@ -171,9 +171,7 @@ class AsyncParameterClient:
         callback: Callable[[Future[Any]], None] | None = None,
     ) -> Future[Any]:
         """Set the parameters that a file has for the other node, all or none."""
-        return self.set_parameters_atomically(
-            self._in_file(parameter_file, use_wildcard), callback
-        )
+        return self.set_parameters_atomically(self._in_file(parameter_file, use_wildcard), callback)
 
     def _in_file(self, parameter_file: str, use_wildcard: bool) -> list[Any]:
         found = parameter_dict_from_yaml_file(
@@ -218,6 +216,4 @@ def ask(
 
 def as_messages(parameters: Sequence[Any]) -> list[Any]:
     """Return parameters as messages."""
-    return [
-        each.to_parameter_msg() if isinstance(each, Parameter) else each for each in parameters
-    ]
+    return [each.to_parameter_msg() if isinstance(each, Parameter) else each for each in parameters]

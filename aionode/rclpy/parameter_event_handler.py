@@ -26,9 +26,7 @@ GONE = "Callback doesn't exist"
 class ParameterCallbackHandle:
     """A callback for one parameter of one node."""
 
-    def __init__(
-        self, parameter_name: str, node_name: str, callback: Callable[[Any], Any]
-    ) -> None:
+    def __init__(self, parameter_name: str, node_name: str, callback: Callable[[Any], Any]) -> None:
         self.parameter_name = parameter_name
         self.node_name = node_name
         self.callback = callback

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from aionode import qos as core
+from aionode.errors import InvalidQoSProfileException
 from aionode.qos import (
     DeadlineBestAvailable,
     DurabilityPolicy,
@@ -30,7 +31,6 @@ from aionode.qos import (
     qos_profile_system_default,
     qos_profile_unknown,
 )
-from aionode.errors import InvalidQoSProfileException
 
 __all__ = [
     "DeadlineBestAvailable",

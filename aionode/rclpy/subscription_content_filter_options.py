@@ -8,7 +8,7 @@ __all__ = ["ContentFilterOptions"]
 
 
 class ContentFilterOptions(NamedTuple):
-    """Which messages a subscription takes: an expression, and what stands for its ``%0`` and so on."""
+    """Which messages a subscription takes: an expression, and what its ``%0`` and so on are."""
 
     filter_expression: str
     expression_parameters: list[str]

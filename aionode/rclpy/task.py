@@ -135,7 +135,8 @@ class Future(Generic[T]):
         """Call `waker` in the thread that completes the future; at once if it is complete."""
         with self._lock:
             if self._pending():
-                self._wakers.append(waker)
+                if waker not in self._wakers:
+                    self._wakers.append(waker)
                 return
         waker()
 

@@ -81,9 +81,9 @@ class TimeSource:
         if not node.has_parameter(USE_SIM_TIME_NAME):
             node.declare_parameter(USE_SIM_TIME_NAME, False)
         parameter = node.get_parameter(USE_SIM_TIME_NAME)
-        if parameter.type_ is Parameter.Type.BOOL:
+        if parameter.type_ == Parameter.Type.BOOL:
             self.ros_time_is_active = parameter.value
-        elif parameter.type_ is not Parameter.Type.NOT_SET:
+        elif parameter.type_ != Parameter.Type.NOT_SET:
             node.get_logger().error(
                 f"Invalid type for parameter '{USE_SIM_TIME_NAME}' {parameter.type_!r} should be "
                 "bool"
@@ -126,7 +126,7 @@ class TimeSource:
         for parameter in parameters:
             if parameter.name != USE_SIM_TIME_NAME:
                 continue
-            if parameter.type_ is not Parameter.Type.BOOL:
+            if parameter.type_ != Parameter.Type.BOOL:
                 reason = f"{USE_SIM_TIME_NAME} parameter set to something besides a bool"
                 node = self._get_node()
                 if node is not None:

@@ -194,8 +194,7 @@ class Rate:
             RuntimeError: the rate is destroyed.
             InvalidHandle: its timer is destroyed.
         """
-        if self._is_shutdown:
-            raise ROSInterruptException
+        self._refuse_if_shut_down()
         if self._is_destroyed:
             raise RuntimeError("Rate cannot sleep because it has been destroyed")
         if not self._timer.handle.is_valid:
@@ -210,6 +209,9 @@ class Rate:
                 self._num_sleepers -= 1
                 if self._num_sleepers == 0:
                     self._event.clear()
-            if self._is_shutdown:
-                self.destroy()
-                raise ROSInterruptException
+        self._refuse_if_shut_down()
+
+    def _refuse_if_shut_down(self) -> None:
+        if self._is_shutdown:
+            self.destroy()
+            raise ROSInterruptException

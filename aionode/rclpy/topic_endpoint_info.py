@@ -90,13 +90,17 @@ class TopicEndpointInfo:
         endpoint_gid: Sequence[int] = (),
         qos_profile: QoSProfile | dict[str, Any] = QoSPresetProfiles.UNKNOWN.value,
     ) -> None:
-        self.node_name = node_name
-        self.node_namespace = node_namespace
-        self.topic_type = topic_type
-        self.topic_type_hash = TypeHash() if topic_type_hash is None else topic_type_hash
-        self.endpoint_type = endpoint_type
-        self.endpoint_gid = endpoint_gid
-        self.qos_profile = qos_profile
+        given = {
+            "node_name": node_name,
+            "node_namespace": node_namespace,
+            "topic_type": topic_type,
+            "topic_type_hash": TypeHash() if topic_type_hash is None else topic_type_hash,
+            "endpoint_type": endpoint_type,
+            "endpoint_gid": endpoint_gid,
+            "qos_profile": qos_profile,
+        }
+        for name, value in given.items():
+            setattr(self, name, value)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, TopicEndpointInfo):

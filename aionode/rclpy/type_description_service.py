@@ -40,7 +40,7 @@ class TypeDescriptionService:
             )
             node.declare_parameter(START_TYPE_DESCRIPTION_SERVICE_PARAM, True, descriptor)
         parameter = node.get_parameter(START_TYPE_DESCRIPTION_SERVICE_PARAM)
-        if parameter.type_ is Parameter.Type.BOOL:
+        if parameter.type_ == Parameter.Type.BOOL:
             self.enabled = parameter.value
         else:
             node.get_logger().error(

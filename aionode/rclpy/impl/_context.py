@@ -7,18 +7,36 @@ import weakref
 from typing import TYPE_CHECKING
 
 from aionode import Context
-from aionode.arguments import parse_arguments
+from aionode.arguments import Arguments, parse_arguments
 from aionode.rclpy.impl._destroyable import Destroyable
-from aionode.rclpy.impl._errors import InvalidHandle, RCLError
+from aionode.rclpy.impl._errors import InvalidHandle, RCLError, UnknownROSArgsError
 from aionode.rclpy.impl._io import IoThread
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["ContextHandle", "living_contexts"]
+__all__ = ["ContextHandle", "living_contexts", "parsed"]
 
 living_contexts: weakref.WeakSet[ContextHandle] = weakref.WeakSet()
 """Those that are not shut down, for signal handlers."""
+
+
+def parsed(args: Sequence[str]) -> Arguments:
+    """Return the ROS arguments of a command line.
+
+    Raises:
+        UnknownROSArgsError: one is unknown.
+        InvalidROSArgsError: one is malformed.
+        UnicodeEncodeError: one is no text.
+    """
+    for arg in args:
+        arg.encode()
+    arguments = parse_arguments(list(args))
+    if arguments.unparsed_ros_args:
+        raise UnknownROSArgsError(
+            f"Found unknown ROS arguments: {list(arguments.unparsed_ros_args)}"
+        )
+    return arguments
 
 
 class ContextHandle(Destroyable):
@@ -41,8 +59,7 @@ class ContextHandle(Destroyable):
     def __init__(self, args: Sequence[str], domain_id: int | None) -> None:
         super().__init__()
         self._shut_down = False
-        arguments = parse_arguments(list(args))
-        arguments.refuse_unknown()
+        arguments = parsed(args)
         context = Context(domain_id=domain_id)
         context.arguments = arguments
         self.arguments = arguments

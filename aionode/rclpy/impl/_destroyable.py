@@ -30,7 +30,7 @@ class Wakeup:
 
     def wake(self) -> None:
         """Wake the thread that waits, or the next one that will."""
-        try:
+        try:  # noqa: SIM105  # a context manager costs more than the whole rest
             self._lock.release()
         except RuntimeError:  # it is awake already
             pass

@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
-__all__ = ["InvalidHandle", "RCLError", "TimerCancelledError", "UnsupportedEventTypeError"]
+__all__ = [
+    "InvalidHandle",
+    "RCLError",
+    "TimerCancelledError",
+    "UnknownROSArgsError",
+    "UnsupportedEventTypeError",
+]
 
 
 class RCLError(RuntimeError):
@@ -19,3 +25,7 @@ class UnsupportedEventTypeError(RCLError):
 
 class TimerCancelledError(RCLError):
     """A timer was to be called that is cancelled."""
+
+
+class UnknownROSArgsError(RuntimeError):
+    """An argument between ``--ros-args`` and ``--`` is unknown."""

@@ -112,9 +112,7 @@ class EventHandle(Destroyable):
     def __init__(self, parent: PublisherHandle | SubscriptionHandle, event_type: IntEnum) -> None:
         super().__init__(parent.signal)
         self._io = parent.io
-        watches = (
-            PUBLISHER_WATCHES if isinstance(parent, PublisherHandle) else SUBSCRIPTION_WATCHES
-        )
+        watches = PUBLISHER_WATCHES if isinstance(parent, PublisherHandle) else SUBSCRIPTION_WATCHES
         self._watch = watches[event_type](parent, self.signal.notify)
         self._io.call(self._watch.start)
 
@@ -253,7 +251,9 @@ class IncompatibleTypeWatch(MismatchWatch):
 class Alarm:
     """Calls back a fixed time after the last `restart`, and again after each such time."""
 
-    def __init__(self, loop: asyncio.AbstractEventLoop, period_s: float, miss: Callable[[], None]):
+    def __init__(
+        self, loop: asyncio.AbstractEventLoop, period_s: float, miss: Callable[[], None]
+    ) -> None:
         self._loop = loop
         self._period_s = period_s
         self._miss = miss

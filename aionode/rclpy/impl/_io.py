@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
 from collections import deque
 from collections.abc import Callable
@@ -122,10 +123,8 @@ class IoThread:
         """Call `action` soon, without taking a lock: for signal handlers."""
         loop = self._loop
         if loop is not None and not self._ended:
-            try:
+            with contextlib.suppress(RuntimeError):
                 loop.call_soon_threadsafe(action)
-            except RuntimeError:
-                pass
 
     def _drain(self) -> None:
         self._scheduled = False
@@ -181,7 +180,7 @@ class IoThread:
         return self._loop
 
     def watch_graph(self, watcher: Callable[[], None]) -> None:
-        """Call `watcher` after each change of the graph; from the thread only, as `unwatch_graph`."""
+        """Call `watcher` after each change of the graph; in the thread only, as `unwatch_graph`."""
         self._graph_watchers.append(watcher)
 
     def unwatch_graph(self, watcher: Callable[[], None]) -> None:

@@ -6,13 +6,14 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode import names
-from aionode.arguments import Arguments, parse_arguments
+from aionode.arguments import Arguments
 from aionode.bare_node import BareNode
 from aionode.clock import MachineTime, Time
 from aionode.errors import NodeNameNonExistentError
 from aionode.graph import TOPIC_KINDS, EndpointKind
 from aionode.interfaces.rcl_interfaces.msg import Log
 from aionode.logging import get_logger
+from aionode.rclpy.impl._context import parsed
 from aionode.rclpy.impl._destroyable import Destroyable
 from aionode.rclpy.impl._qos import profile_of
 
@@ -54,8 +55,7 @@ class NodeHandle(Destroyable):
         self._stop_rosout: Callable[[], None] | None = None
         names.validate_node_name(node_name)
         namespace = names.normalize_namespace(namespace)
-        own = parse_arguments(list(cli_args or ()))
-        own.refuse_unknown()
+        own = parsed(cli_args or ())
         shared = context.arguments if use_global_arguments else Arguments()
         self.context_handle = context
         self.io = context.io

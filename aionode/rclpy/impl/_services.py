@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from aionode.clock import MachineTime
 from aionode.errors import DecodeError
 from aionode.rclpy.impl._destroyable import Destroyable
-from aionode.rclpy.impl._errors import RCLError
+from aionode.rclpy.impl._introspection import Introspection, ServiceEvent
 from aionode.rclpy.impl._qos import profile_of
 from aionode.rclpy.impl._typesupport import service_support
 
@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from aionode.errors import ServiceError
     from aionode.graph import EndpointInfo
     from aionode.rclpy.impl._destroyable import Signal
+    from aionode.rclpy.impl._introspection import ServiceIntrospectionState
     from aionode.rclpy.impl._node import NodeHandle
+    from aionode.rclpy.impl._timers import ClockHandle
     from aionode.transport.base import Request
 
 __all__ = ["ClientHandle", "ServiceHandle", "rmw_request_id_t", "rmw_service_info_t"]
@@ -77,9 +79,8 @@ class ServiceHandle(Destroyable):
         profile = profile_of(qos_profile)
         self._requests = Requests(profile.depth or MOST_REQUESTS, node.signal)
         self._taken: dict[rmw_request_id_t, Request] = {}
-        self.on_request: Callable[[Any, rmw_request_id_t], None] | None = None
-        self.on_response: Callable[[Any, rmw_request_id_t], None] | None = None
         self._name = node.resolve(srv_name, is_service=True)
+        self._introspection = Introspection(node, srv_type, self._name)
         self._bare: BareEndpoint = node.io.call(
             node.bare.create_server,
             self._support.wire_type,
@@ -128,8 +129,9 @@ class ServiceHandle(Destroyable):
             info = request.sample_info
             request_id = rmw_request_id_t(info.sequence, info.gid)
             self._taken[request_id] = request
-            if self.on_request is not None:
-                self.on_request(message, request_id)
+            self._introspection.tell(
+                ServiceEvent.REQUEST_RECEIVED, info.gid, info.sequence, request=message
+            )
             return message, rmw_service_info_t(request_id, info.source_ns, received_ns)
 
     def service_send_response(self, response: Any, request_id: rmw_request_id_t) -> None:
@@ -139,8 +141,18 @@ class ServiceHandle(Destroyable):
         if request is None:
             return
         self._io.post(partial(request.reply, self._support.wire_type.Response(data)))
-        if self.on_response is not None:
-            self.on_response(response, request_id)
+        self._introspection.tell(
+            ServiceEvent.RESPONSE_SENT,
+            request_id.writer_guid,
+            request_id.sequence_number,
+            response=response,
+        )
+
+    def configure_introspection(
+        self, clock: ClockHandle, qos_profile: Any, state: ServiceIntrospectionState
+    ) -> None:
+        """Tell of calls on ``<service>/_service_event``."""
+        self._introspection.configure(clock, qos_profile, state)
 
     def give_up(self, request_id: rmw_request_id_t) -> None:
         """Leave the request of this id without an answer; its client goes on waiting.
@@ -156,6 +168,7 @@ class ServiceHandle(Destroyable):
     def _destroy(self) -> None:
         bare = getattr(self, "_bare", None)
         if bare is not None:
+            self._introspection.close()
             self._io.post(bare.destroy)
 
 
@@ -189,9 +202,8 @@ class ClientHandle(Destroyable):
         self._replies = Replies(node.signal)
         self._calls: dict[int, Any] = {}
         self._sequence = 0
-        self.on_request: Callable[[Any, rmw_request_id_t], None] | None = None
-        self.on_response: Callable[[Any, rmw_request_id_t], None] | None = None
         self._name = node.resolve(srv_name, is_service=True)
+        self._introspection = Introspection(node, srv_type, self._name)
         self._bare: BareClient = node.io.call(
             node.bare.create_client, self._support.wire_type, self._name, profile_of(qos_profile)
         )
@@ -223,8 +235,9 @@ class ClientHandle(Destroyable):
         sequence = self._sequence
         if on_response is not None:
             self._replies.blocked[sequence] = on_response
-        if self.on_request is not None:
-            self.on_request(request, rmw_request_id_t(sequence, self.endpoint.gid))
+        self._introspection.tell(
+            ServiceEvent.REQUEST_SENT, self.endpoint.gid, sequence, request=request
+        )
         self._io.post(
             partial(self._send, sequence, self._support.wire_type.Request(data), now_ns())
         )
@@ -248,9 +261,23 @@ class ClientHandle(Destroyable):
             if call.open:
                 calls[sequence] = call
 
-    def decode_response(self, data: bytes) -> Any:
-        """Return a response that came as bytes."""
-        return self._support.response.decode(data)
+    def receive(self, sequence: int, data: bytes) -> Any:
+        """Return a response that came as bytes.
+
+        Raises:
+            DecodeError: the bytes are no response.
+        """
+        response = self._support.response.decode(data)
+        self._introspection.tell(
+            ServiceEvent.RESPONSE_RECEIVED, self.endpoint.gid, sequence, response=response
+        )
+        return response
+
+    def configure_introspection(
+        self, clock: ClockHandle, qos_profile: Any, state: ServiceIntrospectionState
+    ) -> None:
+        """Tell of calls on ``<service>/_service_event``."""
+        self._introspection.configure(clock, qos_profile, state)
 
     def forget(self, sequence: int) -> None:
         """Forget a request: the server need not begin with it, and its response is dropped."""
@@ -274,13 +301,11 @@ class ClientHandle(Destroyable):
             except IndexError:
                 return None, None
             try:
-                response = self.decode_response(data)
+                response = self.receive(sequence, data)
             except DecodeError as error:
                 logger.warning("%s: the response is unreadable: %s", self._name, error)
                 continue
             request_id = rmw_request_id_t(sequence, self.endpoint.gid)
-            if self.on_response is not None:
-                self.on_response(response, request_id)
             return rmw_service_info_t(request_id, 0, received_ns), response
 
     def service_server_is_available(self) -> bool:
@@ -294,4 +319,5 @@ class ClientHandle(Destroyable):
     def _destroy(self) -> None:
         bare = getattr(self, "_bare", None)
         if bare is not None:
+            self._introspection.close()
             self._io.post(bare.destroy)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from aionode.clock import Clock, ClockChange, ClockType, JumpThreshold, Duration, MachineTime
-from aionode.rclpy.impl._destroyable import Destroyable, Signal
+from aionode.clock import Clock, ClockChange, ClockType, Duration, JumpThreshold, MachineTime
+from aionode.rclpy.impl._destroyable import Destroyable
 from aionode.rclpy.impl._errors import TimerCancelledError
 
 if TYPE_CHECKING:

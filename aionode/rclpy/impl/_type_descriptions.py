@@ -20,7 +20,7 @@ __all__ = ["describe"]
 
 def describe(node: Any, request: Any, response: Any) -> Any:
     """Fill in the response to a GetTypeDescription request."""
-    found = {
+    found: dict[str, Any] = {
         type_hash(kind): kind for kind in types_of(node) if type_name(kind) == request.type_name
     }
     kind = found.get(request.type_hash) if request.type_hash else next(iter(found.values()), None)
@@ -41,14 +41,15 @@ def describe(node: Any, request: Any, response: Any) -> Any:
 
 def in_class_of(wanted: Any, message: Message) -> Any:
     """Return one of aionode's messages in the class that `wanted` has."""
-    return message_support(type(wanted)).decode(cdr.encode(message))
+    wanted_class: Any = type(wanted)
+    return message_support(wanted_class).decode(cdr.encode(message))
 
 
 def types_of(node: Any) -> Iterator[Any]:
     """Yield the types of a node's entities, and those nested in them, as aionode's classes."""
     kinds = [endpoint.msg_type for endpoint in (*node.publishers, *node.subscriptions)]
     kinds += [endpoint.srv_type for endpoint in (*node.services, *node.clients)]
-    for kind in dict.fromkeys(map(aionode_class, kinds)):
+    for kind in dict.fromkeys(aionode_class(kind) for kind in kinds):
         yield kind
         yield from referenced_types(kind)
 

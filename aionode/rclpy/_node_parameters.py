@@ -46,7 +46,7 @@ ONLY_A_NAME = (
     "\t- Pass a name and a descriptor with `dynamic_typing=True"
 )
 
-NOT_SET = Parameter.Type.NOT_SET
+NOT_SET: Any = Parameter.Type.NOT_SET
 
 
 def failure(reason: str) -> Any:
@@ -170,28 +170,7 @@ class NodeParameters:
         if len(entry) == 1:
             warnings.warn(ONLY_A_NAME.format(name), stacklevel=4)
             descriptor.dynamic_typing = True
-        if isinstance(value, Parameter.Type):
-            if value is NOT_SET:
-                raise ValueError(
-                    f"Cannot declare parameter {{{name}}} as statically typed of type NOT_SET"
-                )
-            if descriptor.dynamic_typing:
-                raise ValueError(
-                    f"When declaring parameter {{{name}}} passing a descriptor with"
-                    "`dynamic_typing=True` is not allowed when the parameter type is provided"
-                )
-            descriptor.type = int(value)
-            value = None
-        elif not descriptor.dynamic_typing:
-            is_message = isinstance(value, msg.ParameterValue)
-            descriptor.type = (
-                value.type if is_message else int(Parameter.Type.from_parameter_value(value))
-            )
-            if descriptor.type == NOT_SET:
-                raise ValueError(
-                    "Cannot declare a statically typed parameter with default value of type "
-                    "PARAMETER_NOT_SET"
-                )
+        value = typed(name, value, descriptor)
         if not ignore_override and name in self._parameter_overrides:
             value = self._parameter_overrides[name].value
         if isinstance(value, msg.ParameterValue):
@@ -362,7 +341,7 @@ class NodeParameters:
         declaring: bool = False,
     ) -> Any:
         for parameter in parameters:
-            descriptor = (self._descriptors if descriptors is None else descriptors).get(
+            descriptor: Any = (self._descriptors if descriptors is None else descriptors).get(
                 parameter.name
             )
             if descriptor is not None:
@@ -391,7 +370,9 @@ class NodeParameters:
         declaring: bool,
     ) -> None:
         event = msg.ParameterEvent(node=self.get_fully_qualified_name())
-        new, changed, deleted = [], [], []
+        new: list[Any] = []
+        changed: list[Any] = []
+        deleted: list[Any] = []
         for parameter in parameters:
             name = parameter.name
             if parameter.type_ is NOT_SET and not declaring:
@@ -532,16 +513,13 @@ class NodeParameters:
             candidates.append(
                 Parameter.from_parameter_msg(msg.Parameter(name=name, value=alternative_value))
             )
-        result = None
         for candidate in candidates:
-            result = self._apply_descriptor(candidate, descriptor, False)
+            result: Any = self._apply_descriptor(candidate, descriptor, False)
             if result.successful:
                 self._parameters[name] = candidate
                 break
         else:
-            raise InvalidParameterValueException(
-                name, candidates[-1].value, "" if result is None else result.reason
-            )
+            raise InvalidParameterValueException(name, candidates[-1].value, result.reason)
         self._descriptors[name] = descriptor
         return self.get_parameter(name).get_parameter_value()
 
@@ -573,6 +551,37 @@ def as_descriptor(given: Any, index: int) -> Any:
         read_only=given.read_only,
         dynamic_typing=given.dynamic_typing,
     )
+
+
+def typed(name: str, value: Any, descriptor: Any) -> Any:
+    """Set the type in the descriptor of a declaration, and return the value.
+
+    Raises:
+        ValueError: the type cannot be told.
+    """
+    if isinstance(value, Parameter.Type):
+        if value is NOT_SET:
+            raise ValueError(
+                f"Cannot declare parameter {{{name}}} as statically typed of type NOT_SET"
+            )
+        if descriptor.dynamic_typing:
+            raise ValueError(
+                f"When declaring parameter {{{name}}} passing a descriptor with"
+                "`dynamic_typing=True` is not allowed when the parameter type is provided"
+            )
+        descriptor.type = int(value)
+        return None
+    if not descriptor.dynamic_typing:
+        is_message = isinstance(value, msg.ParameterValue)
+        descriptor.type = (
+            value.type if is_message else int(Parameter.Type.from_parameter_value(value))
+        )
+        if descriptor.type == NOT_SET:
+            raise ValueError(
+                "Cannot declare a statically typed parameter with default value of type "
+                "PARAMETER_NOT_SET"
+            )
+    return value
 
 
 def integer_in_range(parameter: Parameter[Any], limits: Any) -> Any:
