@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from aionode import names
 from aionode.clock import MachineTime
+from aionode.errors import NameValidationException
 from aionode.graph import EndpointKind
 from aionode.rclpy.impl._destroyable import Wakeup
+from aionode.rclpy.qos import as_own
 from aionode.rclpy.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 from aionode.rclpy.type_hash import TypeHash
 
@@ -185,7 +187,11 @@ class NodeGraph:
     def _count(self, kind: EndpointKind, name: str) -> int:
         is_service = kind in (EndpointKind.CLIENT, EndpointKind.SERVER)
         with self._handle:
-            full_name = self._handle.resolve(name, only_expand=True, is_service=is_service)
+            try:
+                full_name = self._handle.resolve(name, only_expand=True, is_service=is_service)
+            except NameValidationException as error:
+                what = "service" if is_service else "topic"
+                raise ValueError(f"{what} name is invalid: {error}") from None
             return self._handle.count(kind, full_name)
 
     # Endpoints
@@ -216,7 +222,7 @@ class NodeGraph:
                 topic_type_hash=TypeHash.from_text(endpoint.type_hash),
                 endpoint_type=TYPES[kind],
                 endpoint_gid=list(endpoint.gid),
-                qos_profile=endpoint.qos,
+                qos_profile=as_own(endpoint.qos),
             )
             for endpoint in found
         ]

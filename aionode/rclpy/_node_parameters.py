@@ -87,11 +87,7 @@ class NodeParameters:
     # Declaring
 
     def declare_parameter(
-        self,
-        name: str,
-        value: Any = None,
-        descriptor: Any = None,
-        ignore_override: bool = False,
+        self, name: str, value: Any = None, descriptor: Any = None, ignore_override: bool = False
     ) -> Parameter[Any]:
         """Declare a parameter and return it; an override of its name gives the value.
 

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Any
 from aionode.clock import (
     ClockChange,
     ClockType,
-    Duration,
     JumpHandle,
     JumpThreshold,
     MachineTime,
-    Time,
     TimeJump,
 )
+from aionode.rclpy.duration import Duration
 from aionode.rclpy.exceptions import NotInitializedException
 from aionode.rclpy.impl._destroyable import Wakeup
 from aionode.rclpy.impl._timers import ClockHandle
+from aionode.rclpy.time import Time
 from aionode.rclpy.utilities import get_default_context
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ class Clock:
     def now(self) -> Time:
         """Return the time."""
         with self._handle:
-            return self._handle.clock.now()
+            return Time(nanoseconds=self._handle.clock.now_ns(), clock_type=self._clock_type)
 
     def create_jump_callback(
         self,

@@ -10,26 +10,33 @@ import inspect
 import os
 import threading
 import warnings
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
 from typing import TYPE_CHECKING, Any, Self
 
 from aionode.clock import MachineTime
+from aionode.rclpy._taking import (
+    await_or_execute,
+    take_client,
+    take_guard_condition,
+    take_service,
+    take_subscription,
+    take_timer,
+    take_waitable,
+)
 from aionode.rclpy.impl._destroyable import Wakeup
-from aionode.rclpy.impl._errors import InvalidHandle, TimerCancelledError
+from aionode.rclpy.impl._errors import InvalidHandle
 from aionode.rclpy.impl._wait_set import WaitSet
-from aionode.rclpy.subscription import Subscription
 from aionode.rclpy.task import Future, Task
-from aionode.rclpy.timer import TimerInfo
 from aionode.rclpy.utilities import get_default_context
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterable
+    from collections.abc import Generator, Iterable
     from types import TracebackType
 
+    from aionode.rclpy._protocols import NodeLike
     from aionode.rclpy.callback_groups import Entity
     from aionode.rclpy.context import Context
-    from aionode.rclpy.node import Node
 
 __all__ = [
     "ConditionReachedException",
@@ -44,13 +51,6 @@ __all__ = [
 ]
 
 steady_ns = MachineTime().steady_ns
-
-
-async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
-    """Call `callback`, and await it if it is a coroutine function."""
-    if inspect.iscoroutinefunction(callback):
-        return await callback(*args)
-    return callback(*args)
 
 
 class TimeoutException(Exception):  # noqa: N818  # rclpy's name
@@ -90,7 +90,9 @@ def never() -> bool:
     return False
 
 
-Work = tuple[Task[Any], "Entity | None", "Node | None"]
+Take = Callable[["Executor", Any], "Callable[[], Any] | None"]
+Ready = tuple["Entity", "NodeLike", Take]
+Work = tuple[Task[Any], "Entity | None", "NodeLike | None"]
 
 
 class Executor:
@@ -102,7 +104,7 @@ class Executor:
 
     def __init__(self, *, context: Context | None = None) -> None:
         self._context = get_default_context() if context is None else context
-        self._nodes: dict[Node, None] = {}
+        self._nodes: dict[NodeLike, None] = {}
         self._nodes_lock = threading.RLock()
         self._tasks: list[Work] = []
         self._tasks_lock = threading.Lock()
@@ -136,7 +138,7 @@ class Executor:
 
     # Nodes
 
-    def add_node(self, node: Node) -> bool:
+    def add_node(self, node: NodeLike) -> bool:
         """Call the callbacks of `node` from now on; its former executor no longer does.
 
         Returns:
@@ -151,7 +153,7 @@ class Executor:
         self.wake()
         return True
 
-    def remove_node(self, node: Node) -> None:
+    def remove_node(self, node: NodeLike) -> None:
         """Call the callbacks of `node` no longer."""
         with self._nodes_lock:
             if node in self._nodes:
@@ -159,7 +161,7 @@ class Executor:
                 node.handle.signal.remove(self._wakeup)
         self.wake()
 
-    def get_nodes(self) -> list[Node]:
+    def get_nodes(self) -> list[NodeLike]:
         """Return the nodes."""
         with self._nodes_lock:
             return list(self._nodes)
@@ -257,7 +259,7 @@ class Executor:
     def wait_for_ready_callbacks(
         self,
         timeout_sec: float | TimeoutObject | None = None,
-        nodes: list[Node] | None = None,
+        nodes: list[NodeLike] | None = None,
         condition: Callable[[], bool] = never,
     ) -> Work:
         """Wait for a callback that is ready, and return a task that calls it.
@@ -292,7 +294,7 @@ class Executor:
     def _wait_for_ready_callbacks(
         self,
         timeout_sec: float | TimeoutObject | None = None,
-        nodes: list[Node] | None = None,
+        nodes: list[NodeLike] | None = None,
         condition: Callable[[], bool] = never,
     ) -> Generator[Work, None, None]:
         """Yield the callbacks of one round, after waiting until there is one."""
@@ -333,7 +335,7 @@ class Executor:
         if condition():
             raise ConditionReachedException
 
-    def _unfinished(self, nodes: list[Node]) -> Iterable[Work]:
+    def _unfinished(self, nodes: list[NodeLike]) -> Iterable[Work]:
         """Yield the tasks that can go on, and forget those that are done."""
         with self._tasks_lock:
             if not self._tasks:
@@ -353,9 +355,9 @@ class Executor:
             ):
                 yield work
 
-    def _ready(self, nodes: list[Node]) -> list[tuple[Entity, Node, Callable[[Any], Any]]]:
+    def _ready(self, nodes: list[NodeLike]) -> list[Ready]:
         """Return what is ready now, in the order of a round."""
-        found: list[tuple[Entity, Node, Callable[[Any], Any]]] = []
+        found: list[Ready] = []
         can_execute = self.can_execute
         for node in nodes:
             waitables = [each for each in node._waitables if can_execute(each)]
@@ -363,26 +365,24 @@ class Executor:
                 found += self._ready_waitables(waitables, node)
         for node in nodes:
             for entities, take in (
-                (node._timers, self._take_timer),
-                (node._subscriptions, self._take_subscription),
-                (node._guards, self._take_guard_condition),
-                (node._clients, self._take_client),
-                (node._services, self._take_service),
+                (node._timers, take_timer),
+                (node._subscriptions, take_subscription),
+                (node._guards, take_guard_condition),
+                (node._clients, take_client),
+                (node._services, take_service),
             ):
                 for entity in entities:
                     if entity.handle.ready() and can_execute(entity):
                         found.append((entity, node, take))
         return found
 
-    def _ready_waitables(
-        self, waitables: list[Any], node: Node
-    ) -> list[tuple[Entity, Node, Callable[[Any], Any]]]:
-        found: list[tuple[Entity, Node, Callable[[Any], Any]]] = []
+    def _ready_waitables(self, waitables: list[Any], node: NodeLike) -> list[Ready]:
+        found: list[Ready] = []
         for waitable in waitables:
             wait_set = self._wait_set([waitable])
             wait_set.look()
             if waitable.is_ready(wait_set):
-                found.append((waitable, node, self._take_waitable))
+                found.append((waitable, node, take_waitable))
         return found
 
     def _wait_set(self, waitables: list[Any]) -> WaitSet:
@@ -395,7 +395,7 @@ class Executor:
                 continue
         return wait_set
 
-    def _wait(self, nodes: list[Node], left_ns: int | None) -> None:
+    def _wait(self, nodes: list[NodeLike], left_ns: int | None) -> None:
         """Wait until something may be ready, or the time has passed."""
         waits = [] if left_ns is None else [left_ns]
         for node in nodes:
@@ -427,9 +427,7 @@ class Executor:
 
     # Calling callbacks
 
-    def _make_handler(
-        self, entity: Entity, node: Node, take: Callable[[Any], Callable[[], Any] | None]
-    ) -> Task[Any]:
+    def _make_handler(self, entity: Entity, node: NodeLike, take: Take) -> Task[Any]:
         """Return a task that takes what is ready and calls the entity's callback with it."""
         entity._executor_event = True
 
@@ -440,7 +438,7 @@ class Executor:
                 self.wake()
                 return
             try:
-                call = take(entity)
+                call = take(self, entity)
                 entity._executor_event = False
                 self.wake()
                 if call is not None:
@@ -458,86 +456,6 @@ class Executor:
             self._tasks.append((task, entity, node))
         return task
 
-    def _take_timer(self, timer: Any) -> Callable[[], Any] | None:
-        try:
-            with timer.handle:
-                called = timer.handle.call_timer_with_info()
-        except (InvalidHandle, TimerCancelledError):
-            return None
-        callback = timer.callback
-        if callback is None:
-            return None
-        name = timer.info_argument(callback)
-        if name is None:
-            return partial(run, callback)
-        info = TimerInfo(**called, clock_type=timer.clock.clock_type)
-        return partial(run, partial(callback, **{name: info}))
-
-    def _take_subscription(self, subscription: Any) -> Callable[[], Any] | None:
-        try:
-            with subscription.handle:
-                taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
-        except InvalidHandle:
-            return None
-        if taken is None:
-            return None
-        if subscription._callback_type is Subscription.CallbackType.MessageOnly:
-            return partial(run, subscription.callback, taken[0])
-        return partial(run, subscription.callback, *taken)
-
-    def _take_guard_condition(self, guard: Any) -> Callable[[], Any] | None:
-        guard.handle.take()
-        return None if guard.callback is None else partial(run, guard.callback)
-
-    def _take_client(self, client: Any) -> Callable[[], Any] | None:
-        try:
-            with client.handle:
-                header, response = client.handle.take_response(client.srv_type.Response)
-        except InvalidHandle:
-            return None
-        if header is None:
-            return None
-        try:
-            future = client.get_pending_request(header.request_id.sequence_number)
-        except KeyError:  # it was given up
-            return None
-
-        def complete() -> None:
-            future._set_executor(self)
-            future.set_result(response)
-
-        return complete
-
-    def _take_service(self, service: Any) -> Callable[[], Any] | None:
-        try:
-            with service.handle:
-                request, header = service.handle.service_take_request(service.srv_type.Request)
-        except InvalidHandle:
-            return None
-        if header is None:
-            return None
-
-        async def answer() -> None:
-            try:
-                response = await await_or_execute(
-                    service.callback, request, service.srv_type.Response()
-                )
-                service.send_response(response, header)
-            finally:
-                service.handle.give_up(header.request_id)
-
-        return answer
-
-    def _take_waitable(self, waitable: Any) -> Callable[[], Any] | None:
-        data = waitable.take_data()
-
-        async def execute() -> None:
-            for future in waitable._futures:
-                future._set_executor(self)
-            await waitable.execute(data)
-
-        return execute
-
     def __enter__(self) -> Self:
         return self
 
@@ -548,14 +466,6 @@ class Executor:
         traceback: TracebackType | None,
     ) -> None:
         self.shutdown()
-
-
-def run(callback: Callable[..., Any], *args: Any) -> Any:
-    """Call `callback`; return a coroutine only if it is a coroutine function, as in rclpy."""
-    result = callback(*args)
-    if inspect.iscoroutine(result) and not inspect.iscoroutinefunction(callback):
-        return None
-    return result
 
 
 class SingleThreadedExecutor(Executor):

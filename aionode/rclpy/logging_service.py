@@ -8,7 +8,7 @@ from aionode.rclpy.impl import _messages as msg
 from aionode.rclpy.logging import get_logger_level, set_logger_level
 
 if TYPE_CHECKING:
-    from aionode.rclpy.node import Node
+    from aionode.rclpy._protocols import NodeLike
 
 __all__ = ["LoggingService"]
 
@@ -16,7 +16,7 @@ __all__ = ["LoggingService"]
 class LoggingService:
     """The two services of one node."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: NodeLike) -> None:
         name = node.get_name()
         node.create_service(
             msg.GetLoggerLevels, f"{name}/get_logger_levels", self._get_logger_levels

@@ -5,6 +5,7 @@ from __future__ import annotations
 import weakref
 from typing import TYPE_CHECKING, Any, Self
 
+from aionode import qos as core
 from aionode.errors import NodeNameNonExistentError
 from aionode.rclpy._node_graph import NodeGraph
 from aionode.rclpy._node_parameters import NodeParameters
@@ -35,6 +36,7 @@ from aionode.rclpy.parameter_service import ParameterService
 from aionode.rclpy.publisher import Publisher
 from aionode.rclpy.qos import (
     QoSProfile,
+    as_own,
     qos_profile_parameter_events,
     qos_profile_rosout_default,
     qos_profile_services_default,
@@ -561,8 +563,8 @@ def as_profile(qos_or_depth: QoSProfile | int) -> QoSProfile:
         ValueError: the depth is negative.
         TypeError: it is neither.
     """
-    if isinstance(qos_or_depth, QoSProfile):
-        return qos_or_depth
+    if isinstance(qos_or_depth, core.QoSProfile):
+        return as_own(qos_or_depth)
     if not isinstance(qos_or_depth, int):
         raise TypeError(f"Expected QoSProfile or int, but received {type(qos_or_depth)!r}")
     if qos_or_depth < 0:

@@ -183,7 +183,7 @@ class ParameterEventHandler:
         """Remove a callback; a RuntimeError if it was not added."""
         self._callbacks.remove_parameter_event_callback(handle)
 
-    def _resolve_path(self, node_path: str) -> str:
+    def _resolve_path(self, node_path: str | None = None) -> str:
         if not node_path:
             return self.node.get_fully_qualified_name()
         if node_path.startswith("/"):

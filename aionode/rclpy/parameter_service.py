@@ -14,7 +14,7 @@ from aionode.rclpy.parameter import Parameter
 from aionode.rclpy.qos import qos_profile_parameters
 
 if TYPE_CHECKING:
-    from aionode.rclpy.node import Node
+    from aionode.rclpy._protocols import NodeLike
 
 __all__ = ["ParameterService"]
 
@@ -26,7 +26,7 @@ class ParameterService:
     in these services to say so.
     """
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: NodeLike) -> None:
         self._node_weak_ref = weakref.ref(node)
         name = node.get_name()
         for service, srv_type, callback in (
@@ -87,7 +87,7 @@ class ParameterService:
         except (ParameterNotDeclaredException, ValueError) as error:
             return msg.SetParametersResult(successful=False, reason=str(error))
 
-    def _get_node(self) -> Node:
+    def _get_node(self) -> NodeLike:
         node = self._node_weak_ref()
         if node is None:
             raise ReferenceError("Expected valid node weak reference")

@@ -4,24 +4,26 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from aionode.clock import Duration
 from aionode.errors import InvalidQosOverridesError
 from aionode.parameter import QoSOverridingOptions, declare_qos_overrides
 from aionode.rclpy.impl import _messages as msg
 from aionode.rclpy.publisher import Publisher
+from aionode.rclpy.qos import QoSPolicyKind, as_own
 from aionode.rclpy.subscription import Subscription
 
 if TYPE_CHECKING:
-    from aionode.rclpy.node import Node
+    from aionode.rclpy._protocols import NodeLike
     from aionode.rclpy.qos import QoSProfile
 
-__all__ = ["InvalidQosOverridesError", "QoSOverridingOptions", "QosCallbackResult"]
+__all__ = ["InvalidQosOverridesError", "QoSOverridingOptions", "QoSPolicyKind", "QosCallbackResult"]
 
 QosCallbackResult = msg.SetParametersResult
 
 
 def _declare_qos_parameters(
     entity_type: type[Any],
-    node: Node,
+    node: NodeLike,
     topic_name: str,
     qos: QoSProfile,
     options: QoSOverridingOptions | None,
@@ -38,4 +40,13 @@ def _declare_qos_parameters(
         return qos
     entity: Any = "publisher" if issubclass(entity_type, Publisher) else "subscription"
     declarer: Any = node
-    return declare_qos_overrides(declarer, topic_name, entity, qos, options)
+    return as_own(declare_qos_overrides(declarer, topic_name, entity, qos, options))
+
+
+def _get_qos_policy_parameter(qos: QoSProfile, policy: QoSPolicyKind) -> str | int | bool:
+    """Return a policy as the value of its parameter: a word, a number, or nanoseconds."""
+    value = getattr(qos, policy.name.lower())
+    if isinstance(value, Duration):
+        return value.nanoseconds
+    short_key: str | int | bool = getattr(value, "short_key", value)
+    return short_key

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
 
-    from aionode.rclpy.executors import Executor
+    from aionode.rclpy._protocols import ExecutorLike
 
 __all__ = ["Future", "FutureState", "Task"]
 
@@ -35,7 +35,7 @@ class Future(Generic[T]):
     of it.
     """
 
-    def __init__(self, *, executor: Executor | None = None) -> None:
+    def __init__(self, *, executor: ExecutorLike | None = None) -> None:
         self._state = FutureState.PENDING
         self._result: T | None = None
         self._exception: BaseException | None = None
@@ -43,7 +43,7 @@ class Future(Generic[T]):
         self._callbacks: list[Callable[[Future[T]], object]] = []
         self._wakers: list[Callable[[], None]] = []
         self._lock = threading.Lock()
-        self._executor: weakref.ref[Executor] | None = None
+        self._executor: weakref.ref[ExecutorLike] | None = None
         self._set_executor(executor)
 
     def __del__(self) -> None:
@@ -124,10 +124,10 @@ class Future(Generic[T]):
             except Exception as error:  # noqa: BLE001  # others have to be called, too
                 warnings.warn(f"Unhandled exception in done callback: {error}", stacklevel=2)
 
-    def _get_executor(self) -> Executor | None:
+    def _get_executor(self) -> ExecutorLike | None:
         return None if self._executor is None else self._executor()
 
-    def _set_executor(self, executor: Executor | None) -> None:
+    def _set_executor(self, executor: ExecutorLike | None) -> None:
         """Set the executor whose tasks the done callbacks will be."""
         self._executor = None if executor is None else weakref.ref(executor)
 
@@ -176,7 +176,7 @@ class Task(Future[T]):
         handler: Callable[..., Any],
         args: tuple[Any, ...] | None = None,
         kwargs: dict[str, Any] | None = None,
-        executor: Executor | None = None,
+        executor: ExecutorLike | None = None,
     ) -> None:
         super().__init__(executor=executor)
         self._args = args or ()

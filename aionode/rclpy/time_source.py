@@ -5,14 +5,15 @@ from __future__ import annotations
 import weakref
 from typing import TYPE_CHECKING, Any
 
-from aionode.clock import ClockType, Time
+from aionode.clock import ClockType
 from aionode.rclpy.clock import ROSClock
 from aionode.rclpy.impl import _messages as msg
 from aionode.rclpy.parameter import Parameter
 from aionode.rclpy.qos import QoSProfile, ReliabilityPolicy
+from aionode.rclpy.time import Time
 
 if TYPE_CHECKING:
-    from aionode.rclpy.node import Node
+    from aionode.rclpy._protocols import NodeLike
     from aionode.rclpy.subscription import Subscription
 
 __all__ = ["CLOCK_TOPIC", "USE_SIM_TIME_NAME", "TimeSource"]
@@ -24,9 +25,9 @@ USE_SIM_TIME_NAME = "use_sim_time"
 class TimeSource:
     """Sets clocks from ``/clock`` for a node."""
 
-    def __init__(self, *, node: Node | None = None) -> None:
+    def __init__(self, *, node: NodeLike | None = None) -> None:
         self._clock_sub: Subscription[Any] | None = None
-        self._node_weak_ref: weakref.ref[Node] | None = None
+        self._node_weak_ref: weakref.ref[NodeLike] | None = None
         self._associated_clocks: set[ROSClock] = set()
         self._last_time_set = Time(clock_type=ClockType.ROS_TIME)
         self._ros_time_is_active = False
@@ -66,7 +67,7 @@ class TimeSource:
             node.destroy_subscription(self._clock_sub)
             self._clock_sub = None
 
-    def attach_node(self, node: Node) -> None:
+    def attach_node(self, node: NodeLike) -> None:
         """Follow the parameter `use_sim_time` of a node, in place of the former one.
 
         Raises:
@@ -136,5 +137,5 @@ class TimeSource:
             break
         return msg.SetParametersResult(successful=True)
 
-    def _get_node(self) -> Node | None:
+    def _get_node(self) -> NodeLike | None:
         return None if self._node_weak_ref is None else self._node_weak_ref()

@@ -6,9 +6,10 @@ import inspect
 import threading
 from typing import TYPE_CHECKING, Any, Self
 
-from aionode.clock import ClockType, Time
+from aionode.clock import ClockType
 from aionode.rclpy.exceptions import InvalidHandle, ROSInterruptException
 from aionode.rclpy.impl._timers import TimerHandle
+from aionode.rclpy.time import Time
 from aionode.rclpy.utilities import get_default_context
 
 if TYPE_CHECKING:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
+from aionode import qos as core
 from aionode.rclpy.qos import QoSHistoryPolicy, QoSPresetProfiles, QoSProfile
 from aionode.rclpy.type_hash import TypeHash
 
@@ -78,7 +79,7 @@ class TopicEndpointInfo:
         lambda value: TopicEndpointTypeEnum(value) if isinstance(value, int) else value,
     )
     endpoint_gid = Checked(list, list)
-    qos_profile = Checked(QoSProfile, from_dict(QoSProfile))
+    qos_profile = Checked(core.QoSProfile, from_dict(QoSProfile))
 
     def __init__(
         self,

@@ -10,7 +10,7 @@ from aionode.rclpy.impl._type_descriptions import describe
 from aionode.rclpy.parameter import Parameter
 
 if TYPE_CHECKING:
-    from aionode.rclpy.node import Node
+    from aionode.rclpy._protocols import NodeLike
     from aionode.rclpy.service import Service
 
 __all__ = ["START_TYPE_DESCRIPTION_SERVICE_PARAM", "TypeDescriptionService"]
@@ -26,7 +26,7 @@ class TypeDescriptionService:
         enabled: Whether it is there.
     """
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: NodeLike) -> None:
         self._node_weak_ref = weakref.ref(node)
         self._service: Service[Any, Any] | None = None
         self.service_name = f"{node.get_name()}/get_type_description"

@@ -8,8 +8,14 @@ from typing import TYPE_CHECKING
 
 from aionode import Context
 from aionode.arguments import Arguments, parse_arguments
+from aionode.errors import InvalidROSArgsError
 from aionode.rclpy.impl._destroyable import Destroyable
-from aionode.rclpy.impl._errors import InvalidHandle, RCLError, UnknownROSArgsError
+from aionode.rclpy.impl._errors import (
+    InvalidHandle,
+    RCLError,
+    RCLInvalidROSArgsError,
+    UnknownROSArgsError,
+)
 from aionode.rclpy.impl._io import IoThread
 
 if TYPE_CHECKING:
@@ -26,12 +32,15 @@ def parsed(args: Sequence[str]) -> Arguments:
 
     Raises:
         UnknownROSArgsError: one is unknown.
-        InvalidROSArgsError: one is malformed.
+        RCLInvalidROSArgsError: one is malformed.
         UnicodeEncodeError: one is no text.
     """
     for arg in args:
         arg.encode()
-    arguments = parse_arguments(list(args))
+    try:
+        arguments = parse_arguments(list(args))
+    except InvalidROSArgsError as error:
+        raise RCLInvalidROSArgsError(f"Failed to parse ROS arguments: {error}") from error
     if arguments.unparsed_ros_args:
         raise UnknownROSArgsError(
             f"Found unknown ROS arguments: {list(arguments.unparsed_ros_args)}"
@@ -52,7 +61,7 @@ class ContextHandle(Destroyable):
 
     Raises:
         UnknownROSArgsError: an argument between ``--ros-args`` and ``--`` is unknown.
-        InvalidROSArgsError: an argument is malformed.
+        RCLInvalidROSArgsError: an argument is malformed.
         TransportError: a transport cannot connect.
     """
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 __all__ = [
     "InvalidHandle",
     "RCLError",
+    "RCLInvalidROSArgsError",
     "TimerCancelledError",
     "UnknownROSArgsError",
     "UnsupportedEventTypeError",
@@ -29,3 +30,7 @@ class TimerCancelledError(RCLError):
 
 class UnknownROSArgsError(RuntimeError):
     """An argument between ``--ros-args`` and ``--`` is unknown."""
+
+
+class RCLInvalidROSArgsError(RCLError):
+    """An argument between ``--ros-args`` and ``--`` is malformed."""

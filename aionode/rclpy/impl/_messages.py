@@ -7,6 +7,7 @@ from aionode.rclpy._rosidl import message_class, service_class
 __all__ = [
     "Clock",
     "DescribeParameters",
+    "Duration",
     "GetLoggerLevels",
     "GetParameterTypes",
     "GetParameters",
@@ -23,8 +24,11 @@ __all__ = [
     "SetParameters",
     "SetParametersAtomically",
     "SetParametersResult",
+    "Time",
 ]
 
+Duration = message_class("builtin_interfaces/msg/Duration")
+Time = message_class("builtin_interfaces/msg/Time")
 Clock = message_class("rosgraph_msgs/msg/Clock")
 ListParametersResult = message_class("rcl_interfaces/msg/ListParametersResult")
 LoggerLevel = message_class("rcl_interfaces/msg/LoggerLevel")

@@ -9,13 +9,13 @@ from typing import Any
 
 from aionode.arguments import remove_ros_args
 from aionode.clock import ClockChange, ClockType
-from aionode.errors import InvalidROSArgsError as RCLInvalidROSArgsError
 from aionode.errors import NodeNameNonExistentError
 from aionode.rclpy.impl._context import ContextHandle as Context
 from aionode.rclpy.impl._destroyable import Destroyable
 from aionode.rclpy.impl._errors import (
     InvalidHandle,
     RCLError,
+    RCLInvalidROSArgsError,
     TimerCancelledError,
     UnknownROSArgsError,
     UnsupportedEventTypeError,

@@ -16,6 +16,7 @@ __all__ = [
     "MessageSupport",
     "ServiceSupport",
     "aionode_class",
+    "expect_message",
     "message_support",
     "ros_name",
     "service_support",
@@ -87,3 +88,13 @@ def service_support(cls: Any) -> ServiceSupport:
         support(cls.Request, wire_type.Request),
         support(cls.Response, wire_type.Response),
     )
+
+
+def expect_message(message: Any, name: str) -> None:
+    """Raise a TypeError unless an object is a message of a type, of either family."""
+    try:
+        given = ros_name(type(message))
+    except (TypeError, AttributeError):
+        given = type(message).__name__
+    if given != name:
+        raise TypeError(f"Must pass a {name} object, not {given}")
