@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.errors import ServiceError
 from aionode.message import snapshotter
-from aionode.qos import DurabilityPolicy, HistoryPolicy, ReliabilityPolicy
+from aionode.qos import DurabilityPolicy, depth_of, keeps_all
 from aionode.transport.base import Registration, Request, Requester, SampleInfo, Transport, Writer
 
 if TYPE_CHECKING:
@@ -21,10 +21,6 @@ if TYPE_CHECKING:
     from aionode.transport.base import Call, Reader, ReplyTo, Serve
 
 __all__ = ["LocalTransport"]
-
-KEPT_FOR_LATE_READERS = 10_000
-"""How many messages a transient local publisher keeps that keeps all."""
-
 
 class LocalTransport(Transport):
     """The transport of a context to itself."""
@@ -129,10 +125,7 @@ class LocalReader(Registration):
         self.msg_type = msg_type
         self.reader = reader
         self._topic = topic
-        qos = endpoint.qos
-        self.bounded = (
-            qos.history is HistoryPolicy.KEEP_ALL and qos.reliability is ReliabilityPolicy.RELIABLE
-        )
+        self.bounded = keeps_all(endpoint.qos)
 
     def delivery_from(self, msg_type: type[Any]) -> Callable[[Any, SampleInfo], None]:
         """Return what takes messages of `msg_type` to the reader, in the form that it wants."""
@@ -166,8 +159,7 @@ class LocalWriter(Writer):
         self._history: deque[tuple[Any, SampleInfo]] | None = None
         qos = endpoint.qos
         if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL:
-            keeps_all = qos.history is HistoryPolicy.KEEP_ALL
-            self._history = deque(maxlen=KEPT_FOR_LATE_READERS if keeps_all else qos.depth or None)
+            self._history = deque(maxlen=depth_of(qos))
         self._update()
 
     def meet(self, reader: LocalReader) -> None:
@@ -177,10 +169,7 @@ class LocalWriter(Writer):
         deliver = reader.delivery_from(self._msg_type)
         wanted = reader.endpoint.qos
         if self._history and wanted.durability is DurabilityPolicy.TRANSIENT_LOCAL:
-            missed = list(self._history)
-            if wanted.history is not HistoryPolicy.KEEP_ALL and wanted.depth:
-                missed = missed[-wanted.depth :]
-            for msg, sample_info in missed:
+            for msg, sample_info in list(self._history)[-depth_of(wanted) :]:
                 deliver(msg, sample_info)
         self._matched[reader] = deliver
         self._update()

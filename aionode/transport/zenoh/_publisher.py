@@ -14,7 +14,7 @@ from zenoh import ext
 from aionode.clock import perf_ns
 from aionode.errors import TransportError
 from aionode.graph import EndpointKind
-from aionode.qos import HistoryPolicy, depth_of
+from aionode.qos import depth_of, keeps_all
 from aionode.transport._reliability import WriterHistory
 from aionode.transport._send_thread import SendQueue, SendThread
 from aionode.transport.base import Writer
@@ -90,7 +90,7 @@ class ZenohWriter(Declaration, Writer):
         # Messages for late readers that were published before the session is open.
         self._early: deque[tuple[bytes, bytes]] = deque(maxlen=self._depth)
         self.active = self._transient
-        self.bounded = qos.history is HistoryPolicy.KEEP_ALL and self._reliable
+        self.bounded = keeps_all(qos)
         # A transient local publisher has none: there Zenoh sends lost messages again.
         self._history: WriterHistory | None = None
         if self._reliable and not self._transient:

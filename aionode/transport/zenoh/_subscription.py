@@ -12,7 +12,7 @@ from zenoh import ext
 from aionode.clock import perf_ns
 from aionode.errors import DecodeError
 from aionode.graph import EndpointKind
-from aionode.qos import HistoryPolicy, depth_of
+from aionode.qos import depth_of, keeps_all
 from aionode.transport._reliability import NEVER, OVERHEAD_BYTES
 from aionode.transport._writer_proxy import WriterProxy
 from aionode.transport.base import SampleInfo
@@ -88,7 +88,7 @@ class ZenohReader(Declaration):
         self._decode: Callable[[bytes], Any] | None = None
         depth = depth_of(endpoint.qos)
         reliable = is_reliable(endpoint.qos)
-        self._keep_all = endpoint.qos.history is HistoryPolicy.KEEP_ALL and reliable
+        self._keep_all = keeps_all(endpoint.qos)
         # A few hundred images waiting for a busy loop would take all memory; what is small may
         # wait for its turn in the subscription's own queue, where it is counted if dropped.
         limit = depth if self._buffers else max(depth, BACKLOG)
