@@ -329,9 +329,8 @@ class Context:
     async def _close_transports(self) -> None:
         for transport in reversed(self._transports):
             await transport.close()
-        for node in self.graph.nodes():
-            if node.participant != self.participant:
-                self.graph.remove_participant(node.participant)
+        for participant in {node.participant for node in self.graph.nodes()} - {self.participant}:
+            self.graph.remove_participant(participant)
 
     def _refuse_if_shut_down(self) -> None:
         if self._shut_down:

@@ -122,13 +122,9 @@ class EndpointInfo:
         A difference in QoS matters within one context, and between contexts over DDS; rmw_zenoh
         delivers between contexts whatever the QoS is.
         """
-        if self.type_name != other.type_name:
-            return Mismatch("type", f"type: {self.type_name} here, {other.type_name} there")
-        if self.type_hash != other.type_hash:
-            hashes = f"{self.type_hash} here, {other.type_hash} there"
-            return Mismatch("definition", f"definition of {self.type_name}: {hashes}")
-        if self.kind not in TOPIC_KINDS:
-            return None  # services neither offer nor request QoS
+        different = self._compare_types(other)
+        if different is not None or self.kind not in TOPIC_KINDS:
+            return different  # services neither offer nor request QoS
         is_publisher = self.kind is EndpointKind.PUBLISHER
         publisher, subscription = (self, other) if is_publisher else (other, self)
         reason = qos.mismatch(publisher.qos, subscription.qos)
@@ -137,17 +133,22 @@ class EndpointInfo:
         last = qos.incompatibilities(publisher.qos, subscription.qos)[-1]
         return Mismatch("qos", reason, last.kind)
 
+    def _compare_types(self, other: EndpointInfo) -> Mismatch | None:
+        if self.type_name != other.type_name:
+            return Mismatch("type", f"type: {self.type_name} here, {other.type_name} there")
+        if self.type_hash != other.type_hash:
+            hashes = f"{self.type_hash} here, {other.type_hash} there"
+            return Mismatch("definition", f"definition of {self.type_name}: {hashes}")
+        return None
+
     def mismatch(self, other: EndpointInfo) -> str | None:
         """Return why this endpoint and its opposite `other` do not communicate; None if they do.
 
         Between contexts only the types count: rmw_zenoh delivers whatever the QoS is.
         """
-        found = self.compare(other)
-        if found is None or (
-            found.aspect == "qos" and self.node.participant != other.node.participant
-        ):
-            return None
-        return found.reason
+        in_one_context = self.node.participant == other.node.participant
+        found = self.compare(other) if in_one_context else self._compare_types(other)
+        return None if found is None else found.reason
 
     def matches(self, other: EndpointInfo) -> bool:
         """Whether this endpoint communicates with its opposite `other`."""

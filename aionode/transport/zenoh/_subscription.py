@@ -17,6 +17,7 @@ from aionode.transport._reliability import NEVER, OVERHEAD_BYTES
 from aionode.transport._writer_proxy import WriterProxy
 from aionode.transport.base import SampleInfo
 from aionode.transport.zenoh._delivery import has_buffers, is_reliable, is_transient
+from aionode.transport.zenoh._handlers import direct
 from aionode.transport.zenoh._session_state import Declaration
 from aionode.wire import _acknack as acknack
 from aionode.wire import cdr
@@ -112,7 +113,7 @@ class ZenohReader(Declaration):
 
     def declare_data(self, session: zenoh.Session) -> None:
         """Declare the subscriber; a transient local one gets the history."""
-        put = self._queue.put
+        put = direct(self._queue.put)
         if self._transient:
             reliable = is_reliable(self.endpoint.qos)
             subscriber: Any = ext.declare_advanced_subscriber(
