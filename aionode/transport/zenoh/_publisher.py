@@ -263,6 +263,8 @@ class ZenohWriter(Declaration, Writer):
                 reader = history.readers.get(gid)
                 if reader is None or reader.away_until_ns:
                     history.add(gid, participant)
+        if self.bounded and history.readers:
+            self.state.acknowledgements.probe(self)
         self._progress()
 
     def _matched(self, graph: Graph) -> tuple[dict[bytes, str], bool]:
@@ -394,12 +396,11 @@ class ZenohWriter(Declaration, Writer):
             if session is None or self._transient:
                 publisher.put(payload, attachment=extra)
             else:
-                waits = self._reliable and self.state.is_preparing_shared_memory()
                 session.put(
                     self._key,
                     payload,
                     attachment=extra,
-                    congestion_control=BLOCK if waits else DROP,
+                    congestion_control=DROP,
                     priority=BULK_PRIORITY,
                     allowed_destination=zenoh.Locality.REMOTE,
                 )
@@ -476,6 +477,10 @@ class ZenohWriter(Declaration, Writer):
                 return False
             return True
         return again
+
+    def probe(self) -> bool:
+        """Ask readers that have everything for an answer; return whether to call again."""
+        return self._history is not None and self._history.probe()
 
     def heartbeat(self, reader: ReaderProxy, first: int, last: int) -> None:
         """Send a reader a HEARTBEAT."""
