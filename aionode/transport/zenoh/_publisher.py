@@ -273,6 +273,8 @@ class ZenohWriter(Declaration, Writer):
                 reader = history.readers.get(gid)
                 if reader is None or reader.away_until_ns:
                     history.add(gid, participant)
+        if self.bounded and history.readers:
+            self.state.acknowledgements.probe(self)
         self._progress()
         # What is published while a reader is away is sent again. A subscriber without a token may
         # match too; beside readers that acknowledge, none is known.
@@ -407,12 +409,11 @@ class ZenohWriter(Declaration, Writer):
             if session is None or self._transient:
                 publisher.put(payload, attachment=extra)
             else:
-                waits = self._reliable and self.state.is_preparing_shared_memory()
                 session.put(
                     self._key,
                     payload,
                     attachment=extra,
-                    congestion_control=BLOCK if waits else DROP,
+                    congestion_control=DROP,
                     priority=BULK_PRIORITY,
                     allowed_destination=zenoh.Locality.REMOTE,
                 )
@@ -489,6 +490,10 @@ class ZenohWriter(Declaration, Writer):
                 return False
             return True
         return again
+
+    def probe(self) -> bool:
+        """Ask readers that have everything for an answer; return whether to call again."""
+        return self._history is not None and self._history.probe()
 
     def heartbeat(self, reader: ReaderProxy, first: int, last: int) -> None:
         """Send a reader a HEARTBEAT."""
