@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeVar
 
 from aionode import names, qos
+from aionode._distribution import distribution_mismatch
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -74,12 +75,13 @@ class Mismatch(NamedTuple):
     """Why two opposite endpoints of one name do not communicate.
 
     Attributes:
-        aspect: What differs: the name of the type, its definition, or the QoS.
+        aspect: What differs: the name of the type, its definition, the distribution of ROS 2, or
+            the QoS.
         reason: Both values, in words.
         policy: The last incompatible policy, if the QoS differs.
     """
 
-    aspect: Literal["type", "definition", "qos"]
+    aspect: Literal["type", "definition", "distribution", "qos"]
     reason: str
     policy: qos.QoSPolicyKind = qos.QoSPolicyKind.INVALID
 
@@ -96,7 +98,7 @@ class EndpointInfo:
         endpoint_id: Number of the endpoint, unique in its context.
         name: Full name of its topic or service.
         type_name: ROS name of its type, such as ``std_msgs/msg/String``.
-        type_hash: RIHS01 hash of the type, as text.
+        type_hash: RIHS01 hash of the type, as text; ``TypeHashNotSupported`` in ROS 2 Humble.
         qos: Its QoS.
         gid: 16 bytes that identify it.
     """
@@ -137,6 +139,9 @@ class EndpointInfo:
         if self.type_name != other.type_name:
             return Mismatch("type", f"type: {self.type_name} here, {other.type_name} there")
         if self.type_hash != other.type_hash:
+            reason = distribution_mismatch(self.type_hash, other.type_hash)
+            if reason is not None:
+                return Mismatch("distribution", reason)
             hashes = f"{self.type_hash} here, {other.type_hash} there"
             return Mismatch("definition", f"definition of {self.type_name}: {hashes}")
         return None

@@ -100,6 +100,14 @@ def mismatch(offering: EndpointInfo, requesting: EndpointInfo) -> Iterator[Findi
             "use one type on both sides, or different names",
         )
         return
+    if found.aspect == "distribution":
+        yield Finding(
+            "problem",
+            subject_of(offering),
+            f"{pair} do not communicate: one is of ROS 2 Humble, the other of a newer distribution",
+            "use one distribution",
+        )
+        return
     if found.aspect == "definition":
         yield Finding(
             "problem",
