@@ -12,6 +12,7 @@ from aionode._concurrency import checkpoint
 from aionode.endpoints._core.callback_runner import accepts, consume
 from aionode.endpoints._core.entity import EndStage, Entity
 from aionode.endpoints._core.future import Futures, asks
+from aionode.endpoints._core.loop_affinity import in_thread_of_node
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints.actions._cancel_request import CancelRequest
 from aionode.endpoints.actions._client_goal import ActionResult, ClientGoalHandle
@@ -99,6 +100,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         EntityDestroyedError: the node was destroyed (a RuntimeError).
     """
 
+    @in_thread_of_node
     def __init__(
         self,
         node: ActionNode,

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 from aionode.clock import perf_ns
 from aionode.endpoints._core.callback_runner import accepts, checked_concurrency, consume
 from aionode.endpoints._core.entity import Entity
+from aionode.endpoints._core.loop_affinity import in_thread_of_node
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints.actions._common import (
     AbortReason,
@@ -131,6 +132,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         EntityDestroyedError: the node was destroyed (a RuntimeError).
     """
 
+    @in_thread_of_node
     def __init__(
         self,
         node: ActionNode,
