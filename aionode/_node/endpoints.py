@@ -233,6 +233,7 @@ class NodeEndpoints(NodeParameters):
             graph_entry,
             srv_type,
             callback,
+            self.create_publisher,
             concurrent=concurrent,
             on_error=on_error,
             offload=offload,
@@ -273,7 +274,14 @@ class NodeEndpoints(NodeParameters):
             lambda transport: transport.create_requester(graph_entry.endpoint, srv_type)
         )
         return self._add_entity(
-            Client(graph_entry, srv_type, requesters, self.context.time_base), graph_entry
+            Client(
+                graph_entry,
+                srv_type,
+                requesters,
+                self.context.time_base,
+                self.create_publisher,
+            ),
+            graph_entry,
         )
 
     @in_loop_thread
