@@ -23,6 +23,7 @@ from aionode.message import Message, ServiceType, holds_arrays
 from aionode.parameter import declare_qos_overrides
 
 if TYPE_CHECKING:
+    from aionode.content_filter import ContentFilterOptions
     from aionode.endpoints._core.callback_runner import OnError
     from aionode.endpoints._core.entity import Entity
     from aionode.endpoints.service import ServiceCallback
@@ -115,6 +116,7 @@ class NodeEndpoints(NodeParameters):
         on_error: OnError = "raise",
         offload: bool = False,
         qos_overriding_options: QoSOverridingOptions | None = None,
+        content_filter_options: ContentFilterOptions | None = None,
     ) -> Subscription[bytes]: ...
 
     @overload
@@ -130,6 +132,7 @@ class NodeEndpoints(NodeParameters):
         on_error: OnError = "raise",
         offload: bool = False,
         qos_overriding_options: QoSOverridingOptions | None = None,
+        content_filter_options: ContentFilterOptions | None = None,
     ) -> Subscription[MsgT]: ...
 
     @in_loop_thread
@@ -145,6 +148,7 @@ class NodeEndpoints(NodeParameters):
         on_error: OnError = "raise",
         offload: bool = False,
         qos_overriding_options: QoSOverridingOptions | None = None,
+        content_filter_options: ContentFilterOptions | None = None,
     ) -> Subscription[Any]:
         """Return a subscription to `topic`.
 
@@ -162,10 +166,12 @@ class NodeEndpoints(NodeParameters):
                 CallbackContext).
             offload: Whether to run a sync callback in a thread.
             qos_overriding_options: Which policies parameters may override.
+            content_filter_options: Which messages to deliver; see `set_content_filter`.
 
         Raises:
             TypeError: an argument has the wrong type, or the callback takes other arguments.
             ValueError: `concurrent`, `on_error` or `qos_profile` is invalid.
+            ContentFilterError: the filter is malformed, or does not fit the type (a ValueError).
             InvalidTopicNameException: `topic` is invalid (a ValueError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
@@ -184,6 +190,11 @@ class NodeEndpoints(NodeParameters):
             on_error=on_error,
             offload=offload,
         )
+        if content_filter_options is not None:  # before messages can arrive
+            subscription.set_content_filter(
+                content_filter_options.filter_expression,
+                content_filter_options.expression_parameters,
+            )
         subscription._add_registrations(
             self._register(
                 lambda transport: transport.create_reader(

@@ -116,7 +116,8 @@ class Service(Entity, Generic[RequestT, ResponseT]):
     ) -> None:
         """Publish each request received and response sent from now on.
 
-        The topic is ``<service>/_service_event``, and ``aionode service echo`` prints it. It may be called at any time, with another state.
+        The topic is ``<service>/_service_event``, and ``aionode service echo`` prints it. It may be
+        called at any time, with another state.
 
         Args:
             clock: Where the time stamps come from, such as ``node.get_clock()``.

@@ -101,6 +101,9 @@ class ZenohWriter(Declaration, Writer):
         # Large messages, and small ones after them to keep the order.
         self._large = self._send_queue(state.bulk, keep_all=False)
         self._bulk_only = self._transient and not self.bounded and has_buffers(msg_type)
+        # Whether any reader wants a message; None if one wants all, or may be there unseen.
+        self._wants: Callable[[Any], bool] | None = None
+        self._filtered = 0
         # Messages for readers that do not acknowledge, once it was needed; from then on it is used
         # for all messages, to keep the order.
         self._patient: SendQueue | None = None
@@ -232,12 +235,13 @@ class ZenohWriter(Declaration, Writer):
         self._update()
 
     def _update(self) -> None:
-        """Update `active` and the history from the matching readers."""
+        """Update `active`, the filter and the history from the matching readers."""
         publisher, history, graph = self._publisher, self._history, self.state.graph
         if self._transient:
             if self._encode is None:
                 self._encode = cdr.encoder(self._msg_type)
             return
+        self._wants = None if graph is None else self._filter_of_readers(graph)
         self.active = isinstance(publisher, zenoh.Publisher) and bool(
             publisher.matching_status.matching  # type: ignore[attr-defined]  # no bool, as the stub says
         )
@@ -252,6 +256,22 @@ class ZenohWriter(Declaration, Writer):
             self._update_route()
         if self.active and self._encode is None:
             self._encode = cdr.encoder(self._msg_type)
+
+    def _filter_of_readers(self, graph: Graph) -> Callable[[Any], bool] | None:
+        """Return whether any reader wants a message; None if all messages have to be sent."""
+        filters = self.state.content_filters
+        if not filters or self.state.has_unannounced_peers:
+            return None
+        readers = graph.endpoints(EndpointKind.SUBSCRIPTION, name=self.endpoint.name)
+        return filters.wanted_by(
+            [
+                reader.gid
+                for reader in readers
+                if reader.node.participant != self.state.participant
+                and self.endpoint.matches(reader)
+            ],
+            self._msg_type,
+        )
 
     def _update_readers(self, history: WriterHistory, acknowledging: dict[bytes, str]) -> None:
         """Add new and returned readers to the history, and remove those that have vanished."""
@@ -286,7 +306,10 @@ class ZenohWriter(Declaration, Writer):
     # Messages
 
     def write(self, msg: Any, sample_info: SampleInfo) -> None:
-        """Send `msg`."""
+        """Send `msg`, unless no reader wants it: the history takes a jump of its numbers."""
+        if self._wants is not None and not self._wants(msg):
+            self._filtered += 1
+            return
         encode = self._encode
         if encode is None:
             encode = self._encode = cdr.encoder(self._msg_type)
@@ -523,6 +546,11 @@ class ZenohWriter(Declaration, Writer):
     def dropped(self) -> int:
         """How many messages are known to have been dropped on the way."""
         return self._dropped
+
+    @property
+    def filtered(self) -> int:
+        """How many messages were not sent, as no reader wants them."""
+        return self._filtered
 
     def route_of(self, reader: EndpointInfo) -> str | None:
         """Return ``zenoh`` for subscriptions of other contexts."""
