@@ -17,7 +17,14 @@ from aionode.transport.ipc._subscription import IpcReader, may_be_large
 
 if TYPE_CHECKING:
     from aionode.graph import EndpointInfo, Graph, NodeInfo
-    from aionode.transport.base import LinkStatus, Reader, Registration, Requester, Serve, Writer
+    from aionode.transport.base import (
+        LinkStatus,
+        Reader,
+        Registration,
+        Requester,
+        Serve,
+        Writer,
+    )
     from aionode.transport.ipc._registry import PeerDirectory
 
 __all__ = ["IpcTransport"]

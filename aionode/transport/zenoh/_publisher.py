@@ -103,6 +103,9 @@ class ZenohWriter(Declaration, Writer):
         # Large messages, and small ones after them to keep the order.
         self._large = self._send_queue(state.bulk, keep_all=False)
         self._bulk_only = self._transient and not self.bounded and has_buffers(msg_type)
+        # Whether any reader wants a message; None if one wants all, or may be there unseen.
+        self._wants: Callable[[Any], bool] | None = None
+        self._filtered = 0
         # Messages for readers that do not acknowledge, once it was needed; from then on it is used
         # for all messages, to keep the order.
         self._patient: SendQueue | None = None
@@ -237,15 +240,17 @@ class ZenohWriter(Declaration, Writer):
         self._update()
 
     def _update(self) -> None:
-        """Update `active` and the history from the matching readers."""
+        """Update `active`, the filter and the history from the matching readers."""
         history, graph = self._history, self.state.graph
         if self._transient:
             if self._encode is None:
                 self._encode = cdr.encoder(self._msg_type)
             return
         self.active = False
+        self._wants = None
         if graph is not None and self._publisher is not None:
             readers = self._matched(graph)
+            self._wants = self._filter_of(readers)
             # The token of a reader can arrive before Zenoh has told of a match, or has a route to
             # it; what is lost until then is sent again.
             self.active = self._is_matching or bool(readers)
@@ -261,6 +266,13 @@ class ZenohWriter(Declaration, Writer):
             for reader in graph.endpoints(EndpointKind.SUBSCRIPTION, name=self.endpoint.name)
             if reader.node.participant != self.state.participant and self.endpoint.matches(reader)
         ]
+
+    def _filter_of(self, readers: list[EndpointInfo]) -> Callable[[Any], bool] | None:
+        """Return whether any reader wants a message; None if all messages have to be sent."""
+        filters = self.state.content_filters
+        if not filters or self.state.has_unannounced_peers:
+            return None
+        return filters.wanted_by([reader.gid for reader in readers], self._msg_type)
 
     def _update_readers(self, history: WriterHistory, readers: list[EndpointInfo]) -> None:
         """Add new and returned readers to the history, and remove those that have vanished."""
@@ -301,7 +313,10 @@ class ZenohWriter(Declaration, Writer):
     # Messages
 
     def write(self, msg: Any, sample_info: SampleInfo) -> None:
-        """Send `msg`."""
+        """Send `msg`, unless no reader wants it: the history takes a jump of its numbers."""
+        if self._wants is not None and not self._wants(msg):
+            self._filtered += 1
+            return
         encode = self._encode
         if encode is None:
             encode = self._encode = cdr.encoder(self._msg_type)
@@ -541,6 +556,11 @@ class ZenohWriter(Declaration, Writer):
     def dropped(self) -> int:
         """How many messages are known to have been dropped on the way."""
         return self._dropped
+
+    @property
+    def filtered(self) -> int:
+        """How many messages were not sent, as no reader wants them."""
+        return self._filtered
 
     def route_of(self, reader: EndpointInfo) -> str | None:
         """Return ``zenoh`` for subscriptions of other contexts."""
