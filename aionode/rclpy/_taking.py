@@ -17,6 +17,8 @@ from aionode.rclpy.timer import TimerInfo
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from aionode.rclpy._protocols import ExecutorLike
+
 
 __all__ = [
     "await_or_execute",

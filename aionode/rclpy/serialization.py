@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from aionode.rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from aionode.rclpy.impl._typesupport import message_support
 from aionode.rclpy.type_support import check_for_type_support
 
 __all__ = ["deserialize_message", "serialize_message"]
@@ -16,8 +16,9 @@ def serialize_message(message: Any) -> bytes:
     Raises:
         AttributeError: it is no message.
     """
-    check_for_type_support(type(message))
-    return _rclpy.rclpy_serialize(message, type(message))
+    message_type: Any = type(message)
+    check_for_type_support(message_type)
+    return message_support(message_type).encode(message)
 
 
 def deserialize_message(serialized_message: bytes, message_type: Any) -> Any:
@@ -28,4 +29,4 @@ def deserialize_message(serialized_message: bytes, message_type: Any) -> Any:
         DecodeError: the bytes hold no such message (a ValueError).
     """
     check_for_type_support(message_type)
-    return _rclpy.rclpy_deserialize(serialized_message, message_type)
+    return message_support(message_type).decode(serialized_message)

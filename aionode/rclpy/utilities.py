@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from aionode import arguments
 from aionode.rclpy.constants import S_TO_NS
 from aionode.rclpy.context import Context
-from aionode.rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,6 +23,8 @@ __all__ = [
     "timeout_sec_to_nsec",
     "try_shutdown",
 ]
+
+RMW_IDENTIFIER = "rmw_zenoh_cpp"
 
 g_default_context: Context | None = None
 g_context_lock = threading.Lock()
@@ -75,7 +76,7 @@ def try_shutdown(*, context: Context | None = None) -> None:
 
 def get_rmw_implementation_identifier() -> str:
     """Return the middleware whose format is used on the wire: ``rmw_zenoh_cpp``."""
-    return _rclpy.rclpy_get_rmw_implementation_identifier()
+    return RMW_IDENTIFIER
 
 
 def get_available_rmw_implementations() -> set[str]:
