@@ -8,13 +8,13 @@ from aionode import names
 from aionode.clock import MachineTime
 from aionode.errors import NameValidationException
 from aionode.graph import EndpointKind
-from aionode.rclpy.impl._destroyable import Wakeup
+from aionode.rclpy._impl.destroyable import Wakeup
 from aionode.rclpy.qos import as_own
 from aionode.rclpy.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 from aionode.rclpy.type_hash import TypeHash
 
 if TYPE_CHECKING:
-    from aionode.rclpy.impl._node import NodeHandle
+    from aionode.rclpy._impl.node import NodeHandle
 
 __all__ = ["NodeGraph"]
 

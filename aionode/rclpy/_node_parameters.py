@@ -12,6 +12,8 @@ import warnings
 from typing import TYPE_CHECKING, Any
 
 from aionode.parameter import validate_parameter_name
+from aionode.rclpy._impl import messages as msg
+from aionode.rclpy._impl.typesupport import ros_name
 from aionode.rclpy.exceptions import (
     InvalidParameterTypeException,
     InvalidParameterValueException,
@@ -20,8 +22,6 @@ from aionode.rclpy.exceptions import (
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
-from aionode.rclpy.impl import _messages as msg
-from aionode.rclpy.impl._typesupport import ros_name
 from aionode.rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.rclpy.impl._node import NodeHandle
+    from aionode.rclpy._impl.node import NodeHandle
 
 __all__ = ["ExecutorLike", "NodeLike"]
 

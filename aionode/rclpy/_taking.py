@@ -10,7 +10,7 @@ import inspect
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from aionode.rclpy.impl._errors import InvalidHandle, TimerCancelledError
+from aionode.rclpy._impl.errors import InvalidHandle, TimerCancelledError
 from aionode.rclpy.subscription import Subscription
 from aionode.rclpy.timer import TimerInfo
 

@@ -6,16 +6,16 @@ import threading
 from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
 
 from aionode.clock import MachineTime
-from aionode.rclpy.impl._destroyable import Wakeup
+from aionode.rclpy._impl.destroyable import Wakeup
 from aionode.rclpy.task import Future
 
 if TYPE_CHECKING:
     from types import TracebackType
 
+    from aionode.rclpy._impl.services import ClientHandle
     from aionode.rclpy.callback_groups import CallbackGroup
     from aionode.rclpy.clock import Clock
     from aionode.rclpy.context import Context
-    from aionode.rclpy.impl._services import ClientHandle
     from aionode.rclpy.qos import QoSProfile
     from aionode.rclpy.service_introspection import ServiceIntrospectionState
 

@@ -12,10 +12,10 @@ from aionode.clock import (
     MachineTime,
     TimeJump,
 )
+from aionode.rclpy._impl.destroyable import Wakeup
+from aionode.rclpy._impl.timers import ClockHandle
 from aionode.rclpy.duration import Duration
 from aionode.rclpy.exceptions import NotInitializedException
-from aionode.rclpy.impl._destroyable import Wakeup
-from aionode.rclpy.impl._timers import ClockHandle
 from aionode.rclpy.time import Time
 from aionode.rclpy.utilities import get_default_context
 

@@ -10,7 +10,7 @@ from inspect import ismethod
 from typing import TYPE_CHECKING, Any, Self
 
 from aionode import logging as ros_logging
-from aionode.rclpy.impl._context import ContextHandle
+from aionode.rclpy._impl.context import ContextHandle
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from aionode import clock as core
-from aionode.rclpy.impl import _messages as msg
-from aionode.rclpy.impl._typesupport import expect_message
+from aionode.rclpy._impl import messages as msg
+from aionode.rclpy._impl.typesupport import expect_message
 
 __all__ = ["Duration", "Infinite"]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING, Any
 
-from aionode.rclpy.impl._errors import UnsupportedEventTypeError
-from aionode.rclpy.impl._events import (
+from aionode.rclpy._impl.errors import UnsupportedEventTypeError
+from aionode.rclpy._impl.events import (
     DeadlineMissed,
     EventHandle,
     IncompatibleQoS,
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from enum import IntEnum
     from types import TracebackType
 
+    from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle
+    from aionode.rclpy._impl.wait_set import WaitSet
     from aionode.rclpy.callback_groups import CallbackGroup
-    from aionode.rclpy.impl._topics import PublisherHandle, SubscriptionHandle
-    from aionode.rclpy.impl._wait_set import WaitSet
 
 __all__ = [
     "EventHandler",

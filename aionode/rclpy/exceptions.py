@@ -17,7 +17,7 @@ from aionode.errors import (
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
-from aionode.rclpy.impl._errors import InvalidHandle, TimerCancelledError
+from aionode.rclpy._impl.errors import InvalidHandle, TimerCancelledError
 
 __all__ = [
     "InvalidHandle",

@@ -15,6 +15,9 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any, Self
 
 from aionode.clock import MachineTime
+from aionode.rclpy._impl.destroyable import Wakeup
+from aionode.rclpy._impl.errors import InvalidHandle
+from aionode.rclpy._impl.wait_set import WaitSet
 from aionode.rclpy._taking import (
     await_or_execute,
     take_client,
@@ -24,9 +27,6 @@ from aionode.rclpy._taking import (
     take_timer,
     take_waitable,
 )
-from aionode.rclpy.impl._destroyable import Wakeup
-from aionode.rclpy.impl._errors import InvalidHandle
-from aionode.rclpy.impl._wait_set import WaitSet
 from aionode.rclpy.task import Future, Task
 from aionode.rclpy.utilities import get_default_context
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from aionode.rclpy.impl._timers import GuardConditionHandle
+from aionode.rclpy._impl.timers import GuardConditionHandle
 from aionode.rclpy.utilities import get_default_context
 
 if TYPE_CHECKING:

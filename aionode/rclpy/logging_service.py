@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from aionode.rclpy.impl import _messages as msg
+from aionode.rclpy._impl import messages as msg
 from aionode.rclpy.logging import get_logger_level, set_logger_level
 
 if TYPE_CHECKING:

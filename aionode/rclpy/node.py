@@ -7,6 +7,10 @@ from typing import TYPE_CHECKING, Any, Self
 
 from aionode import qos as core
 from aionode.errors import NodeNameNonExistentError
+from aionode.rclpy._impl import messages as msg
+from aionode.rclpy._impl.node import NodeHandle
+from aionode.rclpy._impl.services import ClientHandle, ServiceHandle
+from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle
 from aionode.rclpy._node_graph import NodeGraph
 from aionode.rclpy._node_parameters import NodeParameters
 from aionode.rclpy.callback_groups import (
@@ -25,10 +29,6 @@ from aionode.rclpy.event_handler import (
 from aionode.rclpy.exceptions import InvalidHandle, NotInitializedException
 from aionode.rclpy.executors import Executor
 from aionode.rclpy.guard_condition import GuardCondition
-from aionode.rclpy.impl import _messages as msg
-from aionode.rclpy.impl._node import NodeHandle
-from aionode.rclpy.impl._services import ClientHandle, ServiceHandle
-from aionode.rclpy.impl._topics import PublisherHandle, SubscriptionHandle
 from aionode.rclpy.logging import get_logger
 from aionode.rclpy.logging_service import LoggingService
 from aionode.rclpy.parameter import Parameter

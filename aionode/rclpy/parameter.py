@@ -9,7 +9,7 @@ from typing import Any, Generic, TypeVar
 
 import yaml
 
-from aionode.rclpy.impl import _messages as msg
+from aionode.rclpy._impl import messages as msg
 
 __all__ = [
     "PARAMETER_SEPARATOR_STRING",

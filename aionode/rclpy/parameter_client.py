@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import MachineTime
-from aionode.rclpy.impl import _messages as msg
-from aionode.rclpy.impl._destroyable import Wakeup
+from aionode.rclpy._impl import messages as msg
+from aionode.rclpy._impl.destroyable import Wakeup
 from aionode.rclpy.parameter import Parameter, parameter_dict_from_yaml_file
 from aionode.rclpy.qos import (
     QoSProfile,

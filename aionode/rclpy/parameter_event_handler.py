@@ -7,7 +7,7 @@ from itertools import chain
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
-from aionode.rclpy.impl import _messages as msg
+from aionode.rclpy._impl import messages as msg
 from aionode.rclpy.qos import QoSProfile, qos_profile_parameter_events
 
 if TYPE_CHECKING:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import weakref
 from typing import TYPE_CHECKING, Any
 
+from aionode.rclpy._impl import messages as msg
 from aionode.rclpy.exceptions import (
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
-from aionode.rclpy.impl import _messages as msg
 from aionode.rclpy.parameter import Parameter
 from aionode.rclpy.qos import qos_profile_parameters
 

@@ -9,9 +9,9 @@ from aionode.rclpy.duration import Duration
 if TYPE_CHECKING:
     from types import TracebackType
 
+    from aionode.rclpy._impl.topics import PublisherHandle
     from aionode.rclpy.callback_groups import CallbackGroup
     from aionode.rclpy.event_handler import EventHandler, PublisherEventCallbacks
-    from aionode.rclpy.impl._topics import PublisherHandle
     from aionode.rclpy.qos import QoSProfile
 
 __all__ = ["Publisher"]

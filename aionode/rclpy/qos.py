@@ -21,7 +21,7 @@ from aionode.qos import (
     ReliabilityPolicy,
     qos_policy_name_from_kind,
 )
-from aionode.rclpy.impl._qos import rmw_qos_profile_t
+from aionode.rclpy._impl.qos import rmw_qos_profile_t
 
 __all__ = [
     "DeadlineBestAvailable",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from aionode.clock import Duration
 from aionode.errors import InvalidQosOverridesError
 from aionode.parameter import QoSOverridingOptions, declare_qos_overrides
-from aionode.rclpy.impl import _messages as msg
+from aionode.rclpy._impl import messages as msg
 from aionode.rclpy.publisher import Publisher
 from aionode.rclpy.qos import QoSPolicyKind, as_own
 from aionode.rclpy.subscription import Subscription

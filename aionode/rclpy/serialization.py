@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from aionode.rclpy.impl._typesupport import message_support
+from aionode.rclpy._impl.typesupport import message_support
 from aionode.rclpy.type_support import check_for_type_support
 
 __all__ = ["deserialize_message", "serialize_message"]

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
 
-from aionode.rclpy.impl._services import rmw_request_id_t, rmw_service_info_t
+from aionode.rclpy._impl.services import rmw_request_id_t, rmw_service_info_t
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from types import TracebackType
 
+    from aionode.rclpy._impl.services import ServiceHandle
     from aionode.rclpy.callback_groups import CallbackGroup
     from aionode.rclpy.clock import Clock
-    from aionode.rclpy.impl._services import ServiceHandle
     from aionode.rclpy.qos import QoSProfile
     from aionode.rclpy.service_introspection import ServiceIntrospectionState
 

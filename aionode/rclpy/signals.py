@@ -5,9 +5,9 @@ from __future__ import annotations
 import contextlib
 from typing import TYPE_CHECKING
 
+from aionode.rclpy._impl import signals as _signals
+from aionode.rclpy._impl.signals import SignalHandlerOptions
 from aionode.rclpy.guard_condition import GuardCondition
-from aionode.rclpy.impl import _signals
-from aionode.rclpy.impl._signals import SignalHandlerOptions
 
 if TYPE_CHECKING:
     from aionode.rclpy.context import Context

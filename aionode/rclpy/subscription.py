@@ -7,15 +7,15 @@ from collections.abc import Callable
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Generic, Self, TypedDict, TypeVar
 
-from aionode.rclpy.impl._errors import RCLError
+from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy.subscription_content_filter_options import ContentFilterOptions
 
 if TYPE_CHECKING:
     from types import TracebackType
 
+    from aionode.rclpy._impl.topics import SubscriptionHandle
     from aionode.rclpy.callback_groups import CallbackGroup
     from aionode.rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
-    from aionode.rclpy.impl._topics import SubscriptionHandle
     from aionode.rclpy.qos import QoSProfile
 
 __all__ = ["MessageInfo", "RCLError", "Subscription"]

@@ -6,10 +6,10 @@ from typing import Any
 
 from aionode import clock as core
 from aionode.clock import ClockType
+from aionode.rclpy._impl import messages as msg
+from aionode.rclpy._impl.typesupport import expect_message
 from aionode.rclpy.constants import S_TO_NS
 from aionode.rclpy.duration import Duration, of_core
-from aionode.rclpy.impl import _messages as msg
-from aionode.rclpy.impl._typesupport import expect_message
 
 __all__ = ["S_TO_NS", "Duration", "Time"]
 

@@ -6,8 +6,8 @@ import weakref
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import ClockType
+from aionode.rclpy._impl import messages as msg
 from aionode.rclpy.clock import ROSClock
-from aionode.rclpy.impl import _messages as msg
 from aionode.rclpy.parameter import Parameter
 from aionode.rclpy.qos import QoSProfile, ReliabilityPolicy
 from aionode.rclpy.time import Time

@@ -7,8 +7,8 @@ import threading
 from typing import TYPE_CHECKING, Any, Self
 
 from aionode.clock import ClockType
+from aionode.rclpy._impl.timers import TimerHandle
 from aionode.rclpy.exceptions import InvalidHandle, ROSInterruptException
-from aionode.rclpy.impl._timers import TimerHandle
 from aionode.rclpy.time import Time
 from aionode.rclpy.utilities import get_default_context
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import weakref
 from typing import TYPE_CHECKING, Any
 
-from aionode.rclpy.impl import _messages as msg
-from aionode.rclpy.impl._type_descriptions import describe
+from aionode.rclpy._impl import messages as msg
+from aionode.rclpy._impl.type_descriptions import describe
 from aionode.rclpy.parameter import Parameter
 
 if TYPE_CHECKING:

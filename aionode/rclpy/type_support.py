@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, TypeVar
 
+from aionode.rclpy._impl.typesupport import is_own, ros_name
 from aionode.rclpy.exceptions import NoTypeSupportImportedException
-from aionode.rclpy.impl._typesupport import is_own, ros_name
 
 __all__ = [
     "Action",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Literal
 
-from aionode.rclpy.impl._wait_set import WaitSet
+from aionode.rclpy._impl.wait_set import WaitSet
 from aionode.rclpy.signals import SignalHandlerGuardCondition
 from aionode.rclpy.utilities import timeout_sec_to_nsec
 

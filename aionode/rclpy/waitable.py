@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
 if TYPE_CHECKING:
     from types import TracebackType
 
+    from aionode.rclpy._impl.wait_set import WaitSet
     from aionode.rclpy.callback_groups import CallbackGroup
-    from aionode.rclpy.impl._wait_set import WaitSet
     from aionode.rclpy.task import Future
 
 __all__ = ["NumberOfEntities", "Waitable"]

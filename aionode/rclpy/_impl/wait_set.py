@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import MachineTime
-from aionode.rclpy.impl._destroyable import Destroyable, Wakeup
+from aionode.rclpy._impl.destroyable import Destroyable, Wakeup
 
 if TYPE_CHECKING:
-    from aionode.rclpy.impl._context import ContextHandle
+    from aionode.rclpy._impl.context import ContextHandle
 
 __all__ = ["WaitSet"]
 

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from aionode.clock import MachineTime
 from aionode.errors import DecodeError
-from aionode.rclpy.impl._destroyable import Destroyable
-from aionode.rclpy.impl._introspection import Introspection, ServiceEvent
-from aionode.rclpy.impl._qos import profile_of
-from aionode.rclpy.impl._typesupport import service_support
+from aionode.rclpy._impl.destroyable import Destroyable
+from aionode.rclpy._impl.introspection import Introspection, ServiceEvent
+from aionode.rclpy._impl.qos import profile_of
+from aionode.rclpy._impl.typesupport import service_support
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from aionode.bare_node import BareClient, BareEndpoint
     from aionode.errors import ServiceError
     from aionode.graph import EndpointInfo
-    from aionode.rclpy.impl._destroyable import Signal
-    from aionode.rclpy.impl._introspection import ServiceIntrospectionState
-    from aionode.rclpy.impl._node import NodeHandle
-    from aionode.rclpy.impl._timers import ClockHandle
+    from aionode.rclpy._impl.destroyable import Signal
+    from aionode.rclpy._impl.introspection import ServiceIntrospectionState
+    from aionode.rclpy._impl.node import NodeHandle
+    from aionode.rclpy._impl.timers import ClockHandle
     from aionode.transport.base import Request
 
 __all__ = ["ClientHandle", "ServiceHandle", "rmw_request_id_t", "rmw_service_info_t"]

@@ -7,8 +7,8 @@ import weakref
 from enum import IntFlag
 from typing import TYPE_CHECKING, Any
 
-from aionode.rclpy.impl._context import living_contexts
-from aionode.rclpy.impl._timers import GuardConditionHandle
+from aionode.rclpy._impl.context import living_contexts
+from aionode.rclpy._impl.timers import GuardConditionHandle
 
 if TYPE_CHECKING:
     from types import FrameType

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.graph import EndpointKind
 from aionode.qos import LivelinessPolicy, QoSPolicyKind, is_unlimited
-from aionode.rclpy.impl._destroyable import Destroyable
-from aionode.rclpy.impl._topics import PublisherHandle, SubscriptionHandle
+from aionode.rclpy._impl.destroyable import Destroyable
+from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle
 
 if TYPE_CHECKING:
     import asyncio

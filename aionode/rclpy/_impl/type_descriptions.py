@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from aionode.message import type_name
+from aionode.rclpy._impl.typesupport import aionode_class, message_support
 from aionode.rclpy._rosidl import message_class
-from aionode.rclpy.impl._typesupport import aionode_class, message_support
 from aionode.wire import cdr
 from aionode.wire.typehash import description_message, referenced_types, type_hash
 

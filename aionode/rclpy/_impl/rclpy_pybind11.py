@@ -10,9 +10,9 @@ from typing import Any
 from aionode.arguments import remove_ros_args
 from aionode.clock import ClockChange, ClockType
 from aionode.errors import NodeNameNonExistentError
-from aionode.rclpy.impl._context import ContextHandle as Context
-from aionode.rclpy.impl._destroyable import Destroyable
-from aionode.rclpy.impl._errors import (
+from aionode.rclpy._impl.context import ContextHandle as Context
+from aionode.rclpy._impl.destroyable import Destroyable
+from aionode.rclpy._impl.errors import (
     InvalidHandle,
     RCLError,
     RCLInvalidROSArgsError,
@@ -20,20 +20,20 @@ from aionode.rclpy.impl._errors import (
     UnknownROSArgsError,
     UnsupportedEventTypeError,
 )
-from aionode.rclpy.impl._events import EventHandle
-from aionode.rclpy.impl._node import NodeHandle as Node
-from aionode.rclpy.impl._qos import rmw_qos_profile_t
-from aionode.rclpy.impl._services import ClientHandle as Client
-from aionode.rclpy.impl._services import ServiceHandle as Service
-from aionode.rclpy.impl._services import rmw_request_id_t, rmw_service_info_t
-from aionode.rclpy.impl._signals import SignalHandlerOptions
-from aionode.rclpy.impl._timers import ClockHandle as Clock
-from aionode.rclpy.impl._timers import GuardConditionHandle as GuardCondition
-from aionode.rclpy.impl._timers import TimerHandle as Timer
-from aionode.rclpy.impl._topics import PublisherHandle as Publisher
-from aionode.rclpy.impl._topics import SubscriptionHandle as Subscription
-from aionode.rclpy.impl._typesupport import message_support
-from aionode.rclpy.impl._wait_set import WaitSet
+from aionode.rclpy._impl.events import EventHandle
+from aionode.rclpy._impl.node import NodeHandle as Node
+from aionode.rclpy._impl.qos import rmw_qos_profile_t
+from aionode.rclpy._impl.services import ClientHandle as Client
+from aionode.rclpy._impl.services import ServiceHandle as Service
+from aionode.rclpy._impl.services import rmw_request_id_t, rmw_service_info_t
+from aionode.rclpy._impl.signals import SignalHandlerOptions
+from aionode.rclpy._impl.timers import ClockHandle as Clock
+from aionode.rclpy._impl.timers import GuardConditionHandle as GuardCondition
+from aionode.rclpy._impl.timers import TimerHandle as Timer
+from aionode.rclpy._impl.topics import PublisherHandle as Publisher
+from aionode.rclpy._impl.topics import SubscriptionHandle as Subscription
+from aionode.rclpy._impl.typesupport import message_support
+from aionode.rclpy._impl.wait_set import WaitSet
 
 __all__ = [
     "RCL_DEFAULT_DOMAIN_ID",

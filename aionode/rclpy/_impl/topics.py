@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 from aionode.clock import MachineTime
 from aionode.errors import DecodeError, MessageError, QueueFullError
 from aionode.qos import DEFAULT_DEPTH, KEEP_ALL_DEPTH, is_unlimited
-from aionode.rclpy.impl._destroyable import Destroyable
-from aionode.rclpy.impl._errors import RCLError
-from aionode.rclpy.impl._qos import profile_of
-from aionode.rclpy.impl._typesupport import aionode_class, message_support
+from aionode.rclpy._impl.destroyable import Destroyable
+from aionode.rclpy._impl.errors import RCLError
+from aionode.rclpy._impl.qos import profile_of
+from aionode.rclpy._impl.typesupport import aionode_class, message_support
 from aionode.wire import cdr
 
 if TYPE_CHECKING:
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
     from aionode.bare_node import BareEndpoint, BarePublisher
     from aionode.graph import EndpointInfo
-    from aionode.rclpy.impl._destroyable import Signal
-    from aionode.rclpy.impl._node import NodeHandle
+    from aionode.rclpy._impl.destroyable import Signal
+    from aionode.rclpy._impl.node import NodeHandle
     from aionode.transport.base import SampleInfo
 
 __all__ = ["PublisherHandle", "SubscriptionHandle"]

@@ -6,11 +6,11 @@ from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import Time
-from aionode.rclpy.impl._topics import PublisherHandle
+from aionode.rclpy._impl.topics import PublisherHandle
 
 if TYPE_CHECKING:
-    from aionode.rclpy.impl._node import NodeHandle
-    from aionode.rclpy.impl._timers import ClockHandle
+    from aionode.rclpy._impl.node import NodeHandle
+    from aionode.rclpy._impl.timers import ClockHandle
 
 __all__ = ["Introspection", "ServiceEvent", "ServiceIntrospectionState"]
 

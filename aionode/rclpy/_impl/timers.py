@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import Clock, ClockChange, ClockType, Duration, JumpThreshold, MachineTime
-from aionode.rclpy.impl._destroyable import Destroyable
-from aionode.rclpy.impl._errors import TimerCancelledError
+from aionode.rclpy._impl.destroyable import Destroyable
+from aionode.rclpy._impl.errors import TimerCancelledError
 
 if TYPE_CHECKING:
     from aionode.clock import JumpHandle, TimeJump
-    from aionode.rclpy.impl._context import ContextHandle
+    from aionode.rclpy._impl.context import ContextHandle
 
 __all__ = ["ClockHandle", "GuardConditionHandle", "TimerHandle"]
 

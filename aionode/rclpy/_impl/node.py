@@ -13,9 +13,9 @@ from aionode.errors import NodeNameNonExistentError
 from aionode.graph import TOPIC_KINDS, EndpointKind
 from aionode.interfaces.rcl_interfaces.msg import Log
 from aionode.logging import get_logger
-from aionode.rclpy.impl._context import parsed
-from aionode.rclpy.impl._destroyable import Destroyable
-from aionode.rclpy.impl._qos import profile_of
+from aionode.rclpy._impl.context import parsed
+from aionode.rclpy._impl.destroyable import Destroyable
+from aionode.rclpy._impl.qos import profile_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from aionode.bare_node import BarePublisher
     from aionode.graph import EndpointInfo, Graph
     from aionode.logging import LogEvent
-    from aionode.rclpy.impl._context import ContextHandle
+    from aionode.rclpy._impl.context import ContextHandle
 
 __all__ = ["NodeHandle"]
 

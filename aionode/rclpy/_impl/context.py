@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 from aionode import Context
 from aionode.arguments import Arguments, parse_arguments
 from aionode.errors import InvalidROSArgsError
-from aionode.rclpy.impl._destroyable import Destroyable
-from aionode.rclpy.impl._errors import (
+from aionode.rclpy._impl.destroyable import Destroyable
+from aionode.rclpy._impl.errors import (
     InvalidHandle,
     RCLError,
     RCLInvalidROSArgsError,
     UnknownROSArgsError,
 )
-from aionode.rclpy.impl._io import IoThread
+from aionode.rclpy._impl.io_thread import IoThread
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -5,7 +5,7 @@ from __future__ import annotations
 from _thread import allocate_lock
 from typing import TYPE_CHECKING, Self
 
-from aionode.rclpy.impl._errors import InvalidHandle
+from aionode.rclpy._impl.errors import InvalidHandle
 
 if TYPE_CHECKING:
     from types import TracebackType

@@ -12,7 +12,7 @@ from threading import Event, Thread, get_ident
 from typing import Any, TypeVar
 
 from aionode import Context
-from aionode.rclpy.impl._errors import InvalidHandle
+from aionode.rclpy._impl.errors import InvalidHandle
 
 __all__ = ["IoThread"]
 
