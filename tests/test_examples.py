@@ -11,7 +11,7 @@ import subprocess
 import sys
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import httpx
 import pytest
@@ -180,14 +180,23 @@ def test_overload_counts_every_message() -> None:
     assert program.process.returncode == 0
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        *[pytest.param(("-m", f"aionode.examples.{name}"), id=name) for name in ENDING],
-        *[pytest.param((f"examples/{name}",), id=name) for name in [*ENDLESS, "fastapi_app.py"]],
-    ],
-)
+def ends_by_signal() -> list[Any]:
+    """Return each example with each signal; one of the two signals is left to `make stress`."""
+    pairs = []
+    programs = [
+        *[(name, ("-m", f"aionode.examples.{name}")) for name in ENDING],
+        *[(name, (f"examples/{name}",)) for name in [*ENDLESS, "fastapi_app.py"]],
+    ]
+    for place, (name, arguments) in enumerate(programs):
+        usual, other = (signal.SIGINT, signal.SIGTERM)[:: 1 if place % 2 else -1]
+        pairs += [
+            pytest.param(arguments, usual, id=f"{name}-{usual.name}"),
+            pytest.param(arguments, other, id=f"{name}-{other.name}", marks=pytest.mark.stress),
+        ]
+    return pairs
+
+
+@pytest.mark.parametrize(("arguments", "number"), ends_by_signal())
 def test_a_signal_ends_an_example_cleanly(
     arguments: tuple[str, ...], number: signal.Signals
 ) -> None:
@@ -345,9 +354,10 @@ def test_the_parameters_of_another_node_are_read_and_set(domain: int) -> None:
 
 def test_the_last_message_of_a_program_is_that_the_wheels_stop(domain: int) -> None:
     """Ctrl-C cancels the callback, whose `finally` may still publish."""
+    typed = ["/cmd_vel", "geometry_msgs/msg/Twist"]  # the program may start later
     with (
         running(
-            "-m", "aionode", "topic", "echo", "/cmd_vel", "--field", "linear.x", domain=domain
+            "-m", "aionode", "topic", "echo", *typed, "--field", "linear.x", domain=domain
         ) as echo,
         running("examples/last_message.py", domain=domain) as robot,
     ):
