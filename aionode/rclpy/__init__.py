@@ -14,6 +14,7 @@ from aionode.rclpy import parameter as parameter
 from aionode.rclpy import signals as signals
 from aionode.rclpy import task as task
 from aionode.rclpy import utilities as utilities
+from aionode.rclpy._finder import install
 from aionode.rclpy.context import Context
 from aionode.rclpy.parameter import Parameter
 from aionode.rclpy.qos import QoSProfile
@@ -47,6 +48,7 @@ __all__ = [
     "get_global_executor",
     "get_rmw_implementation_identifier",
     "init",
+    "install",
     "install_signal_handlers",
     "ok",
     "shutdown",

@@ -22,7 +22,7 @@ from aionode.rclpy._rosidl import (
     ros_type_name,
     service_class,
 )
-from aionode.rclpy._rosidl._definition import BasicType, NamespacedType, UnboundedSequence
+from aionode.rclpy._rosidl_parser.definition import BasicType, NamespacedType, UnboundedSequence
 
 String = message_class("std_msgs/msg/String")
 Header = message_class("std_msgs/msg/Header")

@@ -16,9 +16,8 @@ from typing import Any, Final
 
 from aionode.message import DTYPES, Field, Message, ServiceType, fields, type_name
 from aionode.message import constants as constants_of
-from aionode.rclpy._rosidl._checks import field_check, refuse_unknown
-from aionode.rclpy._rosidl._definition import AbstractSequence, BasicType
 from aionode.rclpy._rosidl._field_types import TYPE_CODES, field_text, is_numeric, slot_type
+from aionode.rclpy._rosidl_parser.definition import AbstractSequence, BasicType
 
 __all__ = ["ACTION_PARTS", "SERVICE_PARTS", "aionode_class", "module_name", "python_class"]
 
@@ -157,7 +156,6 @@ def message_of(cls: type[Message], name: str, module: str) -> type[Any]:
         "FIELDS": {field.name: field_text(field.type) for field in fields(cls)},
         "SLOTS": [*(f"_{field.name}" for field in fields(cls)), "_check_fields"],
         "TYPES": tuple(slot_type(field.type) for field in fields(cls)),
-        "UNKNOWN": refuse_unknown,
         "CHECKED": os.environ.get("ROS_PYTHON_CHECK_FIELDS", "") == "1",
     }
     # The source holds validated field names and numbers only: see the module's docstring.
@@ -170,10 +168,16 @@ class ClassSource:
     """The source of one message class, and the values that it refers to by name."""
 
     def __init__(self, cls: type[Message], name: str) -> None:
+        from aionode.rclpy._rosidl._checks import field_check, refuse_unknown
+
         self.fields = fields(cls)
         self.constants = [constant.name for constant in constants_of(cls)]
         self.name = name
-        self.namespace: dict[str, Any] = {"ARRAY": array, "PROPERTY": property}
+        self.namespace: dict[str, Any] = {
+            "ARRAY": array,
+            "PROPERTY": property,
+            "UNKNOWN": refuse_unknown,
+        }
         if any(field.type.container == "array" and is_numeric(field.type) for field in self.fields):
             import numpy as np
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from aionode.message import FieldType, type_name
-from aionode.rclpy._rosidl._definition import (
+from aionode.rclpy._rosidl_parser.definition import (
     AbstractNestableType,
     AbstractType,
     Array,

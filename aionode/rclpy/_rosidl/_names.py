@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from aionode.interfaces import get_interface
 from aionode.message import ActionType, Message, ServiceType, type_name
 from aionode.rclpy._rosidl import _classes
-from aionode.rclpy._rosidl._classes import python_class
+from aionode.rclpy._rosidl._classes import ACTION_PARTS, SERVICE_PARTS, python_class
+from aionode.rclpy._rosidl._search import find
 
 __all__ = [
     "action_class",
     "aionode_class",
+    "classes_of",
     "interface_class",
     "message_class",
     "ros_type_name",
@@ -24,8 +25,9 @@ def interface_class(name: str) -> type[Any]:
 
     Raises:
         InterfaceNotFoundError: There is no such type; the error has names that are close.
+        IdlError: Its definition is not valid.
     """
-    return python_class(get_interface(name))
+    return python_class(find(name))
 
 
 def message_class(name: str) -> type[Any]:
@@ -45,7 +47,7 @@ def action_class(name: str) -> type[Any]:
 
 def of_kind(name: str, base: type[Any]) -> type[Any]:
     """Return the class of a type that has to be of one kind."""
-    found = get_interface(name)
+    found = find(name)
     if not issubclass(found, base):
         what = {Message: "a message", ServiceType: "a service", ActionType: "an action"}[base]
         raise TypeError(f"{name}: not {what} type")
@@ -74,3 +76,17 @@ def ros_type_name(cls: Any) -> str:
         TypeError: `cls` is not a message, service or action class.
     """
     return type_name(aionode_class(cls))
+
+
+def classes_of(name: str) -> dict[str, type[Any]]:
+    """Return all classes that rosidl generates for an interface, by their Python names."""
+    cls = interface_class(name)
+    found = {cls.__name__: cls}
+    if "/msg/" in name:
+        return found
+    parts = [getattr(cls, part) for part in (*SERVICE_PARTS, *ACTION_PARTS) if hasattr(cls, part)]
+    if hasattr(cls, "Impl"):
+        services = (cls.Impl.SendGoalService, cls.Impl.GetResultService)
+        parts += [*services, cls.Impl.FeedbackMessage]
+        parts += [getattr(service, part) for service in services for part in SERVICE_PARTS]
+    return found | {part.__name__: part for part in parts}

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
-from aionode.message import Message
+if TYPE_CHECKING:
+    from aionode.message import Message
 
 __all__ = ["OWN", "MessageFamily"]
 
