@@ -187,12 +187,20 @@ class NodeGraph:
     def _count(self, kind: EndpointKind, name: str) -> int:
         is_service = kind in (EndpointKind.CLIENT, EndpointKind.SERVER)
         with self._handle:
-            try:
-                full_name = self._handle.resolve(name, only_expand=True, is_service=is_service)
-            except NameValidationException as error:
-                what = "service" if is_service else "topic"
-                raise ValueError(f"{what} name is invalid: {error}") from None
+            full_name = self._expected(name, only_expand=True, is_service=is_service)
             return self._handle.count(kind, full_name)
+
+    def _expected(self, name: str, *, only_expand: bool = False, is_service: bool = False) -> str:
+        """Return the full name of a topic or service.
+
+        Raises:
+            ValueError: the name is invalid, in the words that rclpy has for questions.
+        """
+        try:
+            return self._handle.resolve(name, only_expand=only_expand, is_service=is_service)
+        except NameValidationException as error:
+            what = "service" if is_service else "topic"
+            raise ValueError(f"{what} name is invalid: {error}") from None
 
     # Endpoints
 
@@ -212,7 +220,7 @@ class NodeGraph:
         self, kind: EndpointKind, topic_name: str, no_mangle: bool
     ) -> list[TopicEndpointInfo]:
         with self._handle:
-            name = topic_name if no_mangle else self._handle.resolve(topic_name)
+            name = topic_name if no_mangle else self._expected(topic_name)
             found = self._handle.endpoints(kind, name)
         return [
             TopicEndpointInfo(

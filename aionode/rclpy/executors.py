@@ -113,8 +113,10 @@ class Executor:
         self._shutdown_lock = threading.Lock()
         self._cb_iter: Generator[Work, None, None] | None = None
         self._last_args: tuple[Any, ...] = ()
-        if self._context.handle is not None:
-            self._context.handle.signal.add(self._wakeup)
+        if self._context.handle is None:
+            raise RuntimeError("Context must be initialized a GuardCondition can be created")
+        self._context.handle.refuse_if_over("guard_condition")
+        self._context.handle.signal.add(self._wakeup)
         self._context.on_shutdown(self.wake)
 
     @property

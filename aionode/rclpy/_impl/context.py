@@ -68,6 +68,7 @@ class ContextHandle(Destroyable):
     def __init__(self, args: Sequence[str], domain_id: int | None) -> None:
         super().__init__()
         self._shut_down = False
+        self._closed = False
         arguments = parsed(args)
         context = Context(domain_id=domain_id)
         context.arguments = arguments
@@ -84,10 +85,20 @@ class ContextHandle(Destroyable):
         """Return the ROS domain."""
         return self.io.context.domain_id
 
-    def refuse_if_destroyed(self) -> None:
-        """Raise InvalidHandle after `destroy_when_not_in_use`."""
+    def refuse_if_over(self, wanted: str) -> None:
+        """Raise unless something can still be made in this context.
+
+        Raises:
+            InvalidHandle: it is destroyed.
+            RCLError: it is shut down.
+        """
         if not self.is_valid:
             raise InvalidHandle("cannot use Destroyable because destruction was requested")
+        if self._shut_down:
+            raise RCLError(
+                f"failed to create {wanted}: the given context is not valid, either rcl_init() "
+                "was not called or rcl_shutdown() was called."
+            )
 
     def mark_shut_down(self) -> None:
         """Shut down as far as a signal handler may: no lock is taken, nobody is waited for."""
@@ -98,10 +109,11 @@ class ContextHandle(Destroyable):
         """Shut down: executors stop to spin.
 
         Raises:
-            RCLError: it is shut down already.
+            RuntimeError: it is shut down already, other than by a signal.
         """
-        if self._shut_down:
-            raise RCLError("failed to shutdown: rcl_shutdown already called on the given context")
+        if self._closed:
+            raise RuntimeError("Context already shutdown.")
+        self._closed = True
         self.mark_shut_down()
         living_contexts.discard(self)
 

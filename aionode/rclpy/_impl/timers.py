@@ -42,7 +42,7 @@ class GuardConditionHandle(Destroyable):
 
     def __init__(self, context: ContextHandle) -> None:
         super().__init__()
-        context.refuse_if_destroyed()
+        context.refuse_if_over("guard_condition")
         self._triggered = False
 
     def trigger_guard_condition(self) -> None:
@@ -77,7 +77,7 @@ class TimerHandle(Destroyable):
         super().__init__()
         if period_ns < 0:
             raise ValueError("timer period must be non-negative")
-        context.refuse_if_destroyed()
+        context.refuse_if_over("timer")
         self._clock = clock
         self._period_ns = period_ns
         now_ns = self._now_ns()
