@@ -19,6 +19,7 @@ from aionode.errors import EntityDestroyedError, QueueFullError
 from aionode.graph import EndpointKind
 from aionode.qos import KEEP_ALL_DEPTH
 from aionode.transport.base import SampleInfo
+from aionode.transport.local import LocalWriter
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -81,6 +82,8 @@ class BarePublisher(BareEndpoint):
         super().__init__(node, endpoint, writers)
         self.published = 0
         self._writers = writers
+        self._here = [writer for writer in writers if isinstance(writer, LocalWriter)]
+        self._elsewhere = [writer for writer in writers if not isinstance(writer, LocalWriter)]
 
     def publish(self, msg: Any, source_ns: int) -> None:
         """Send a message to every matched subscription.
@@ -94,15 +97,44 @@ class BarePublisher(BareEndpoint):
             QueueFullError: a reliable KEEP_ALL subscription of this context is full; nothing was
                 sent. `drain` waits for room.
         """
-        writers = self._writers
-        for writer in writers:
+        sample_info = self.publish_here(msg, source_ns)
+        if sample_info is not None:
+            self.publish_elsewhere(msg, sample_info)
+
+    def publish_here(self, msg: Any, source_ns: int) -> SampleInfo | None:
+        """Send a message to the subscriptions of this context only, whose readers get it at once.
+
+        Any thread may call it, one at a time, and not while a subscription is made in the
+        context; the readers have to expect that thread.
+
+        Args:
+            msg: An object of the class that the publisher was made with.
+            source_ns: When it was published, in nanoseconds since 1970.
+
+        Returns:
+            What `publish_elsewhere` takes; None if no other context has to get the message.
+
+        Raises:
+            QueueFullError: as `publish`.
+        """
+        for writer in self._here:
             if writer.bounded and not writer.has_room():
                 raise QueueFullError(self.endpoint.name, KEEP_ALL_DEPTH)
-        sample_info = SampleInfo(self.endpoint.gid, self.published + 1, source_ns)
-        for writer in writers:
+        self.published += 1
+        sample_info = SampleInfo(self.endpoint.gid, self.published, source_ns)
+        for writer in self._here:
             if writer.active:
                 writer.write(msg, sample_info)
-        self.published += 1
+        return sample_info if any(writer.active for writer in self._elsewhere) else None
+
+    def publish_elsewhere(self, msg: Any, sample_info: SampleInfo) -> None:
+        """Send a message to other contexts, after `publish_here`; in the thread of the loop.
+
+        Messages have to come in their order.
+        """
+        for writer in self._elsewhere:
+            if writer.active:
+                writer.write(msg, sample_info)
 
     async def drain(self) -> None:
         """Wait until every reliable KEEP_ALL subscription has room and nothing is left to send."""

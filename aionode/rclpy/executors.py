@@ -209,7 +209,8 @@ class Executor:
             future: The future.
             timeout_sec: The longest time in seconds; None or negative for ever.
         """
-        future._wake_when_done(self.wake)
+        # With an executor of its own, that is one of its tasks: a call more for `spin_once`.
+        future.add_done_callback(lambda _: self.wake())
         if timeout_sec is None or timeout_sec < 0:
             while self._goes_on(future):
                 self._spin_once_until_future_complete(future, timeout_sec)
@@ -500,7 +501,7 @@ class SingleThreadedExecutor(Executor):
         self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
     ) -> None:
         """Wait for one callback and call it, but no longer than until `future` is done."""
-        future._wake_when_done(self.wake)
+        future.add_done_callback(lambda _: self.wake())
         self._spin_once_until_future_complete(future, timeout_sec)
 
 
@@ -572,7 +573,7 @@ class MultiThreadedExecutor(Executor):
         self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
     ) -> None:
         """Wait for one callback, but no longer than until `future` is done; see `spin_once`."""
-        future._wake_when_done(self.wake)
+        future.add_done_callback(lambda _: self.wake())
         self._spin_once_until_future_complete(future, timeout_sec)
 
     def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool = True) -> bool:

@@ -69,6 +69,7 @@ class ContextHandle(Destroyable):
         super().__init__()
         self._shut_down = False
         self._closed = False
+        self._signalled = False
         arguments = parsed(args)
         context = Context(domain_id=domain_id)
         context.arguments = arguments
@@ -101,9 +102,14 @@ class ContextHandle(Destroyable):
             )
 
     def mark_shut_down(self) -> None:
-        """Shut down as far as a signal handler may: no lock is taken, nobody is waited for."""
+        """Shut down as far as a signal handler may: no lock is taken, nothing is waited for."""
         self._shut_down = True
         self.signal.notify()
+
+    def interrupt(self) -> None:
+        """Shut down from a signal handler. `shutdown` is still possible, and never refused."""
+        self._signalled = True
+        self.mark_shut_down()
 
     def shutdown(self) -> None:
         """Shut down: executors stop to spin.
@@ -111,7 +117,7 @@ class ContextHandle(Destroyable):
         Raises:
             RuntimeError: it is shut down already, other than by a signal.
         """
-        if self._closed:
+        if self._closed and not self._signalled:
             raise RuntimeError("Context already shutdown.")
         self._closed = True
         self.mark_shut_down()

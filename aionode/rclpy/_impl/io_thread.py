@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import logging
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
-from threading import Event, Thread, get_ident
+from threading import Event, Lock, Thread, get_ident
 from typing import Any, TypeVar
 
 from aionode import Context
@@ -35,6 +34,8 @@ class IoThread:
 
     Attributes:
         context: The context; it and all that belongs to it are used in this thread only.
+        delivery_lock: Held while a message is delivered inside this context, in the thread that
+            publishes it, and while a subscription is made. Nothing waits while it is held.
         assertions: Called in the thread with the gid of each publisher of this context that shows
             that it is alive.
     """
@@ -47,6 +48,7 @@ class IoThread:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._stopping: asyncio.Event | None = None
         self._opened: Future[None] = Future()
+        self.delivery_lock = Lock()
         self._graph_watchers: list[Callable[[], None]] = []
         self.assertions: list[Callable[[bytes], None]] = []
         # A daemon, as the interpreter waits for others before it calls what `atexit` has.
@@ -97,16 +99,15 @@ class IoThread:
 
     def post(self, action: Callable[[], object]) -> None:
         """Call `action` in the thread soon, after everything that was posted before."""
-        if len(self._work) >= MOST_WAITING and not self.is_current:
-            self._wait_for_turn()
         self._work.append(action)
         self._schedule()
 
-    def _wait_for_turn(self) -> None:
-        turn = Event()
-        self._work.append(turn.set)
-        self._schedule()
-        turn.wait()
+    def pace(self) -> None:
+        """Wait while more is posted than the thread has done; for those who post much."""
+        if len(self._work) >= MOST_WAITING and not self.is_current:
+            turn = Event()
+            self.post(turn.set)
+            turn.wait()
 
     def _schedule(self) -> None:
         if self._ended:
@@ -118,13 +119,6 @@ class IoThread:
                 self._loop.call_soon_threadsafe(self._drain)
             except RuntimeError:  # the loop has just been closed
                 self._drain()
-
-    def wake_from_signal(self, action: Callable[[], object]) -> None:
-        """Call `action` soon, without taking a lock: for signal handlers."""
-        loop = self._loop
-        if loop is not None and not self._ended:
-            with contextlib.suppress(RuntimeError):
-                loop.call_soon_threadsafe(action)
 
     def _drain(self) -> None:
         self._scheduled = False

@@ -81,7 +81,7 @@ def handle(number: int, frame: FrameType | None) -> None:
     the program.
     """
     for context in list(living_contexts):
-        context.mark_shut_down()
+        context.interrupt()
     for guard in list(guards):
         guard.trigger_guard_condition()
     before = replaced.get(number)

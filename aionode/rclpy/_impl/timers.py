@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.clock import Clock, ClockChange, ClockType, Duration, JumpThreshold, MachineTime
 from aionode.rclpy._impl.destroyable import Destroyable
-from aionode.rclpy._impl.errors import TimerCancelledError
+from aionode.rclpy._impl.errors import RCLError, TimerCancelledError
 
 if TYPE_CHECKING:
     from aionode.clock import JumpHandle, TimeJump
@@ -76,7 +76,7 @@ class TimerHandle(Destroyable):
     ) -> None:
         super().__init__()
         if period_ns < 0:
-            raise ValueError("timer period must be non-negative")
+            raise RCLError("timer period must be non-negative")
         context.refuse_if_over("timer")
         self._clock = clock
         self._period_ns = period_ns
@@ -173,10 +173,10 @@ class TimerHandle(Destroyable):
         """Change the period, from the next call on.
 
         Raises:
-            ValueError: it is negative.
+            RCLError: it is negative.
         """
         if period_ns < 0:
-            raise ValueError("timer period must be non-negative")
+            raise RCLError("timer period must be non-negative")
         self._period_ns = period_ns
 
     def time_since_last_call(self) -> int:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from aionode.bare_node import BareEndpoint, BarePublisher
     from aionode.graph import EndpointInfo
+    from aionode.qos import QoSProfile
     from aionode.rclpy._impl.destroyable import Signal
     from aionode.rclpy._impl.node import NodeHandle
     from aionode.transport.base import SampleInfo
@@ -36,7 +37,7 @@ now_ns = MachineTime().system_ns
 
 
 class PublisherHandle(Destroyable):
-    """A publisher. `publish` encodes in the calling thread, and does not wait for readers."""
+    """A publisher. `publish` encodes, and delivers to this context, in the calling thread."""
 
     def __init__(self, node: NodeHandle, msg_type: Any, topic: str, qos_profile: Any) -> None:
         super().__init__(node.signal)
@@ -65,15 +66,27 @@ class PublisherHandle(Destroyable):
         self.publish_raw(data)
 
     def publish_raw(self, data: bytes) -> None:
-        """Send a message that is encoded already."""
-        self.io.post(partial(self._send, self._support.wire_type(data), now_ns()))
+        """Send a message that is encoded already.
 
-    def _send(self, msg: Any, source_ns: int) -> None:
-        try:
-            self.bare.publish(msg, source_ns)
-        except QueueFullError:
-            # The local KEEP_ALL readers are full: the newest is dropped, as with a history limit.
-            logger.debug("%s: a KEEP_ALL subscription is full", self.endpoint.name)
+        Subscriptions of this context have it when this returns.
+
+        Raises:
+            RCLError: a KEEP_ALL subscription of this context is full.
+        """
+        msg = self._support.wire_type(data)
+        io = self.io
+        io.pace()
+        with io.delivery_lock:
+            try:
+                sample_info = self.bare.publish_here(msg, now_ns())
+            except QueueFullError as error:
+                raise RCLError(f"Failed to publish: {error}") from error
+            if sample_info is not None:
+                io.post(partial(self.bare.publish_elsewhere, msg, sample_info))
+        if self.feed:
+            io.post(self._tell_feed)
+
+    def _tell_feed(self) -> None:
         for listener in self.feed:
             listener(None)
 
@@ -94,8 +107,7 @@ class PublisherHandle(Destroyable):
         self.io.post(self._assert_liveliness)
 
     def _assert_liveliness(self) -> None:
-        for listener in self.feed:
-            listener(None)
+        self._tell_feed()
         for assertion in self.io.assertions:
             assertion(self.endpoint.gid)
 
@@ -112,7 +124,9 @@ class PublisherHandle(Destroyable):
 
 
 class Inbox:
-    """The queue of a subscription, which the thread of the context fills: its `Reader`.
+    """The queue of a subscription, its `Reader`.
+
+    The thread of the context fills it, and threads that publish in the same context.
 
     It does not know its handle, which is garbage once its user has dropped it.
     """
@@ -120,7 +134,9 @@ class Inbox:
     raw = False
     endpoint: EndpointInfo
 
-    def __init__(self, profile: Any, signal: Signal) -> None:
+    def __init__(
+        self, profile: Any, signal: Signal, post: Callable[[Callable[[], object]], None]
+    ) -> None:
         keep_all = profile.resolved().history.name == "KEEP_ALL"
         self.limit = KEEP_ALL_DEPTH if keep_all else (profile.depth or DEFAULT_DEPTH)
         self.keep_all = keep_all
@@ -132,6 +148,7 @@ class Inbox:
         self.accept: Callable[[bytes], bool] | None = None
         self.feed: Feed = []
         self._signal = signal
+        self._post = post
         self._room_waiters: list[Callable[[], None]] = []
 
     def deliver(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
@@ -144,9 +161,13 @@ class Inbox:
             if self.keep_all:
                 return
         items.append((msg.data, sample_info, sample_info.arrived_ns or now_ns()))
+        if self.feed:
+            self._post(partial(self._tell_feed, sample_info))
+        self._signal.notify()
+
+    def _tell_feed(self, sample_info: SampleInfo) -> None:
         for listener in self.feed:
             listener(sample_info)
-        self._signal.notify()
 
     def reject(self, error: DecodeError) -> None:
         """Count what is no message of this type."""
@@ -187,7 +208,7 @@ class SubscriptionHandle(Destroyable):
         self._support = message_support(msg_type)
         self._filter_options = content_filter_options
         profile = profile_of(qos_profile)
-        self.inbox = Inbox(profile, node.signal)
+        self.inbox = Inbox(profile, node.signal, node.io.post)
         self.feed = self.inbox.feed
         if content_filter_options is not None:
             self._set_filter(
@@ -195,9 +216,7 @@ class SubscriptionHandle(Destroyable):
                 content_filter_options.expression_parameters,
             )
         name = node.resolve(topic)
-        self.bare: BareEndpoint = node.io.call(
-            node.bare.create_subscription, self._support.wire_type, name, profile, self.inbox
-        )
+        self.bare: BareEndpoint = node.io.call(self._create, name, profile)
         self._lifespans: dict[bytes, int] = {}
         self._received = 0
         self._complained = False
@@ -206,6 +225,12 @@ class SubscriptionHandle(Destroyable):
     def endpoint(self) -> EndpointInfo:
         """What the graph knows of it."""
         return self.bare.endpoint
+
+    def _create(self, name: str, profile: QoSProfile) -> BareEndpoint:
+        with self.io.delivery_lock:
+            return self._node.bare.create_subscription(
+                self._support.wire_type, name, profile, self.inbox
+            )
 
     def ready(self) -> bool:
         """Return whether a message waits."""
