@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar, overload
 from aionode import qos
 from aionode._node.parameters import NodeParameters
 from aionode.endpoints._core.graph_entry import GraphEntry
-from aionode.endpoints._core.unenforced_qos import policies_without_effect
+from aionode.endpoints._qos.event_hub import check_event_callbacks, handled_mismatches
 from aionode.endpoints.client import Client
+from aionode.endpoints.events import PublisherEventCallbacks, SubscriptionEventCallbacks
 from aionode.endpoints.publisher import Publisher
 from aionode.endpoints.service import Service
 from aionode.endpoints.subscription import Subscription
@@ -36,6 +37,7 @@ __all__ = ["NodeEndpoints"]
 MsgT = TypeVar("MsgT", bound=Message)
 RequestT = TypeVar("RequestT", bound=Message)
 ResponseT = TypeVar("ResponseT", bound=Message)
+TopicT = TypeVar("TopicT", Publisher[Any], Subscription[Any])
 
 
 class NodeEndpoints(NodeParameters):
@@ -72,6 +74,7 @@ class NodeEndpoints(NodeParameters):
         topic: str,
         qos_profile: QoSProfile | int,
         *,
+        event_callbacks: PublisherEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
     ) -> Publisher[MsgT]:
         """Return a publisher of `msg_type`.
@@ -80,25 +83,29 @@ class NodeEndpoints(NodeParameters):
             msg_type: A message class.
             topic: Name of the topic; relative names are prefixed with the node's namespace.
             qos_profile: A profile, or a depth: the number of messages to keep.
+            event_callbacks: Called with its events; without them, see `Publisher.events`.
             qos_overriding_options: Which policies parameters may override.
 
         Raises:
-            TypeError: `msg_type` is not a message class, or `qos_profile` has the wrong type.
+            TypeError: `msg_type` is not a message class, or another argument has the wrong type.
             ValueError: `qos_profile` is a negative number.
             InvalidTopicNameException: `topic` is invalid (a ValueError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
         self._refuse_if_destroyed("publisher")
         expect_message_type(msg_type, f"publisher of {topic}")
+        check_event_callbacks(event_callbacks, PublisherEventCallbacks, f"publisher of {topic}")
         graph_entry = self._graph_entry(
             EndpointKind.PUBLISHER, topic, msg_type, qos_profile, qos_overriding_options
         )
+        graph_entry.leave_unreported(handled_mismatches(event_callbacks))
         writers = self._register(
             lambda transport: transport.create_writer(graph_entry.endpoint, msg_type)
         )
-        return self._add_entity(
-            Publisher(graph_entry, msg_type, writers, self.context.time_base), graph_entry
+        publisher = Publisher(
+            graph_entry, msg_type, writers, self.context.time_base, event_callbacks
         )
+        return self._add_with_events(publisher, graph_entry)
 
     @overload
     def create_subscription(
@@ -112,6 +119,7 @@ class NodeEndpoints(NodeParameters):
         raw: Literal[True],
         on_error: OnError = "raise",
         offload: bool = False,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
     ) -> Subscription[bytes]: ...
 
@@ -127,6 +135,7 @@ class NodeEndpoints(NodeParameters):
         raw: Literal[False] = False,
         on_error: OnError = "raise",
         offload: bool = False,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
     ) -> Subscription[MsgT]: ...
 
@@ -141,6 +150,7 @@ class NodeEndpoints(NodeParameters):
         raw: bool = False,
         on_error: OnError = "raise",
         offload: bool = False,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
     ) -> Subscription[Any]:
         """Return a subscription to `topic`.
@@ -158,6 +168,7 @@ class NodeEndpoints(NodeParameters):
                 ``"log"`` logs and counts it, a function is called with (exception,
                 CallbackContext).
             offload: Whether to run a sync callback in a thread.
+            event_callbacks: Called with its events; without them, see `Subscription.events`.
             qos_overriding_options: Which policies parameters may override.
 
         Raises:
@@ -168,9 +179,13 @@ class NodeEndpoints(NodeParameters):
         """
         self._refuse_if_destroyed("subscription")
         expect_message_type(msg_type, f"subscription of {topic}")
+        check_event_callbacks(
+            event_callbacks, SubscriptionEventCallbacks, f"subscription of {topic}"
+        )
         graph_entry = self._graph_entry(
             EndpointKind.SUBSCRIPTION, topic, msg_type, qos_profile, qos_overriding_options
         )
+        graph_entry.leave_unreported(handled_mismatches(event_callbacks))
         subscription: Subscription[Any] = Subscription(
             graph_entry,
             msg_type,
@@ -180,6 +195,7 @@ class NodeEndpoints(NodeParameters):
             raw=raw,
             on_error=on_error,
             offload=offload,
+            event_callbacks=event_callbacks,
         )
         subscription._add_registrations(
             self._register(
@@ -188,7 +204,7 @@ class NodeEndpoints(NodeParameters):
                 )
             )
         )
-        return self._add_entity(subscription, graph_entry)
+        return self._add_with_events(subscription, graph_entry)
 
     def create_service(
         self,
@@ -357,6 +373,14 @@ class NodeEndpoints(NodeParameters):
         entity.destroy()
         return True
 
+    def _add_with_events(self, endpoint: TopicT, graph_entry: GraphEntry) -> TopicT:
+        """Own a publisher or subscription, and what calls its event callbacks."""
+        self._add_entity(endpoint, graph_entry)
+        handler = endpoint._monitor.handler
+        if handler is not None:
+            self._add_entity(handler)
+        return endpoint
+
     def _graph_entry(
         self,
         kind: EndpointKind,
@@ -376,8 +400,6 @@ class NodeEndpoints(NodeParameters):
                 "publisher" if kind is EndpointKind.PUBLISHER else "subscription"
             )
             profile = declare_qos_overrides(self, full_name, entity, profile, overriding)
-        if self._constructed:
-            self._warn_of_no_effect(kind, full_name, profile)
         others = [e.qos for e in self.graph.endpoints(kind.opposite, name=full_name)]
         if kind is EndpointKind.PUBLISHER:
             profile = qos.best_available_for_publisher(profile, others)
@@ -387,18 +409,6 @@ class NodeEndpoints(NodeParameters):
             kind, self._info, full_name, ros_type, profile.resolved()
         )
         return GraphEntry(endpoint, self.graph, self._callbacks, self._affinity)
-
-    def _warn_of_no_effect(self, kind: EndpointKind, name: str, profile: QoSProfile) -> None:
-        """Log, once for each endpoint, the QoS policies that have no effect."""
-        policies = policies_without_effect(profile, sends=kind is EndpointKind.PUBLISHER)
-        subject = f"{kind.value} of {name}"
-        if policies and subject not in self._warned_about:
-            self._warned_about.add(subject)
-            self._logger.warning(
-                f"{subject}: {', '.join(policies)}: announced to others and compared with theirs, "
-                "but without effect here: no event is raised and no message dropped because of "
-                "it; to detect silence, compare the time of the last message in a timer"
-            )
 
 
 def load_arrays(ros_type: Any) -> None:

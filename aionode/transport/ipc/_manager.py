@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     import socket
     from collections.abc import Callable
 
+    from aionode.clock import TimeBase
     from aionode.graph import EndpointInfo, Graph
     from aionode.transport.ipc._listener import Advertisement, Listener
     from aionode.transport.ipc._protocol import Control, Frame
@@ -87,17 +88,23 @@ class LinkManager:
 
     Attributes:
         pool: Shared memory for large payloads.
-        now_ns: Returns the system time, in nanoseconds since 1970.
+        now_ns: Returns the time of the context, in nanoseconds since 1970.
         writers: The publishers that may use links, by gid.
         readers: The subscriptions, by gid.
         servers: The servers, by gid.
         requesters: The clients, by gid.
     """
 
-    def __init__(self, participant: str, domain_id: int, peer_directory: PeerDirectory) -> None:
+    def __init__(
+        self,
+        participant: str,
+        domain_id: int,
+        peer_directory: PeerDirectory,
+        time_base: TimeBase | None = None,
+    ) -> None:
         self.participant = participant
         self.pool = BufferPool()
-        self.now_ns = MachineTime().system_ns
+        self.now_ns = (MachineTime() if time_base is None else time_base).system_ns
         # Endpoints: added when they are created, removed when they are closed.
         self.writers: dict[bytes, IpcWriter] = {}
         self.readers: dict[bytes, IpcReader] = {}

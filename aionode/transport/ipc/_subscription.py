@@ -457,6 +457,7 @@ class IpcReader(Registration):
         self.endpoint = reader.endpoint
         self.raw = reader.raw
         self.reject = reader.reject
+        self.note_alive = reader.note_alive
         self.when_room = reader.when_room
         self.wait_for_room = reader.wait_for_room
         self.deliver_local = reader.deliver

@@ -406,6 +406,10 @@ class ZenohWriter(Declaration, Writer):
         except zenoh.ZError as error:
             logger.debug("%s: not sent: %s", self._key, reason(error))
 
+    def assert_liveliness(self) -> None:
+        """Tell the subscriptions of other contexts."""
+        self.state.assertions.send(self.gid)
+
     def has_room(self) -> bool:
         """Return whether one more message can wait to be sent."""
         if not self.bounded:

@@ -17,12 +17,14 @@ from aionode.transport._loop_waker import LoopWaker, ThreadsafeQueue
 from aionode.transport._send_thread import SendThread
 from aionode.transport.base import Registration
 from aionode.transport.zenoh._acknowledgements import Acknowledgements
+from aionode.transport.zenoh._assertions import Assertions
 from aionode.transport.zenoh._cancellations import Cancellations
 from aionode.transport.zenoh._handlers import translated
 from aionode.transport.zenoh._peer_senders import PeerSenders
 from aionode.wire._liveliness import gid_of
 
 if TYPE_CHECKING:
+    from aionode.clock import TimeBase
     from aionode.graph import Graph
 
 __all__ = ["FLUSH_S", "Declaration", "SessionState"]
@@ -70,11 +72,12 @@ class SessionState:
         malformed: How many malformed samples came on each key.
         own_gids: The gids of this context's publishers, lingering ones included.
         cancellations: The requests that clients have given up.
-        now_ns: The system clock, in nanoseconds since 1970.
+        assertions: The liveliness that publishers assert.
+        now_ns: Returns the time of the context, in nanoseconds since 1970.
         on_reader: Called when a remote subscription appears or vanishes, by topic.
     """
 
-    def __init__(self, participant: str, domain_id: int) -> None:
+    def __init__(self, participant: str, domain_id: int, time_base: TimeBase | None = None) -> None:
         self.participant = participant
         self.domain_id = domain_id
         self.session: zenoh.Session | None = None
@@ -91,7 +94,8 @@ class SessionState:
         self.malformed: Counter[str] = Counter()
         self.own_gids: set[bytes] = set()
         self.cancellations = Cancellations(participant, domain_id, self.waker, self.note_malformed)
-        self.now_ns = MachineTime().system_ns
+        self.assertions = Assertions(participant, domain_id, self.waker, self.note_malformed)
+        self.now_ns = (MachineTime() if time_base is None else time_base).system_ns
         self.on_reader: dict[str, list[Callable[[], None]]] = {}
         self._lingered: asyncio.Future[None] | None = None
         self._shares_from_ns = 0  # when the first large message of this session was sent
@@ -118,6 +122,7 @@ class SessionState:
         self._shares_from_ns = 0
         self.acknowledgements.start(session)
         self.cancellations.start(session)
+        self.assertions.start(session)
         for declaration in list(self._declarations):
             declaration.declare(session)
 
@@ -167,6 +172,7 @@ class SessionState:
                 publisher.finish()
         self.peer_senders.clear()
         self.cancellations.stop()
+        self.assertions.stop()
         self.acknowledgements.stop()
         self.graph = None
         return session

@@ -12,7 +12,7 @@ from zenoh import ext
 from aionode.clock import perf_ns
 from aionode.errors import DecodeError
 from aionode.graph import EndpointKind
-from aionode.qos import HistoryPolicy, depth_of
+from aionode.qos import HistoryPolicy, depth_of, is_unlimited
 from aionode.transport._reliability import NEVER, OVERHEAD_BYTES
 from aionode.transport._writer_proxy import WriterProxy
 from aionode.transport.base import SampleInfo
@@ -105,6 +105,8 @@ class ZenohReader(Declaration):
         self._waits_for_room = False
         self._refused = 0
         self._subscribers: list[zenoh.Subscriber[None] | ext.AdvancedSubscriber[None]] = []
+        if not is_unlimited(endpoint.qos.liveliness_lease_duration):
+            state.assertions.listen(reader.note_alive)
         self._acknowledges = reliable and not transient and visible
         if self._acknowledges:
             state.acknowledgements.readers[self.gid] = self
@@ -147,6 +149,7 @@ class ZenohReader(Declaration):
     def close(self) -> None:
         """Undeclare the subscription for good."""
         self.state.acknowledgements.readers.pop(self.gid, None)
+        self.state.assertions.unlisten(self._reader.note_alive)
         super().close()
 
     def _take(self, sample: zenoh.Sample) -> None:

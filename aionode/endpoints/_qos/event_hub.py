@@ -1,0 +1,170 @@
+"""Where the events of one endpoint go: to its callbacks, and to its stream."""
+
+from __future__ import annotations
+
+import dataclasses
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from aionode.endpoints._core.callback_runner import accepts, consume
+from aionode.endpoints._core.entity import Entity
+from aionode.endpoints._core.message_queue import MessageQueue
+from aionode.endpoints.events import EVENTS_KEPT, EventStream
+from aionode.endpoints.stats import CallbackStats
+from aionode.errors import brief, shortened
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Coroutine, Mapping
+    from collections.abc import Set as AbstractSet
+
+    from aionode.endpoints._core.callback_runner import Callbacks
+    from aionode.endpoints.events import PublisherEventCallbacks, SubscriptionEventCallbacks
+
+__all__ = [
+    "EventHandler",
+    "EventHub",
+    "check_event_callbacks",
+    "given_callbacks",
+    "handled_mismatches",
+]
+
+
+def check_event_callbacks(given: object, wanted: type[Any], subject: str) -> None:
+    """Raise TypeError unless `given` is None or of the class `wanted`."""
+    if given is not None and not isinstance(given, wanted):
+        raise TypeError(
+            f"{shortened(subject)}: event_callbacks is {brief(given)}; give a {wanted.__name__}, "
+            f"such as {wanted.__name__}(matched=print)"
+        )
+
+
+def given_callbacks(event_callbacks: object | None) -> dict[str, Callable[[Any], object]]:
+    """Return the callbacks that are given, by the name of their event."""
+    if event_callbacks is None:
+        return {}
+    return {
+        name: callback
+        for name, callback in vars(event_callbacks).items()
+        if callback is not None and name != "use_default_callbacks"
+    }
+
+
+def handled_mismatches(
+    event_callbacks: PublisherEventCallbacks | SubscriptionEventCallbacks | None,
+) -> AbstractSet[str]:
+    """Return the mismatches that are not to be logged, as `Graph.unreported` has them."""
+    if event_callbacks is None:
+        return frozenset()
+    silent = not event_callbacks.use_default_callbacks
+    handled = set()
+    if silent or event_callbacks.incompatible_qos is not None:
+        handled.add("qos")
+    if silent or event_callbacks.incompatible_type is not None:
+        handled.update(("type", "definition"))
+    return handled
+
+
+class EventHandler(Entity):
+    """Calls the event callbacks of one endpoint, one at a time.
+
+    Args:
+        subject: The endpoint, for errors and reports.
+        event_callbacks: The functions, by the name of their event.
+        callbacks: How the node runs callbacks.
+
+    Raises:
+        CallbackSignatureError: a function takes another number of arguments (a TypeError).
+    """
+
+    def __init__(
+        self,
+        subject: str,
+        event_callbacks: Mapping[str, Callable[[Any], object]],
+        callbacks: Callbacks,
+    ) -> None:
+        super().__init__(f"events of the {subject}")
+        self._stats = CallbackStats()
+        self._queue: MessageQueue[tuple[str, Any]] = MessageQueue(EVENTS_KEPT, self._stats)
+        for name, callback in event_callbacks.items():
+            accepts(callback, 1, subject=f"{subject}, event callback {name}", wanted="(event)")
+        self._runners = {
+            name: callbacks.make_runner(
+                callback, self, self._stats, on_error="raise", offload=False
+            )
+            for name, callback in event_callbacks.items()
+        }
+
+    def put(self, name: str, event: object) -> None:
+        """Have the callback called, if there is one for this event."""
+        if name in self._runners and not self.destroyed:
+            self._queue.put((name, event))
+
+    def _run(self) -> Coroutine[Any, Any, None]:
+        return consume(self._queue, self._handle, concurrent=False)
+
+    def _handle(self, entered_ns: int, item: tuple[str, Any]) -> Coroutine[Any, Any, None] | None:
+        name, event = item
+        return self._runners[name].receive(entered_ns, event)
+
+    def _close(self) -> None:
+        self._queue.discard()
+        self._queue.wake()
+
+
+class EventHub:
+    """Hands the events of one endpoint on, and remembers the newest of each kind.
+
+    Attributes:
+        handler: Calls the callbacks; None without any.
+    """
+
+    def __init__(self, handler: EventHandler | None) -> None:
+        self.handler = handler
+        self._stream: EventStream[Any] | None = None
+        self._newest: dict[str, Any] = {}
+        self._ended = False
+
+    @property
+    def has_listeners(self) -> bool:
+        """Whether the program gets events in either form."""
+        return self.handler is not None or self._stream is not None
+
+    def emitter(self, name: str) -> Callable[[Any], None]:
+        """Return the function that takes the events called `name`."""
+        return partial(self.emit, name)
+
+    def emit(self, name: str, event: Any) -> None:
+        """Hand an event on; it replaces the newest of its name."""
+        self._newest[name] = event
+        if self.handler is not None:
+            self.handler.put(name, event)
+        if self._stream is not None:
+            self._stream._put(event)
+
+    def stream(self) -> EventStream[Any]:
+        """Return the stream; a new one begins with what has happened so far."""
+        if self._stream is None:
+            self._stream = EventStream()
+            for event in self._newest.values():
+                self._stream._put(since_creation(event))
+            if self._ended:
+                self._stream._end()
+        return self._stream
+
+    def close(self) -> None:
+        """End the callbacks and the stream."""
+        self._ended = True
+        if self.handler is not None:
+            self.handler.destroy()
+        if self._stream is not None:
+            self._stream._end()
+
+
+def since_creation(event: Any) -> Any:
+    """Return an event with each change replaced by the count that it is a change of."""
+    changes = {
+        field.name: getattr(event, field.name.removesuffix("_change"))
+        for field in dataclasses.fields(event)
+        if field.name.endswith("_change")
+    }
+    return dataclasses.replace(event, **changes)
