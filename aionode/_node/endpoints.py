@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar, overload
 from aionode import qos
 from aionode._node.parameters import NodeParameters
 from aionode.endpoints._core.graph_entry import GraphEntry
-from aionode.endpoints._qos.event_hub import check_event_callbacks, handled_mismatches
 from aionode.endpoints.client import Client
-from aionode.endpoints.events import PublisherEventCallbacks, SubscriptionEventCallbacks
 from aionode.endpoints.publisher import Publisher
 from aionode.endpoints.service import Service
 from aionode.endpoints.subscription import Subscription
@@ -25,6 +23,7 @@ if TYPE_CHECKING:
     from aionode.clock import Clock
     from aionode.endpoints._core.callback_runner import OnError
     from aionode.endpoints._core.entity import Entity
+    from aionode.endpoints.events import PublisherEventCallbacks, SubscriptionEventCallbacks
     from aionode.endpoints.service import ServiceCallback
     from aionode.endpoints.subscription import SubscriptionCallback
     from aionode.endpoints.timer import TimerCallback
@@ -94,16 +93,17 @@ class NodeEndpoints(NodeParameters):
         """
         self._refuse_if_destroyed("publisher")
         expect_message_type(msg_type, f"publisher of {topic}")
-        check_event_callbacks(event_callbacks, PublisherEventCallbacks, f"publisher of {topic}")
         graph_entry = self._graph_entry(
             EndpointKind.PUBLISHER, topic, msg_type, qos_profile, qos_overriding_options
         )
-        graph_entry.leave_unreported(handled_mismatches(event_callbacks))
-        writers = self._register(
-            lambda transport: transport.create_writer(graph_entry.endpoint, msg_type)
-        )
         publisher = Publisher(
-            graph_entry, msg_type, writers, self.context.time_base, event_callbacks
+            graph_entry,
+            msg_type,
+            lambda: self._register(
+                lambda transport: transport.create_writer(graph_entry.endpoint, msg_type)
+            ),
+            self.context.time_base,
+            event_callbacks,
         )
         return self._add_with_events(publisher, graph_entry)
 
@@ -179,13 +179,9 @@ class NodeEndpoints(NodeParameters):
         """
         self._refuse_if_destroyed("subscription")
         expect_message_type(msg_type, f"subscription of {topic}")
-        check_event_callbacks(
-            event_callbacks, SubscriptionEventCallbacks, f"subscription of {topic}"
-        )
         graph_entry = self._graph_entry(
             EndpointKind.SUBSCRIPTION, topic, msg_type, qos_profile, qos_overriding_options
         )
-        graph_entry.leave_unreported(handled_mismatches(event_callbacks))
         subscription: Subscription[Any] = Subscription(
             graph_entry,
             msg_type,

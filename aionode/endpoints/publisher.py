@@ -42,23 +42,24 @@ class Publisher(Entity, Generic[MsgT]):
         self,
         graph_entry: GraphEntry,
         msg_type: type[MsgT],
-        writers: Sequence[Writer],
+        make_writers: Callable[[], Sequence[Writer]],
         time_base: TimeBase,
         event_callbacks: PublisherEventCallbacks | None = None,
     ) -> None:
         super().__init__(f"publisher of {graph_entry.endpoint.name}", EndStage.LAST)
         self.msg_type = msg_type
         self.qos_profile: QoSProfile = graph_entry.endpoint.qos
-        self.stats = PublisherStats(writers, graph_entry.matched)
         self._graph_entry = graph_entry
-        self._writers = tuple(writers)
         self._gid = graph_entry.endpoint.gid
         self._affinity = graph_entry.affinity
         self._check: Callable[[Any], None] = checker(msg_type)
         self._now_ns = time_base.system_ns
-        self._monitor = PublisherMonitor(graph_entry, time_base, self._writers, event_callbacks)
+        # Before anything is announced to others: it refuses callbacks that do not fit.
+        self._monitor = PublisherMonitor(graph_entry, time_base, event_callbacks)
+        writers = self._monitor.writers = self._writers = tuple(make_writers())
+        self.stats = PublisherStats(writers, graph_entry.matched)
         if self._monitor.needs_signs:
-            self._writers += (SignOfLife(self._writers, self._check, self._monitor.note_message),)
+            self._writers += (SignOfLife(writers, self._check, self._monitor.note_message),)
 
     def __repr__(self) -> str:
         return (

@@ -22,9 +22,18 @@ ENTITY = {"destroy", "destroyed"}
 OFFERED = {
     "Publisher": ENTITY
     | {"drain", "get_subscription_count", "msg_type", "publish", "qos_profile", "stats", "topic"}
-    | {"topic_name", "wait_for_subscribers"},
+    | {"assert_liveliness", "events", "topic_name", "wait_for_subscribers"},
     "Subscription": ENTITY
-    | {"callback", "get_publisher_count", "msg_type", "qos_profile", "raw", "receive", "stats"}
+    | {
+        "callback",
+        "events",
+        "get_publisher_count",
+        "msg_type",
+        "qos_profile",
+        "raw",
+        "receive",
+        "stats",
+    }
     | {"topic", "topic_name"},
     "Service": ENTITY
     | {"callback", "qos_profile", "service_name", "srv_name", "srv_type", "stats"},

@@ -11,57 +11,16 @@ from aionode.endpoints._core.entity import Entity
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints.events import EVENTS_KEPT, EventStream
 from aionode.endpoints.stats import CallbackStats
-from aionode.errors import brief, shortened
+from aionode.errors import brief
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine, Mapping
-    from collections.abc import Set as AbstractSet
 
     from aionode.endpoints._core.callback_runner import Callbacks
+    from aionode.endpoints._core.graph_entry import GraphEntry
     from aionode.endpoints.events import PublisherEventCallbacks, SubscriptionEventCallbacks
 
-__all__ = [
-    "EventHandler",
-    "EventHub",
-    "check_event_callbacks",
-    "given_callbacks",
-    "handled_mismatches",
-]
-
-
-def check_event_callbacks(given: object, wanted: type[Any], subject: str) -> None:
-    """Raise TypeError unless `given` is None or of the class `wanted`."""
-    if given is not None and not isinstance(given, wanted):
-        raise TypeError(
-            f"{shortened(subject)}: event_callbacks is {brief(given)}; give a {wanted.__name__}, "
-            f"such as {wanted.__name__}(matched=print)"
-        )
-
-
-def given_callbacks(event_callbacks: object | None) -> dict[str, Callable[[Any], object]]:
-    """Return the callbacks that are given, by the name of their event."""
-    if event_callbacks is None:
-        return {}
-    return {
-        name: callback
-        for name, callback in vars(event_callbacks).items()
-        if callback is not None and name != "use_default_callbacks"
-    }
-
-
-def handled_mismatches(
-    event_callbacks: PublisherEventCallbacks | SubscriptionEventCallbacks | None,
-) -> AbstractSet[str]:
-    """Return the mismatches that are not to be logged, as `Graph.unreported` has them."""
-    if event_callbacks is None:
-        return frozenset()
-    silent = not event_callbacks.use_default_callbacks
-    handled = set()
-    if silent or event_callbacks.incompatible_qos is not None:
-        handled.add("qos")
-    if silent or event_callbacks.incompatible_type is not None:
-        handled.update(("type", "definition"))
-    return handled
+__all__ = ["EventHandler", "EventHub"]
 
 
 class EventHandler(Entity):
@@ -94,6 +53,10 @@ class EventHandler(Entity):
             for name, callback in event_callbacks.items()
         }
 
+    def calls(self, name: str) -> bool:
+        """Return whether a callback was given for the events called `name`."""
+        return name in self._runners
+
     def put(self, name: str, event: object) -> None:
         """Have the callback called, if there is one for this event."""
         if name in self._runners and not self.destroyed:
@@ -114,15 +77,53 @@ class EventHandler(Entity):
 class EventHub:
     """Hands the events of one endpoint on, and remembers the newest of each kind.
 
+    Args:
+        graph_entry: The endpoint.
+        event_callbacks: What the program gave for its events.
+        wanted: The class of that.
+
     Attributes:
         handler: Calls the callbacks; None without any.
+
+    Raises:
+        TypeError: `event_callbacks` is of another class, or a function in it takes other arguments.
     """
 
-    def __init__(self, handler: EventHandler | None) -> None:
-        self.handler = handler
+    def __init__(
+        self,
+        graph_entry: GraphEntry,
+        event_callbacks: PublisherEventCallbacks | SubscriptionEventCallbacks | None,
+        wanted: type[PublisherEventCallbacks | SubscriptionEventCallbacks],
+    ) -> None:
+        self.handler: EventHandler | None = None
         self._stream: EventStream[Any] | None = None
         self._newest: dict[str, Any] = {}
         self._ended = False
+        if event_callbacks is None:
+            return
+        endpoint = graph_entry.endpoint
+        subject = f"{endpoint.kind.value} of {endpoint.name}"
+        if not isinstance(event_callbacks, wanted):
+            raise TypeError(
+                f"{subject}: event_callbacks is {brief(event_callbacks)}; give a "
+                f"{wanted.__name__}, such as {wanted.__name__}(matched=print)"
+            )
+        given = {
+            name: callback
+            for name, callback in vars(event_callbacks).items()
+            if callback is not None and name != "use_default_callbacks"
+        }
+        if given:
+            self.handler = EventHandler(subject, given, graph_entry.callbacks)
+        silent = not event_callbacks.use_default_callbacks
+        handled = {"qos"} if silent or "incompatible_qos" in given else set()
+        if silent or "incompatible_type" in given:
+            handled.update(("type", "definition"))
+        graph_entry.leave_unreported(handled)
+
+    def calls(self, name: str) -> bool:
+        """Return whether a callback was given for the events called `name`."""
+        return self.handler is not None and self.handler.calls(name)
 
     @property
     def has_listeners(self) -> bool:

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from aionode.endpoints._qos.event_hub import EventHandler, EventHub, given_callbacks
+from aionode.endpoints._qos.event_hub import EventHub
 from aionode.endpoints._qos.matching import Matching
 from aionode.endpoints._qos.silence import SilenceAlarm
-from aionode.endpoints.events import QoSLivelinessLostInfo, QoSOfferedDeadlineMissedInfo
+from aionode.endpoints.events import (
+    PublisherEventCallbacks,
+    QoSLivelinessLostInfo,
+    QoSOfferedDeadlineMissedInfo,
+)
 from aionode.qos import LivelinessPolicy, is_unlimited
 from aionode.transport.base import Writer
 
@@ -17,7 +21,8 @@ if TYPE_CHECKING:
     from aionode.clock import TimeBase
     from aionode.clock._time_base import Alarm
     from aionode.endpoints._core.graph_entry import GraphEntry
-    from aionode.endpoints.events import EventStream, PublisherEventCallbacks
+    from aionode.endpoints._qos.event_hub import EventHandler
+    from aionode.endpoints.events import EventStream
     from aionode.transport.base import SampleInfo
 
 __all__ = ["PublisherMonitor", "SignOfLife"]
@@ -62,23 +67,25 @@ class PublisherMonitor:
     Args:
         graph_entry: The publisher.
         time_base: The time.
-        writers: Its counterparts in the transports.
         event_callbacks: What the program gave for its events.
+
+    Attributes:
+        writers: The counterparts of the publisher in the transports.
+
+    Raises:
+        TypeError: `event_callbacks` is of another class, or a function in it takes other arguments.
     """
 
     def __init__(
         self,
         graph_entry: GraphEntry,
         time_base: TimeBase,
-        writers: Sequence[Writer],
         event_callbacks: PublisherEventCallbacks | None,
     ) -> None:
         self._graph_entry = graph_entry
         self._time_base = time_base
-        self._writers = writers
-        given = given_callbacks(event_callbacks)
-        subject = f"publisher of {graph_entry.endpoint.name}"
-        self._hub = EventHub(EventHandler(subject, given, graph_entry.callbacks) if given else None)
+        self.writers: Sequence[Writer] = ()
+        self._hub = EventHub(graph_entry, event_callbacks, PublisherEventCallbacks)
         self._missed = 0
         self._lost = 0
         qos = graph_entry.endpoint.qos
@@ -130,7 +137,7 @@ class PublisherMonitor:
         """Renew the lease, and tell the subscriptions that the publisher is alive."""
         if self._lease_alarm is not None:
             self._lease_alarm.note()
-        for writer in self._writers:
+        for writer in self.writers:
             writer.assert_liveliness()
 
     def close(self) -> None:

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Protocol
 
-from aionode.endpoints._qos.event_hub import EventHandler, EventHub, given_callbacks
+from aionode.endpoints._qos.event_hub import EventHub
 from aionode.endpoints._qos.lifespan import NEVER_NS, ExpiringItems
 from aionode.endpoints._qos.liveliness import PublisherLiveliness
 from aionode.endpoints._qos.matching import Matching
 from aionode.endpoints._qos.silence import SilenceAlarm
-from aionode.endpoints.events import QoSMessageLostInfo, QoSRequestedDeadlineMissedInfo
+from aionode.endpoints.events import (
+    QoSMessageLostInfo,
+    QoSRequestedDeadlineMissedInfo,
+    SubscriptionEventCallbacks,
+)
 from aionode.qos import is_unlimited
 
 if TYPE_CHECKING:
@@ -19,7 +23,8 @@ if TYPE_CHECKING:
     from aionode.clock import Duration, TimeBase
     from aionode.clock._time_base import Alarm
     from aionode.endpoints._core.graph_entry import GraphEntry
-    from aionode.endpoints.events import EventStream, SubscriptionEventCallbacks
+    from aionode.endpoints._qos.event_hub import EventHandler
+    from aionode.endpoints.events import EventStream
     from aionode.endpoints.stats import CallbackStats
     from aionode.graph import EndpointInfo
     from aionode.transport.base import SampleInfo
@@ -54,6 +59,9 @@ class SubscriptionMonitor:
         reader: Its queue.
         time_base: The time.
         event_callbacks: What the program gave for its events.
+
+    Raises:
+        TypeError: `event_callbacks` is of another class, or a function in it takes other arguments.
     """
 
     def __init__(
@@ -68,9 +76,7 @@ class SubscriptionMonitor:
         self._reader = reader
         self._time_base = time_base
         self._now_ns = time_base.system_ns
-        given = given_callbacks(event_callbacks)
-        subject = f"subscription of {self._endpoint.name}"
-        self._hub = EventHub(EventHandler(subject, given, graph_entry.callbacks) if given else None)
+        self._hub = EventHub(graph_entry, event_callbacks, SubscriptionEventCallbacks)
         self._runs = False
         self._missed = 0
         qos = self._endpoint.qos
@@ -80,7 +86,7 @@ class SubscriptionMonitor:
                 time_base, qos.deadline.nanoseconds, self._on_deadline_missed
             )
         self._liveliness: PublisherLiveliness | None = None
-        if not is_unlimited(qos.liveliness_lease_duration) or "liveliness" in given:
+        if not is_unlimited(qos.liveliness_lease_duration) or self._hub.calls("liveliness"):
             self._watch_liveliness()
         self._own_lifespan_ns = lifespan_ns(qos.lifespan)
         # By gid, of publishers that limit it. They stay when the publisher has gone, as its
