@@ -244,6 +244,8 @@ def signals_to(stop: Callable[[], object]) -> Iterator[None]:
 
 def end_at_once(number: int, _frame: object) -> None:
     """End the process at once: threads cannot be cancelled, and may run for any time."""
+    for each in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(each, signal.SIG_IGN)  # a third one must not print the line again
     text = f"aionode: ended at once by a second signal ({signal.Signals(number).name})\n"
     stderr = 2
     # A reader of stderr that is gone must not keep the process from ending.

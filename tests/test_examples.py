@@ -345,9 +345,10 @@ def test_the_parameters_of_another_node_are_read_and_set(domain: int) -> None:
 
 def test_the_last_message_of_a_program_is_that_the_wheels_stop(domain: int) -> None:
     """Ctrl-C cancels the callback, whose `finally` may still publish."""
+    typed = ["/cmd_vel", "geometry_msgs/msg/Twist"]  # the program may start later
     with (
         running(
-            "-m", "aionode", "topic", "echo", "/cmd_vel", "--field", "linear.x", domain=domain
+            "-m", "aionode", "topic", "echo", *typed, "--field", "linear.x", domain=domain
         ) as echo,
         running("examples/last_message.py", domain=domain) as robot,
     ):

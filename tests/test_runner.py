@@ -68,7 +68,7 @@ async def callback(msg):
         print("cancelled", flush=True)
 
 def make():
-    node = aionode.Node("node", context=context)
+    node = aionode.Node("node", context=context, callback_budget_ms=60_000)
     node.create_subscription(String, "words", callback)
     node.create_publisher(String, "words", 10).publish(String())
     return node
@@ -100,7 +100,7 @@ def test_a_second_signal_ends_the_program_at_once() -> None:
             await asyncio.Event().wait()
 
     def make():
-        node = aionode.Node("node", context=context)
+        node = aionode.Node("node", context=context, callback_budget_ms=60_000)
         node.create_timer(0.0, callback)
         return node
 
@@ -126,7 +126,7 @@ def test_the_second_signal_works_while_a_callback_blocks_the_loop() -> None:
             time.sleep(1)
 
     def make():
-        node = aionode.Node("node", context=context)
+        node = aionode.Node("node", context=context, callback_budget_ms=60_000)
         node.create_timer(0.0, callback)
         return node
 
@@ -215,7 +215,7 @@ def test_a_bug_in_a_callback_is_shown_with_its_traceback() -> None:
     """The exit status reports it to the shell."""
     body = """
     def make():
-        node = aionode.Node("node", context=context)
+        node = aionode.Node("node", context=context, callback_budget_ms=60_000)
         node.create_timer(0.0, lambda: 1 / 0)
         return node
 

@@ -226,9 +226,13 @@ async def close_session(session):
     threading.Thread(target=threading.Event().wait).start()
 transport.close_session = close_session
 """
+HANGING_EXIT = """
+import atexit, threading
+atexit.register(threading.Event().wait)
+"""
 
 
-@pytest.mark.parametrize("hanging", [HANGING_LOOP, HANGING_THREAD])
+@pytest.mark.parametrize("hanging", [HANGING_LOOP, HANGING_THREAD, HANGING_EXIT])
 @pytest.mark.parametrize(
     ("arguments", "status", "stdout", "stderr"),
     [

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+
 import pytest
 
 from aionode import Context, Node, Supervisor
@@ -79,4 +81,4 @@ def test_the_list_of_the_context_is_that_of_the_class() -> None:
     """The attributes of an instance are those that the docstring lists."""
     attributes = set(public_names(local_context())) - set(public_names(Context))
 
-    assert all(f"        {name}: " in (Context.__doc__ or "") for name in attributes)
+    assert all(f"\n    {name}: " in inspect.cleandoc(Context.__doc__ or "") for name in attributes)
