@@ -14,7 +14,7 @@ from zenoh import ext
 from aionode.clock import perf_ns
 from aionode.errors import TransportError
 from aionode.graph import EndpointKind
-from aionode.qos import HistoryPolicy, depth_of
+from aionode.qos import HistoryPolicy, depth_of, is_unlimited
 from aionode.transport._reliability import WriterHistory
 from aionode.transport._send_thread import SendQueue, SendThread
 from aionode.transport.base import Writer
@@ -87,6 +87,8 @@ class ZenohWriter(Declaration, Writer):
         self._transient = is_transient(qos)
         self._depth = depth_of(qos)
         self._reliable = is_reliable(qos)
+        lifespan = qos.lifespan
+        self._lifespan_ns = 0 if is_unlimited(lifespan) else lifespan.nanoseconds
         # Messages for late readers that were published before the session is open.
         self._early: deque[tuple[bytes, bytes]] = deque(maxlen=self._depth)
         self.active = self._transient
@@ -334,7 +336,9 @@ class ZenohWriter(Declaration, Writer):
             self._put_patiently(publisher, payload, extra)
         elif size >= BULK_BYTES or self._bulk_only or self._is_large_used:
             self._is_large_used = True
-            self._large.put(lambda: self._send(publisher, payload, extra))
+            self._large.put(
+                self._unless_expired(extra, partial(self._send, publisher, payload, extra))
+            )
         else:
             try:
                 publisher.put(payload, attachment=extra)
@@ -371,7 +375,24 @@ class ZenohWriter(Declaration, Writer):
                     allowed_destination=zenoh.Locality.REMOTE,
                 )
         patient = self._patient_publisher or publisher
-        self._patient.put(lambda: self._send_patiently(patient, payload, extra))
+        send = partial(self._send_patiently, patient, payload, extra)
+        self._patient.put(self._unless_expired(extra, send))
+
+    def _unless_expired(self, extra: bytes, send: Callable[[], None]) -> Callable[[], None]:
+        """Return `send`, or with a lifespan what does nothing if the message expires before it.
+
+        Only readers of aionode look at the age of what arrives.
+        """
+        fields = attachment.unpack_fields(extra)
+        if not self._lifespan_ns or fields is None:
+            return send
+        expires_ns = fields[1] + self._lifespan_ns
+
+        def send_if_fresh() -> None:
+            if self.state.now_ns() < expires_ns:
+                send()
+
+        return send_if_fresh
 
     def _send_patiently(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes

@@ -100,6 +100,7 @@ class SessionState:
         self._lingered: asyncio.Future[None] | None = None
         self._shares_from_ns = 0  # when the first large message of this session was sent
         self._declarations: dict[Declaration, None] = {}
+        self._graph_is_known = False
 
     def queue(self, handle: Callable[[T], None], limit: int | None = None) -> ThreadsafeQueue[T]:
         """Return a queue from Zenoh's threads to `handle`, which is called on the event loop."""
@@ -108,7 +109,7 @@ class SessionState:
     def add(self, declaration: Declaration) -> None:
         """Declare `declaration` now, or as soon as the session is open."""
         self._declarations[declaration] = None
-        if self.session is not None:
+        if self.session is not None and (self._graph_is_known or not declaration.needs_graph):
             declaration.declare(self.session)
 
     def remove(self, declaration: Declaration) -> None:
@@ -116,7 +117,7 @@ class SessionState:
         self._declarations.pop(declaration, None)
 
     def connect(self, session: zenoh.Session, graph: Graph) -> None:
-        """Declare everything in `session`."""
+        """Declare everything in `session` that does not need to know its peers."""
         self.session = session
         self.graph = graph
         self._shares_from_ns = 0
@@ -124,7 +125,15 @@ class SessionState:
         self.cancellations.start(session)
         self.assertions.start(session)
         for declaration in list(self._declarations):
-            declaration.declare(session)
+            if not declaration.needs_graph:
+                declaration.declare(session)
+
+    def graph_is_known(self) -> None:
+        """Declare what needs the graph: by now, it has the endpoints of all connected peers."""
+        self._graph_is_known = True
+        for declaration in list(self._declarations):
+            if declaration.needs_graph and self.session is not None:
+                declaration.declare(self.session)
 
     def is_preparing_shared_memory(self) -> bool:
         """Return whether Zenoh may be creating its shared memory. Called by the bulk thread.
@@ -165,6 +174,7 @@ class SessionState:
     def disconnect(self) -> zenoh.Session | None:
         """Undeclare everything, the newest first; return the session, which the caller closes."""
         session, self.session = self.session, None
+        self._graph_is_known = False
         if session is not None:
             for declaration in reversed(self._declarations):
                 declaration.undeclare()
@@ -220,7 +230,12 @@ class Declaration(Registration):
     Args:
         state: The state of the session.
         token: Its liveliness token; an empty one hides it from other contexts.
+
+    Attributes:
+        needs_graph: Whether it is declared only when the endpoints of connected peers are known.
     """
+
+    needs_graph = False
 
     def __init__(self, state: SessionState, token: str) -> None:
         self.state = state

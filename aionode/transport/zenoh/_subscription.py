@@ -80,6 +80,8 @@ class ZenohReader(Declaration):
         self.endpoint = endpoint
         self._key = data_key(state.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
         self._transient = transient
+        # The history comes at once, and how long a message is valid is in its publisher's token.
+        self.needs_graph = transient
         self._reader = reader
         self._deliver = reader.deliver
         self._waker = state.waker
@@ -105,7 +107,8 @@ class ZenohReader(Declaration):
         self._waits_for_room = False
         self._refused = 0
         self._subscribers: list[zenoh.Subscriber[None] | ext.AdvancedSubscriber[None]] = []
-        if not is_unlimited(endpoint.qos.liveliness_lease_duration):
+        self._has_lease = not is_unlimited(endpoint.qos.liveliness_lease_duration)
+        if self._has_lease:
             state.assertions.listen(reader.note_alive)
         self._acknowledges = reliable and not transient and visible
         if self._acknowledges:
@@ -149,7 +152,8 @@ class ZenohReader(Declaration):
     def close(self) -> None:
         """Undeclare the subscription for good."""
         self.state.acknowledgements.readers.pop(self.gid, None)
-        self.state.assertions.unlisten(self._reader.note_alive)
+        if self._has_lease:
+            self.state.assertions.unlisten(self._reader.note_alive)
         super().close()
 
     def _take(self, sample: zenoh.Sample) -> None:

@@ -99,6 +99,7 @@ class ZenohTransport(Transport):
                 async with asyncio.timeout(KNOWN_S):
                     await asyncio.shield(self._answered)
             self._watcher.note_domains()
+            self._state.graph_is_known()
         finally:
             links.close()
 

@@ -9,11 +9,13 @@ import pytest
 
 from aionode._concurrency import checkpoint
 from aionode.clock import Duration
+from aionode.context import Context
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from aionode.testing import settle
 from aionode.transport.base import SampleInfo
 from tests.endpoints.qos.conftest import Pair
+from tests.support.peers import quiet_node
 
 if TYPE_CHECKING:
     from aionode.endpoints.subscription import Subscription
@@ -133,3 +135,17 @@ async def test_a_stamp_from_the_future_counts_as_now(pair: Pair) -> None:
     subscription._reader.deliver(Int32(data=2), SampleInfo(b"x" * 16, 2, future_ns, True))
     await pair.clock.advance(1)
     assert not subscription._reader
+
+
+async def test_what_waits_for_a_new_process_expires_too(pair: Pair) -> None:
+    """Its history must not come before the tokens, which say how long it is valid."""
+    publisher = pair.talker.create_publisher(Int32, "n", KEPT_LIMITED)
+    for number in range(5):
+        publisher.publish(Int32(data=number))
+    await pair.clock.advance(1)
+    publisher.publish(Int32(data=5))
+    context = pair.talker.context if pair.transport == "local" else Context(clock=pair.clock)
+    node = quiet_node("late", context)
+    subscription = node.create_subscription(Int32, "n", None, KEPT)
+    async with node:
+        assert (await subscription.receive()).data == 5
