@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import functools
 import inspect
+import os
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -30,16 +31,56 @@ def debugging_loop() -> asyncio.AbstractEventLoop:
     return loop
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Let no async test wait for ever: uvloop swallows what pytest-timeout's signal raises."""
+LONGEST = (
+    "tests/processes/",
+    "tests/faults/",
+    "tests/cli/test_terminal.py",
+    "tests/test_examples.py",
+    "tests/test_web_robot.py",
+    "tests/cli/test_ending.py",
+    "tests/wire/cdr/test_properties.py",
+)
+"""Files and folders that several workers begin with, so that none of them is left at the end."""
+
+
+@pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads its options
+def pytest_cmdline_main(config: pytest.Config) -> None:
+    """Run each file in one worker, as its tests share what they start, and keep the order."""
+    if config.getoption("numprocesses", None) and config.option.dist == "no":
+        config.option.dist = "loadfile"
+        config.option.loadscopereorder = False
+
+
+@pytest.hookimpl(optionalhook=True)  # of pytest-xdist
+def pytest_xdist_auto_num_workers() -> int:
+    """Use one worker more than there are processors: tests of processes mostly wait."""
+    return (os.cpu_count() or 1) + 1
+
+
+@pytest.hookimpl(tryfirst=True)  # before tests are deselected by their marks
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Bound async tests, leave out what one loop can show, and begin with the longest files."""
     for item in items:
         if isinstance(item, pytest.Function) and inspect.iscoroutinefunction(item.obj):
             marker = item.get_closest_marker("timeout")
             item.obj = bounded(item.obj, marker.args[0] if marker and marker.args else 60.0)
+            if item.get_closest_marker("one_loop") and "uvloop" in item.name:
+                item.add_marker("stress")
+    if hasattr(config, "workerinput"):  # of pytest-xdist
+        items.sort(key=rank)
+
+
+def rank(item: pytest.Item) -> int:
+    """Return the place of a test's file among `LONGEST`, or the number behind all of them."""
+    found = (place for place, prefix in enumerate(LONGEST) if item.nodeid.startswith(prefix))
+    return next(found, len(LONGEST))
 
 
 def bounded(test: Callable[..., Awaitable[None]], limit_s: float) -> Callable[..., Awaitable[None]]:
-    """Return `test` with a time limit a little below that of pytest-timeout."""
+    """Return `test` with a time limit a little below that of pytest-timeout.
+
+    uvloop swallows what pytest-timeout's signal raises.
+    """
 
     @functools.wraps(test)
     async def run(*args: Any, **fixtures: Any) -> None:

@@ -111,7 +111,7 @@ def freezes(way: str) -> Iterator[Case]:
                     (name,),
                     loss="told",
                     lasts_s=seconds,
-                    short=short and kind == "calls" and name == "server",
+                    short=short and kind == "calls" and name == "server" and way == "Zenoh",
                 )
         yield Case(
             f"{way}: one of three frozen {seconds} s, all hear all",
@@ -130,7 +130,7 @@ def kills(way: str) -> Iterator[Case]:
             f"{way}: KEEP_ALL {name} killed and replaced",
             on(way, *talk(keep_all=True)),
             replace(name),
-            short=name == "talker",
+            short=name == "talker" and way == "link",
         )
     for roles, kind in ((CALLING, "calls"), (ACTING, "goals")):
         for name in ("server", "client"):
@@ -139,7 +139,7 @@ def kills(way: str) -> Iterator[Case]:
                 on(way, *roles),
                 replace(name),
                 loss="told",
-                short=name == "server",
+                short=name == "server" and way == ("link" if kind == "goals" else "Zenoh"),
             )
 
 
@@ -167,7 +167,7 @@ def comings(way: str) -> Iterator[Case]:
                 Role("reader", hear=(Hear("/a", keep_all=keep_all, depth=1000),)),
             ),
             wait(2),
-            short=keep_all,
+            short=keep_all and way == "Zenoh",
         )
     yield Case(
         f"{way}: KEEP_ALL reader takes 4 ms a message, its publisher 2 ms",
@@ -204,7 +204,7 @@ def outputs(way: str) -> Iterator[Case]:
             ),
             wait(3),
             ("noisy",),
-            short=way == "link",
+            short=way == "link" and output == "unread",
         )
     yield Case(
         f"{way}: shared memory full, large messages",
