@@ -10,10 +10,12 @@ import pytest
 from aionode._concurrency import checkpoint
 from aionode.clock import Duration
 from aionode.context import Context
+from aionode.graph import EndpointKind
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from aionode.testing import settle
 from aionode.transport.base import SampleInfo
+from aionode.transport.zenoh._subscription import ZenohReader
 from tests.endpoints.qos.conftest import Pair
 from tests.support.peers import quiet_node
 
@@ -137,15 +139,27 @@ async def test_a_stamp_from_the_future_counts_as_now(pair: Pair) -> None:
     assert not subscription._reader
 
 
-async def test_what_waits_for_a_new_process_expires_too(pair: Pair) -> None:
+async def test_what_waits_for_a_new_process_expires_too(
+    pair: Pair, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Its history must not come before the tokens, which say how long it is valid."""
+    known: list[int] = []
+    declare = ZenohReader.declare_data
+
+    def note(reader: ZenohReader, session: Any) -> None:
+        assert reader.state.graph is not None
+        known.append(reader.state.graph.count(EndpointKind.PUBLISHER, "/n"))
+        declare(reader, session)
+
     publisher = pair.talker.create_publisher(Int32, "n", KEPT_LIMITED)
     for number in range(5):
         publisher.publish(Int32(data=number))
     await pair.clock.advance(1)
     publisher.publish(Int32(data=5))
+    monkeypatch.setattr(ZenohReader, "declare_data", note)
     context = pair.talker.context if pair.transport == "local" else Context(clock=pair.clock)
     node = quiet_node("late", context)
     subscription = node.create_subscription(Int32, "n", None, KEPT)
     async with node:
         assert (await subscription.receive()).data == 5
+    assert known == ([] if pair.transport == "local" else [1])
