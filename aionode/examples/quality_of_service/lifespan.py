@@ -50,7 +50,7 @@ async def application(lifespan_ms: int, publish_count: int, subscribe_after_ms: 
 def main() -> None:
     """Run the application until it is done, or until Ctrl-C."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("lifespan", type=int, nargs="?", default=3000, help="in milliseconds")
+    parser.add_argument("lifespan", type=int, nargs="?", default=1500, help="in milliseconds")
     parser.add_argument("--publish-count", type=int, default=8)
     parser.add_argument("--subscribe-after", type=int, default=300, help="in milliseconds")
     options, _ = parser.parse_known_args()
