@@ -46,7 +46,9 @@ class IpcTransport(Transport):
         time_base: TimeBase | None = None,
     ) -> None:
         self.zenoh = zenoh
-        self.manager = LinkManager(participant, domain_id, peer_directory, time_base)
+        self.manager = LinkManager(participant, domain_id, peer_directory)
+        if time_base is not None:
+            self.manager.now_ns = time_base.system_ns
         self._peer_directory = peer_directory
         self._graph: Graph | None = None
 
@@ -123,7 +125,7 @@ class IpcTransport(Transport):
         if not can_link(endpoint):
             return zenoh
         writer = IpcWriter(self.manager, endpoint, msg_type, zenoh)
-        self.manager.add(writer)
+        self.manager.writers.add(endpoint.gid, writer)
         return writer
 
     def create_reader(
@@ -135,19 +137,19 @@ class IpcTransport(Transport):
             import numpy  # noqa: F401, ICN001
         ipc_reader = IpcReader(self.manager, msg_type, reader)
         ipc_reader.attach(self.zenoh.create_reader(endpoint, msg_type, ipc_reader))
-        self.manager.add(ipc_reader)
+        self.manager.readers.add(ipc_reader.gid, ipc_reader)
         return ipc_reader
 
     def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Registration:
         """Announce a server."""
         zenoh = self.zenoh.create_server(endpoint, srv_type, serve)
         server = IpcServer(self.manager, endpoint, srv_type, serve, zenoh)
-        self.manager.add(server)
+        self.manager.servers[endpoint.gid] = server
         return server
 
     def create_requester(self, endpoint: EndpointInfo, srv_type: Any) -> Requester:
         """Announce a client."""
         zenoh = self.zenoh.create_requester(endpoint, srv_type)
         requester = IpcRequester(self.manager, endpoint, srv_type, zenoh)
-        self.manager.add(requester)
+        self.manager.requesters[endpoint.gid] = requester
         return requester

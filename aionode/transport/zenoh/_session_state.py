@@ -41,10 +41,7 @@ FLUSH_S: Final = 2.0
 """How long `flush` waits for reliable messages, while their readers make progress."""
 
 BULK_FLUSH_S: Final = 0.15
-"""How long `flush` waits for large messages, which may be dropped."""
-
-SHARING_NS: Final = 500_000_000
-"""How long Zenoh may take to have its shared memory ready."""
+"""How long `flush` waits for large messages, which may be dropped, and for single contexts."""
 
 
 class LingeringWriter(Protocol):
@@ -98,7 +95,6 @@ class SessionState:
         self.now_ns = (MachineTime() if time_base is None else time_base).system_ns
         self.on_reader: dict[str, list[Callable[[], None]]] = {}
         self._lingered: asyncio.Future[None] | None = None
-        self._shares_from_ns = 0  # when the first large message of this session was sent
         self._declarations: dict[Declaration, None] = {}
         self._graph_is_known = False
 
@@ -120,7 +116,6 @@ class SessionState:
         """Declare everything in `session` that does not need to know its peers."""
         self.session = session
         self.graph = graph
-        self._shares_from_ns = 0
         self.acknowledgements.start(session)
         self.cancellations.start(session)
         self.assertions.start(session)
@@ -134,17 +129,6 @@ class SessionState:
         for declaration in list(self._declarations):
             if declaration.needs_graph and self.session is not None:
                 declaration.declare(self.session)
-
-    def is_preparing_shared_memory(self) -> bool:
-        """Return whether Zenoh may be creating its shared memory. Called by the bulk thread.
-
-        Zenoh creates it for the first large message, which takes about 20 ms. That message still
-        goes through the network, in fragments; if one has to wait for more than a millisecond or
-        two, Zenoh drops the whole message (zenoh 1.10).
-        """
-        now_ns = perf_ns()
-        self._shares_from_ns = self._shares_from_ns or now_ns
-        return now_ns - self._shares_from_ns < SHARING_NS
 
     async def flush(self) -> None:
         """Wait until all messages were sent and acknowledged, for `FLUSH_S` at most.
@@ -163,7 +147,8 @@ class SessionState:
                         await send_thread.flush()
         with suppress(TimeoutError):
             async with asyncio.timeout(BULK_FLUSH_S):
-                await self.bulk.flush()
+                for send_thread in (self.bulk, *self.peer_senders.send_threads()):
+                    await send_thread.flush()
 
     def has_lingered(self, writer: LingeringWriter) -> None:
         """Remove a publisher that does not linger any more."""

@@ -12,11 +12,12 @@ from zenoh import ext
 from aionode.clock import perf_ns
 from aionode.errors import DecodeError
 from aionode.graph import EndpointKind
-from aionode.qos import HistoryPolicy, depth_of, is_unlimited
+from aionode.qos import depth_of, is_unlimited, keeps_all
 from aionode.transport._reliability import NEVER, OVERHEAD_BYTES
 from aionode.transport._writer_proxy import WriterProxy
 from aionode.transport.base import SampleInfo
 from aionode.transport.zenoh._delivery import has_buffers, is_reliable, is_transient
+from aionode.transport.zenoh._handlers import direct
 from aionode.transport.zenoh._session_state import Declaration
 from aionode.wire import _acknack as acknack
 from aionode.wire import cdr
@@ -90,7 +91,7 @@ class ZenohReader(Declaration):
         self._decode: Callable[[bytes], Any] | None = None
         depth = depth_of(endpoint.qos)
         reliable = is_reliable(endpoint.qos)
-        self._keep_all = endpoint.qos.history is HistoryPolicy.KEEP_ALL and reliable
+        self._keep_all = keeps_all(endpoint.qos)
         # A few hundred images waiting for a busy loop would take all memory; what is small may
         # wait for its turn in the subscription's own queue, where it is counted if dropped.
         limit = depth if self._buffers else max(depth, BACKLOG)
@@ -117,7 +118,7 @@ class ZenohReader(Declaration):
 
     def declare_data(self, session: zenoh.Session) -> None:
         """Declare the subscriber; a transient local one gets the history."""
-        put = self._queue.put
+        put = direct(self._queue.put)
         if self._transient:
             reliable = is_reliable(self.endpoint.qos)
             subscriber: Any = ext.declare_advanced_subscriber(
