@@ -27,6 +27,7 @@ ALIASES: Final = {
     "rclpy": "aionode.rclpy",
     "rosidl_parser": "aionode.rclpy._rosidl_parser",
     "rosidl_runtime_py": "aionode.rclpy._rosidl_runtime_py",
+    "sensor_msgs_py": "aionode.rclpy._sensor_msgs_py",
     "ament_index_python": "aionode.rclpy._ament_index_python",
 }
 """The packages of ROS that are packages of aionode; their modules are the same objects."""
