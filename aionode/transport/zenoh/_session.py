@@ -304,16 +304,20 @@ async def open_session(network: Network, participant: str) -> tuple[zenoh.Sessio
                 "ZENOH_SESSION_CONFIG_URI, ZENOH_CONFIG_OVERRIDE and Context(config=...)"
             ) from error
         # Configured peers may be absent; one of them is waited for.
-        configured = bool(network.static_peers or network.config_file)
+        configured = bool(network.near_peers or network.config_file)
         return session, len(answering) + configured
 
     return await run_in_own_thread(work, late=lambda opened: opened[0].close())
 
 
-async def open_router(listen: Iterable[str]) -> zenoh.Session:
+async def open_router(listen: Iterable[str], connect: Iterable[str] = ()) -> zenoh.Session:
     """Open a router, as `rmw_zenohd` is; `close_session` ends it.
 
     ``ZENOH_CONFIG_OVERRIDE`` is honoured, for TLS and access control.
+
+    Args:
+        listen: The Zenoh endpoints on which it listens.
+        connect: Those of routers on other machines, with which it is linked; they may be absent.
 
     Raises:
         ConfigurationError: the override does not fit.
@@ -325,7 +329,7 @@ async def open_router(listen: Iterable[str]) -> zenoh.Session:
 
     def work() -> zenoh.Session:
         try:
-            return zenoh.open(load_config(network, router_settings(endpoints)))
+            return zenoh.open(load_config(network, router_settings(endpoints, connect)))
         except zenoh.ZError as error:
             raise TransportError(
                 f"router on {', '.join(endpoints)}: {reason(error)}; "
