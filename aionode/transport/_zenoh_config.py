@@ -107,6 +107,12 @@ class Network:
     router_port: int = ROUTER_PORT
 
     @property
+    def may_reach_far(self) -> bool:
+        """Whether a session may be connected to other machines itself."""
+        subnet = self.discovery_range is DiscoveryRange.SUBNET
+        return subnet or self.config_file is not None or bool(self.overrides)
+
+    @property
     def far_peers(self) -> tuple[str, ...]:
         """Those static peers that a router of this machine dials: on other machines."""
         if self.discovery_range is DiscoveryRange.OFF:
@@ -247,6 +253,7 @@ def is_near(endpoint: str) -> bool:
     """Return whether an endpoint is on this machine, as far as its text tells."""
     protocol, _, address = endpoint.partition("/")
     host = split_port(address.partition("?")[0].partition("#")[0])[0].strip("[]")
+    host = host.removeprefix("::ffff:")  # an IPv4 address as IPv6 has it
     return protocol.startswith("unix") or host in ("localhost", "::1") or host.startswith("127.")
 
 
@@ -380,7 +387,7 @@ def router_settings(
         "connect/endpoints": list(connect),
         "connect/timeout_ms": -1,
         "connect/exit_on_failure": False,
-        "connect/retry": RETRY,
+        "connect/retry": {**RETRY, "period_max_ms": 1000},
         "open/return_conditions/connect_scouted": False,
         "scouting/multicast/enabled": False,
         "scouting/gossip/enabled": True,
@@ -388,8 +395,11 @@ def router_settings(
         "scouting/gossip/autoconnect": {"router": [], "peer": all_kinds},
         "timestamping/enabled": True,
         "queries_default_timeout": 600_000,
-        "transport/link/tx/lease": 60_000,
-        "transport/link/tx/keep_alive": 2,
+        # Another machine may be out of reach for a while: each end gives the connection up soon, so
+        # that it can be made anew as soon as the network is back. `rmw_zenohd` has 60 s.
+        "transport/link/tx/lease": 8_000,
+        "transport/link/tx/keep_alive": 4,
+        "transport/unicast/open_timeout": 2_000,
         "transport/shared_memory/enabled": False,
         # A query for its routing table can deadlock it: zenoh's pull request 2619.
         "adminspace/enabled": False,

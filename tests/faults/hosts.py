@@ -77,12 +77,26 @@ class TwoHosts:
         return tuple(self.within(int(role.name.endswith("there")), role) for role in roles)
 
     def cut(self, seconds: float) -> Fault:
-        """Pull the cable out for some time."""
+        """Pull the cable out for some time, and let both hosts know."""
 
         async def strike(stage: Stage) -> None:
             ip("-n", self.names[0], "link", "set", self._devices[0], "down")
             await asyncio.sleep(seconds)
             ip("-n", self.names[0], "link", "set", self._devices[0], "up")
+
+        return strike
+
+    def swallow(self, seconds: float) -> Fault:
+        """Lose everything for some time, as a radio link out of reach does: no host knows."""
+        ends = list(zip(self.names, self._devices, reversed(ADDRESSES), strict=True))
+
+        async def strike(stage: Stage) -> None:
+            for name, device, other in ends:  # to a hardware address that nobody has
+                nobody = ("lladdr", "02:00:00:00:00:01", "nud", "permanent")
+                ip("-n", name, "neigh", "replace", other, "dev", device, *nobody)
+            await asyncio.sleep(seconds)
+            for name, device, other in ends:
+                ip("-n", name, "neigh", "delete", other, "dev", device)
 
         return strike
 
@@ -149,6 +163,7 @@ def host_cases() -> Iterator[Case]:
     """Yield what happens between two hosts."""
     shapes: list[tuple[str, float | tuple[str, ...]]] = [
         *((f"is cut {seconds} s", seconds) for seconds in (3, 14, 70)),
+        *((f"swallows everything for {seconds} s", -seconds) for seconds in (3, 14, 70)),
         ("delays 100 ms for 5 s", ("netem", "delay", "100ms", "20ms")),
         ("loses 5 % for 5 s", ("netem", "loss", "5%")),
         ("carries 1 Mbit/s for 5 s", ("tbf", "rate", "1mbit", "burst", "10kb", "latency", "50ms")),
@@ -159,15 +174,18 @@ def host_cases() -> Iterator[Case]:
             if roles is ONE_ROUTER and isinstance(how, tuple):
                 continue
             hosts = TwoHosts(next(numbers))
-            strike = hosts.shape(5, *how) if isinstance(how, tuple) else hosts.cut(how)
+            if isinstance(how, tuple):
+                strike = hosts.shape(5, *how)
+            else:
+                strike = hosts.cut(how) if how > 0 else hosts.swallow(-how)
             yield Case(
                 f"two hosts, {where}, the cable {what}",
                 hosts.placed(roles),
                 strike,
                 loss="any",
-                lasts_s=5 if isinstance(how, tuple) else how,
+                lasts_s=5 if isinstance(how, tuple) else abs(how),
                 around=hosts,
-                short=how == 3,
+                short=how == -3,
             )
     hosts = TwoHosts(next(numbers))
     yield Case(

@@ -29,6 +29,7 @@ from aionode.transport.zenoh._session import (
     load_config,
     run_in_own_thread,
 )
+from aionode.transport.zenoh._sockets import give_up_unreachable
 
 if TYPE_CHECKING:
     from aionode.transport._zenoh_config import Network
@@ -149,6 +150,7 @@ class LocalRouter:
             except zenoh.ZError as error:  # another process was faster
                 logger.debug("%s: no router was opened: %s", here, reason(error))
                 return
+        give_up_unreachable(router)
         until_linked(router)
 
     def _router_at(self, port: int) -> str:
