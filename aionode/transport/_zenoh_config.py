@@ -364,6 +364,10 @@ def session_settings(network: Network, taken: Iterable[int]) -> dict[str, Any]:
         "transport/unicast/open_timeout": 3000 if network.near_peers else 700,
         "scouting/multicast/enabled": subnet,
         "scouting/gossip/enabled": not off,
+        # As rmw_zenoh: if both dialled, Zenoh might keep neither of the two connections.
+        "scouting/gossip/autoconnect_strategy": {
+            "peer": {"to_router": "always", "to_peer": "greater-zid"}
+        },
         # The history of transient_local topics is put in order by time stamps.
         "timestamping/enabled": True,
         # Histories are fetched with this timeout; every other query says its own.

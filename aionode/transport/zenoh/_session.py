@@ -52,8 +52,12 @@ T = TypeVar("T")
 PROBE_S = 0.2
 """How long a port on this machine may take to accept a connection; it takes 0.1 ms."""
 
-SPEAK_S = 0.5
-"""How long a program may take to answer Zenoh's first message; it takes a millisecond."""
+SPEAK_S = 2.0
+"""How long a program may take to answer Zenoh's first message; it takes a millisecond.
+
+A process of aionode may take longer where many start at once. Other programs mostly answer or close
+the connection at once.
+"""
 
 TURN_S = 1.0
 """How long this process waits for its turn to open a session; each turn takes 10 ms."""
