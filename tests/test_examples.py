@@ -11,7 +11,7 @@ import subprocess
 import sys
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import httpx
 import pytest
@@ -180,14 +180,23 @@ def test_overload_counts_every_message() -> None:
     assert program.process.returncode == 0
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        *[pytest.param(("-m", f"aionode.examples.{name}"), id=name) for name in ENDING],
-        *[pytest.param((f"examples/{name}",), id=name) for name in [*ENDLESS, "fastapi_app.py"]],
-    ],
-)
+def ends_by_signal() -> list[Any]:
+    """Return each example with each signal; one of the two signals is left to `make stress`."""
+    pairs = []
+    programs = [
+        *[(name, ("-m", f"aionode.examples.{name}")) for name in ENDING],
+        *[(name, (f"examples/{name}",)) for name in [*ENDLESS, "fastapi_app.py"]],
+    ]
+    for place, (name, arguments) in enumerate(programs):
+        usual, other = (signal.SIGINT, signal.SIGTERM)[:: 1 if place % 2 else -1]
+        pairs += [
+            pytest.param(arguments, usual, id=f"{name}-{usual.name}"),
+            pytest.param(arguments, other, id=f"{name}-{other.name}", marks=pytest.mark.stress),
+        ]
+    return pairs
+
+
+@pytest.mark.parametrize(("arguments", "number"), ends_by_signal())
 def test_a_signal_ends_an_example_cleanly(
     arguments: tuple[str, ...], number: signal.Signals
 ) -> None:

@@ -57,7 +57,7 @@ BLOCK_US: Final = 10_000_000
 BATCHES: Final = 16
 """How many batches of 64 kB wait for a peer that is busy, of each priority in `BURSTING`."""
 
-BURSTING: Final = ("interactive_high", "interactive_low", "data_high")
+BURSTING: Final = ("control", "interactive_low", "data_high")
 """The priorities of what the loop sends: tokens, requests and replies, messages."""
 
 
@@ -308,12 +308,12 @@ def look_settings(endpoint: str) -> dict[str, Any]:
     return {
         "mode": "client",
         "connect/endpoints": [endpoint],
-        "connect/timeout_ms": 700,
+        "connect/timeout_ms": 2000,
         "connect/exit_on_failure": True,
         "listen/endpoints": [],
         "scouting/multicast/enabled": False,
         "scouting/gossip/enabled": False,
-        "transport/unicast/open_timeout": 700,
+        "transport/unicast/open_timeout": 2000,
         "transport/shared_memory/enabled": False,
     }
 
