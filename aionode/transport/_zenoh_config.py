@@ -308,12 +308,12 @@ def look_settings(endpoint: str) -> dict[str, Any]:
     return {
         "mode": "client",
         "connect/endpoints": [endpoint],
-        "connect/timeout_ms": 2000,
+        "connect/timeout_ms": 700,
         "connect/exit_on_failure": True,
         "listen/endpoints": [],
         "scouting/multicast/enabled": False,
         "scouting/gossip/enabled": False,
-        "transport/unicast/open_timeout": 2000,
+        "transport/unicast/open_timeout": 700,
         "transport/shared_memory/enabled": False,
     }
 

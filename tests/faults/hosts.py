@@ -194,4 +194,5 @@ def host_cases() -> Iterator[Case]:
         replace("there"),
         loss="any",
         around=hosts,
+        short=True,
     )
