@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["LocalTransport"]
 
+
 class LocalTransport(Transport):
     """The transport of a context to itself."""
 
