@@ -44,7 +44,7 @@ class LocalTransport(Transport):
         """Connect a publisher with the subscriptions of its topic."""
         topic = self._topic(endpoint.name)
         writer = LocalWriter(endpoint, msg_type, topic)
-        topic.writers.append(writer)
+        topic.writers[writer] = None
         for reader in topic.readers:
             writer.meet(reader)
         return writer
@@ -55,7 +55,7 @@ class LocalTransport(Transport):
         """Connect a subscription with the publishers of its topic; late ones get the history."""
         topic = self._topic(endpoint.name)
         local_reader = LocalReader(endpoint, msg_type, reader, topic)
-        topic.readers.append(local_reader)
+        topic.readers[local_reader] = None
         for writer in topic.writers:
             writer.meet(local_reader)
         return local_reader
@@ -103,21 +103,24 @@ class _Topic:
     __slots__ = ("_forget", "readers", "writers")
 
     def __init__(self, forget: Callable[[], object]) -> None:
-        self.writers: list[LocalWriter] = []
-        self.readers: list[LocalReader] = []
+        self.writers: dict[LocalWriter, None] = {}  # ordered sets
+        self.readers: dict[LocalReader, None] = {}
         self._forget = forget
 
     def leave(self, member: LocalWriter | LocalReader) -> None:
         """Remove one of either side; twice is the same as once."""
-        side: list[Any] = self.writers if isinstance(member, LocalWriter) else self.readers
+        side: dict[Any, None] = self.writers if isinstance(member, LocalWriter) else self.readers
         if member in side:
-            side.remove(member)
+            del side[member]
             if not self.writers and not self.readers:
                 self._forget()
 
 
 class LocalReader(Registration):
-    """A subscription as its publishers in the same context see it."""
+    """A subscription as its publishers in the same context see it.
+
+    Its content filter is applied where a message is delivered, which is still within `publish`.
+    """
 
     def __init__(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader, topic: _Topic

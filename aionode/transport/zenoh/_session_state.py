@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 import zenoh
 
 from aionode.clock import MachineTime, perf_ns
+from aionode.transport._content_filters import ContentFilters
 from aionode.transport._loop_waker import LoopWaker, ThreadsafeQueue
 from aionode.transport._send_thread import SendThread
 from aionode.transport.base import Registration
@@ -39,10 +40,7 @@ FLUSH_S: Final = 2.0
 """How long `flush` waits for reliable messages, while their readers make progress."""
 
 BULK_FLUSH_S: Final = 0.15
-"""How long `flush` waits for large messages, which may be dropped."""
-
-SHARING_NS: Final = 500_000_000
-"""How long Zenoh may take to have its shared memory ready."""
+"""How long `flush` waits for large messages, which may be dropped, and for single contexts."""
 
 
 class LingeringWriter(Protocol):
@@ -71,6 +69,8 @@ class SessionState:
         own_gids: The gids of this context's publishers, lingering ones included.
         cancellations: The requests that clients have given up.
         now_ns: The system clock, in nanoseconds since 1970.
+        content_filters: What subscriptions of other contexts want.
+        has_unannounced_peers: Whether there may be subscriptions that nothing announces.
         on_reader: Called when a remote subscription appears or vanishes, by topic.
     """
 
@@ -93,8 +93,10 @@ class SessionState:
         self.cancellations = Cancellations(participant, domain_id, self.waker, self.note_malformed)
         self.now_ns = MachineTime().system_ns
         self.on_reader: dict[str, list[Callable[[], None]]] = {}
+        self.content_filters = ContentFilters()
+        self.content_filters.on_change.append(self._readers_changed)
+        self.has_unannounced_peers = True  # until the other sessions are known
         self._lingered: asyncio.Future[None] | None = None
-        self._shares_from_ns = 0  # when the first large message of this session was sent
         self._declarations: dict[Declaration, None] = {}
 
     def queue(self, handle: Callable[[T], None], limit: int | None = None) -> ThreadsafeQueue[T]:
@@ -115,22 +117,10 @@ class SessionState:
         """Declare everything in `session`."""
         self.session = session
         self.graph = graph
-        self._shares_from_ns = 0
         self.acknowledgements.start(session)
         self.cancellations.start(session)
         for declaration in list(self._declarations):
             declaration.declare(session)
-
-    def is_preparing_shared_memory(self) -> bool:
-        """Return whether Zenoh may be creating its shared memory. Called by the bulk thread.
-
-        Zenoh creates it for the first large message, which takes about 20 ms. That message still
-        goes through the network, in fragments; if one has to wait for more than a millisecond or
-        two, Zenoh drops the whole message (zenoh 1.10).
-        """
-        now_ns = perf_ns()
-        self._shares_from_ns = self._shares_from_ns or now_ns
-        return now_ns - self._shares_from_ns < SHARING_NS
 
     async def flush(self) -> None:
         """Wait until all messages were sent and acknowledged, for `FLUSH_S` at most.
@@ -149,7 +139,8 @@ class SessionState:
                         await send_thread.flush()
         with suppress(TimeoutError):
             async with asyncio.timeout(BULK_FLUSH_S):
-                await self.bulk.flush()
+                for send_thread in (self.bulk, *self.peer_senders.send_threads()):
+                    await send_thread.flush()
 
     def has_lingered(self, writer: LingeringWriter) -> None:
         """Remove a publisher that does not linger any more."""
@@ -172,10 +163,17 @@ class SessionState:
         return session
 
     def _readers_changed(self) -> None:
-        """Tell all publishers: the readers of another context are now known to acknowledge."""
+        """Tell all publishers that more is known about the readers of other contexts."""
         for updates in list(self.on_reader.values()):
             for update in list(updates):
                 update()
+
+    def note_unannounced_peers(self, *, there_are: bool) -> None:
+        """Record whether there may be subscriptions that nothing announces, for filters."""
+        if there_are != self.has_unannounced_peers:
+            self.has_unannounced_peers = there_are
+            if self.content_filters:
+                self._readers_changed()
 
     def note_malformed(self, key: str, problem: str) -> None:
         """Count a malformed sample; the first on each key is logged."""
