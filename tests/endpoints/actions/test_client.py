@@ -33,7 +33,7 @@ from aionode.errors import (
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
-from aionode.testing import local_context
+from aionode.testing import local_context, settle
 from tests.support.actions import Goal, PlainClient, Worker, calls_of, uuid_of
 from tests.support.peers import isolated_environment
 
@@ -233,6 +233,7 @@ async def test_the_newest_hundred_are_kept(ends: Ends) -> None:
         goal.publish_feedback(Fibonacci.Feedback(sequence=[number]))
     ends.worker.may_end.set()
     await sent.result()
+    await settle()  # feedback comes on a topic of its own
 
     assert [int(feedback.sequence[0]) async for feedback in sent] == list(range(50, 150))
 
