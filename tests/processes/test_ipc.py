@@ -212,7 +212,7 @@ async def test_a_sender_that_is_killed_in_mid_frame_ends_its_stream_and_the_next
     """What it has not sent to the end is nothing; what it has is whole."""
     async with linked_node() as node:
         stream = Stream(node)
-        closed = returns_of(monkeypatch, node.context.transports[1].manager, "on_closed")
+        closed = returns_of(monkeypatch, stream.node.context.transports[1].manager, "on_closed")
         for _ in range(2):
             with other_process("stream") as process:
                 await stream.until_linked()
