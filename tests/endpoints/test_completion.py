@@ -22,13 +22,25 @@ ENTITY = {"destroy", "destroyed"}
 OFFERED = {
     "Publisher": ENTITY
     | {"drain", "get_subscription_count", "msg_type", "publish", "qos_profile", "stats", "topic"}
-    | {"topic_name", "wait_for_subscribers"},
+    | {"assert_liveliness", "events", "topic_name", "wait_for_subscribers"},
     "Subscription": ENTITY
-    | {"callback", "get_publisher_count", "msg_type", "qos_profile", "raw", "receive", "stats"}
-    | {"topic", "topic_name", "get_content_filter", "is_cft_enabled", "set_content_filter"},
+    | {
+        "callback",
+        "events",
+        "get_content_filter",
+        "get_publisher_count",
+        "is_cft_enabled",
+        "msg_type",
+        "qos_profile",
+        "raw",
+        "receive",
+        "set_content_filter",
+        "stats",
+    }
+    | {"topic", "topic_name"},
     "Service": ENTITY
-    | {"callback", "qos_profile", "service_name", "srv_name", "srv_type", "stats"}
-    | {"configure_introspection"},
+    | {"callback", "configure_introspection", "qos_profile", "service_name", "srv_name", "srv_type"}
+    | {"stats"},
     "Client": ENTITY
     | {"call", "call_async", "qos_profile", "service_is_ready", "service_name", "srv_name"}
     | {"configure_introspection", "srv_type", "stats", "wait_for_service"},
@@ -37,9 +49,9 @@ OFFERED = {
     | {"time_since_last_call", "time_until_next_call", "timer_period_ns"},
     "Rate": ENTITY | {"sleep"},
     "ActionServer": ENTITY
-    | {"action_name", "action_type", "register_cancel_callback", "register_execute_callback"}
-    | {"register_goal_callback", "register_handle_accepted_callback", "stats"}
-    | {"configure_introspection"},
+    | {"action_name", "action_type", "configure_introspection"}
+    | {"register_cancel_callback", "register_execute_callback"}
+    | {"register_goal_callback", "register_handle_accepted_callback", "stats"},
     "ActionClient": ENTITY
     | {"action_name", "action_type", "call", "send_goal", "send_goal_async", "server_is_ready"}
     | {"configure_introspection", "wait_for_server"},
