@@ -13,6 +13,7 @@ import weakref
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self
 
 from aionode._concurrency import to_the_end
+from aionode._distribution import NO_TYPE_HASH, choose_distribution
 from aionode.arguments import Arguments, Usage
 from aionode.clock import MachineTime
 from aionode.endpoints._core.duplicate_report import DuplicateReport
@@ -89,8 +90,12 @@ class Context:
         link: Whether to reach other processes of this user on this host over a Unix socket served
             by the event loop, where the platform supports it; by default ``AIONODE_LINK`` (``on``
             or ``off``), or on.
+        ros_distro: The distribution of the ROS 2 nodes that it talks to, such as ``"humble"``; by
+            default ``ROS_DISTRO``, or ``"jazzy"``. Nodes of Humble and of newer distributions never
+            hear each other, so a context talks to one or the other.
 
     Attributes:
+        ros_distro: The distribution of ROS 2 that it belongs to.
         network: Domain, discovery and peers, from the arguments and the environment.
         graph: The nodes and endpoints known now.
         time_base: Where the time comes from.
@@ -120,7 +125,9 @@ class Context:
         static_peers: Sequence[str] | None = None,
         config: str | Path | Mapping[str, Any] | None = None,
         link: bool | None = None,
+        ros_distro: str | None = None,
     ) -> None:
+        self.ros_distro = choose_distribution(os.environ, ros_distro)
         # Zenoh writes ids without leading zeros, and all peers must see the same text.
         self.participant = secrets.token_hex(16).lstrip("0") or "1"
         self.graph = Graph()
@@ -337,9 +344,8 @@ class Context:
     async def _close_transports(self) -> None:
         for transport in reversed(self._transports):
             await transport.close()
-        for node in self.graph.nodes():
-            if node.participant != self.participant:
-                self.graph.remove_participant(node.participant)
+        for participant in {node.participant for node in self.graph.nodes()} - {self.participant}:
+            self.graph.remove_participant(participant)
 
     def _refuse_if_shut_down(self) -> None:
         if self._shut_down:
@@ -417,7 +423,7 @@ class Context:
             endpoint_id=self._new_id(),
             name=name,
             type_name=type_name(ros_type),
-            type_hash=type_hash(ros_type),
+            type_hash=NO_TYPE_HASH if self.ros_distro == "humble" else type_hash(ros_type),
             qos=qos,
             gid=b"",
         )

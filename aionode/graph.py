@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeVar
 
 from aionode import names, qos
+from aionode._distribution import distribution_mismatch
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -75,12 +76,13 @@ class Mismatch(NamedTuple):
     """Why two opposite endpoints of one name do not communicate.
 
     Attributes:
-        aspect: What differs: the name of the type, its definition, or the QoS.
+        aspect: What differs: the name of the type, its definition, the distribution of ROS 2, or
+            the QoS.
         reason: Both values, in words.
         policy: The last incompatible policy, if the QoS differs.
     """
 
-    aspect: Literal["type", "definition", "qos"]
+    aspect: Literal["type", "definition", "distribution", "qos"]
     reason: str
     policy: qos.QoSPolicyKind = qos.QoSPolicyKind.INVALID
 
@@ -97,7 +99,7 @@ class EndpointInfo:
         endpoint_id: Number of the endpoint, unique in its context.
         name: Full name of its topic or service.
         type_name: ROS name of its type, such as ``std_msgs/msg/String``.
-        type_hash: RIHS01 hash of the type, as text.
+        type_hash: RIHS01 hash of the type, as text; ``TypeHashNotSupported`` in ROS 2 Humble.
         qos: Its QoS.
         gid: 16 bytes that identify it.
     """
@@ -123,13 +125,9 @@ class EndpointInfo:
         A difference in QoS matters within one context, and between contexts over DDS; rmw_zenoh
         delivers between contexts whatever the QoS is.
         """
-        if self.type_name != other.type_name:
-            return Mismatch("type", f"type: {self.type_name} here, {other.type_name} there")
-        if self.type_hash != other.type_hash:
-            hashes = f"{self.type_hash} here, {other.type_hash} there"
-            return Mismatch("definition", f"definition of {self.type_name}: {hashes}")
-        if self.kind not in TOPIC_KINDS:
-            return None  # services neither offer nor request QoS
+        different = self._compare_types(other)
+        if different is not None or self.kind not in TOPIC_KINDS:
+            return different  # services neither offer nor request QoS
         is_publisher = self.kind is EndpointKind.PUBLISHER
         publisher, subscription = (self, other) if is_publisher else (other, self)
         reason = qos.mismatch(publisher.qos, subscription.qos)
@@ -138,17 +136,25 @@ class EndpointInfo:
         last = qos.incompatibilities(publisher.qos, subscription.qos)[-1]
         return Mismatch("qos", reason, last.kind)
 
+    def _compare_types(self, other: EndpointInfo) -> Mismatch | None:
+        if self.type_name != other.type_name:
+            return Mismatch("type", f"type: {self.type_name} here, {other.type_name} there")
+        if self.type_hash != other.type_hash:
+            reason = distribution_mismatch(self.type_hash, other.type_hash)
+            if reason is not None:
+                return Mismatch("distribution", reason)
+            hashes = f"{self.type_hash} here, {other.type_hash} there"
+            return Mismatch("definition", f"definition of {self.type_name}: {hashes}")
+        return None
+
     def mismatch(self, other: EndpointInfo) -> str | None:
         """Return why this endpoint and its opposite `other` do not communicate; None if they do.
 
         Between contexts only the types count: rmw_zenoh delivers whatever the QoS is.
         """
-        found = self.compare(other)
-        if found is None or (
-            found.aspect == "qos" and self.node.participant != other.node.participant
-        ):
-            return None
-        return found.reason
+        in_one_context = self.node.participant == other.node.participant
+        found = self.compare(other) if in_one_context else self._compare_types(other)
+        return None if found is None else found.reason
 
     def matches(self, other: EndpointInfo) -> bool:
         """Whether this endpoint communicates with its opposite `other`."""

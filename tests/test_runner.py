@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import os
 import signal
 import subprocess
@@ -15,6 +16,7 @@ from typing import Any, Self
 import pytest
 
 import aionode
+from aionode._concurrency import checkpoint
 from aionode.errors import AionodeError
 from aionode.node import Node
 from aionode.runner import failure_text
@@ -384,6 +386,33 @@ def test_run_takes_coroutine_functions() -> None:
 
     run_in_this_process(main)
     assert ran == [True]
+
+
+@pytest.mark.parametrize("is_frozen_before", [False, True])
+def test_the_search_for_garbage_leaves_out_what_a_running_program_keeps(
+    monkeypatch: pytest.MonkeyPatch, *, is_frozen_before: bool
+) -> None:
+    """A full collection takes 30 ms; a program that freezes by itself is left alone."""
+    monkeypatch.setattr("aionode.runner.STARTED_SEC", 0.0)
+    counts = []
+
+    async def main() -> None:
+        while not gc.get_freeze_count():
+            await checkpoint()
+        await checkpoint()
+        counts.append(gc.get_freeze_count())
+
+    if is_frozen_before:
+        gc.freeze()
+    before = gc.get_freeze_count()
+    try:
+        run_in_this_process(main)
+        after = gc.get_freeze_count()
+    finally:
+        gc.unfreeze()
+
+    assert counts[0] > 1000
+    assert bool(before) is bool(after) is is_frozen_before
 
 
 def test_a_failing_node_ends_the_others() -> None:

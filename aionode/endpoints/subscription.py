@@ -20,7 +20,7 @@ from aionode.endpoints.stats import CallbackStats
 from aionode.errors import DecodeError, EntityDestroyedError
 from aionode.graph import EndpointKind
 from aionode.message import Message
-from aionode.qos import DEFAULT_DEPTH, KEEP_ALL_DEPTH, HistoryPolicy
+from aionode.qos import HistoryPolicy, depth_of
 from aionode.transport.base import ReaderRegistration
 
 if TYPE_CHECKING:
@@ -292,10 +292,7 @@ class _Reader(MessageQueue[Any]):
         wants_info: bool,
     ) -> None:
         keep_all = endpoint.qos.history is HistoryPolicy.KEEP_ALL
-        depth = endpoint.qos.depth or DEFAULT_DEPTH
-        super().__init__(
-            max(depth, KEEP_ALL_DEPTH) if keep_all else depth, stats, keep_all=keep_all
-        )
+        super().__init__(depth_of(endpoint.qos), stats, keep_all=keep_all)
         self.endpoint = endpoint
         self.raw = raw
         self.wants_info = wants_info

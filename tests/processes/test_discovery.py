@@ -44,8 +44,9 @@ def heard_within(stack: ExitStack, limit_s: float, *others: str) -> Process:
     pytest.fail(f"newcomers took {took} s to hear {others}; {limit_s} s is the limit")
 
 
-FLUSH_LIMIT_S = 2.0
-"""How long a program may wait at its end for a reader that is frozen to take its last messages."""
+FLUSH_LIMIT_S = 1.0
+"""How long a program may wait at its end for a reader that takes nothing: half a second over Zenoh,
+and a second over a link."""
 
 
 def stop_within_a_second(*members: Process, flush_limit_s: float = 0.0) -> None:

@@ -7,7 +7,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from aionode.graph import EndpointKind
+from aionode.graph import TOPIC_KINDS, EndpointKind
 from aionode.names import is_hidden
 
 if TYPE_CHECKING:
@@ -89,8 +89,7 @@ def same_servers(endpoints: Iterable[EndpointInfo]) -> Iterator[Finding]:
 
 def subject_of(endpoint: EndpointInfo) -> str:
     """Return the topic or service of an endpoint, such as ``topic /chatter``."""
-    is_topic = endpoint.kind in {EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION}
-    return f"{'topic' if is_topic else 'service'} {endpoint.name}"
+    return f"{'topic' if endpoint.kind in TOPIC_KINDS else 'service'} {endpoint.name}"
 
 
 def described(endpoint: EndpointInfo) -> str:
@@ -123,6 +122,14 @@ def mismatch(offering: EndpointInfo, requesting: EndpointInfo) -> Iterator[Findi
             f"{pair} do not communicate: their types are {offering.type_name} and "
             f"{requesting.type_name}",
             "use one type on both sides, or different names",
+        )
+        return
+    if found.aspect == "distribution":
+        yield Finding(
+            "problem",
+            subject_of(offering),
+            f"{pair} do not communicate: one is of ROS 2 Humble, the other of a newer distribution",
+            "use one distribution",
         )
         return
     if found.aspect == "definition":

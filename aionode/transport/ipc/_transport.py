@@ -48,6 +48,7 @@ class IpcTransport(Transport):
         self.zenoh = zenoh
         self.manager = LinkManager(participant, domain_id, peer_directory)
         self._peer_directory = peer_directory
+        peer_directory.content_filters.on_change.append(self._refilter)
         self._graph: Graph | None = None
 
     def __repr__(self) -> str:
@@ -57,6 +58,10 @@ class IpcTransport(Transport):
     def other_domains(self) -> frozenset[int]:
         """Other domains whose nodes can be reached; they do not hear nodes of this domain."""
         return frozenset(getattr(self.zenoh, "other_domains", ()))
+
+    def _refilter(self) -> None:
+        for writer in self.manager.writers.values():
+            writer.update_filters()
 
     async def open(self, graph: Graph) -> None:
         """Connect; without a folder for sockets, or descriptors, over the other transport only."""
@@ -123,7 +128,7 @@ class IpcTransport(Transport):
         if not can_link(endpoint):
             return zenoh
         writer = IpcWriter(self.manager, endpoint, msg_type, zenoh)
-        self.manager.add(writer)
+        self.manager.writers.add(endpoint.gid, writer)
         return writer
 
     def create_reader(
@@ -135,19 +140,19 @@ class IpcTransport(Transport):
             import numpy  # noqa: F401, ICN001
         ipc_reader = IpcReader(self.manager, msg_type, reader)
         ipc_reader.attach(self.zenoh.create_reader(endpoint, msg_type, ipc_reader))
-        self.manager.add(ipc_reader)
+        self.manager.readers.add(ipc_reader.gid, ipc_reader)
         return ipc_reader
 
     def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Registration:
         """Announce a server."""
         zenoh = self.zenoh.create_server(endpoint, srv_type, serve)
         server = IpcServer(self.manager, endpoint, srv_type, serve, zenoh)
-        self.manager.add(server)
+        self.manager.servers[endpoint.gid] = server
         return server
 
     def create_requester(self, endpoint: EndpointInfo, srv_type: Any) -> Requester:
         """Announce a client."""
         zenoh = self.zenoh.create_requester(endpoint, srv_type)
         requester = IpcRequester(self.manager, endpoint, srv_type, zenoh)
-        self.manager.add(requester)
+        self.manager.requesters[endpoint.gid] = requester
         return requester

@@ -15,6 +15,7 @@ __all__ = [
     "CALL_PRIORITY",
     "LOOP_PRIORITY",
     "PATIENT_PRIORITY",
+    "RETRANSMIT_PRIORITY",
     "direct",
     "reason",
     "translated",
@@ -23,10 +24,14 @@ __all__ = [
 # Zenoh has a queue for each priority and peer. A thread that waits for room in one (congestion
 # control BLOCK, and for a moment DROP) locks it, and all other threads that put into it wait too.
 # So messages from the event loop have a queue of their own, in which no thread ever waits. Zenoh's
-# default, DATA, is left to Zenoh's own messages and to replies to ROS 2 nodes.
+# default, DATA, is left to Zenoh's own messages and to replies to ROS 2 nodes; tokens and other
+# declarations are CONTROL.
 
 LOOP_PRIORITY = zenoh.Priority.DATA_HIGH
 """Of messages from the event loop: always with congestion control DROP."""
+
+RETRANSMIT_PRIORITY = zenoh.Priority.INTERACTIVE_HIGH
+"""Of what a broken link did not deliver, sent from a thread for each peer with BLOCK."""
 
 CALL_PRIORITY = zenoh.Priority.INTERACTIVE_LOW
 """Of requests and their replies, sent with BLOCK."""
@@ -57,8 +62,9 @@ def translated(what: str) -> Iterator[None]:
 def direct(
     callback: Callable[[T], None], drop: Callable[[], None] | None = None
 ) -> zenoh.handlers.Callback[T]:
-    """Return a handler that runs in Zenoh's network thread, for infrequent samples.
+    """Return a handler that runs in Zenoh's network thread.
 
-    It saves a thread for each entity and each call, and costs latency where samples are frequent.
+    Zenoh's other kind starts a thread for each subscriber and call. `callback` must only hand over:
+    while it waits for Python, nothing else arrives.
     """
     return zenoh.handlers.Callback(callback, drop, indirect=False)

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any, Final
 import zenoh
 
 from aionode.transport import _content_filters
+from aionode.transport._send_thread import SendThread
 from aionode.transport.base import LinkStatus
-from aionode.transport.zenoh._handlers import direct, reason, translated
+from aionode.transport.zenoh._handlers import RETRANSMIT_PRIORITY, direct, reason, translated
 from aionode.transport.zenoh._recovery import is_look
 from aionode.wire._liveliness import PREFIX as ROS_PREFIX
 
@@ -75,8 +76,9 @@ class ZenohPeerDirectory:
         self._connected: dict[str, zenoh.WhatAmI] = {}
         self._declared: list[Any] = []
         self._warning: zenoh.LivelinessToken | None = None
-        # The token of each link, by the other context; used by the bulk thread only.
+        # The token of each link, by the other context; used by `_announcer` only.
         self._linked: dict[str, zenoh.LivelinessToken] = {}
+        self._announcer = SendThread("aionode-links", state.waker)
         self._session: zenoh.Session | None = None
 
     def start(self, session: zenoh.Session) -> None:
@@ -127,6 +129,7 @@ class ZenohPeerDirectory:
     def stop(self) -> None:
         """Undeclare everything, and forget all peers."""
         self._session = None
+        self._announcer.abandon()
         self._warn(needed=False)
         declared, self._declared = self._declared, []
         first, self._filters_declared = self._filters_declared, None
@@ -150,17 +153,20 @@ class ZenohPeerDirectory:
         self.content_filters.clear()
 
     def retransmit(self, participant: str, data: bytes) -> None:
-        """Send `data` to another context from the bulk thread; not dropped while both are open."""
+        """Send `data` to another context from a thread; not dropped while both are open.
+
+        That context may be stalled, so the thread is one that sends to no other.
+        """
         session = self._session
         if session is not None:
             key = self._retransmit_key(participant)
-            self._state.bulk.submit(lambda: send(session, key, data))
+            self._state.peer_senders.submit(participant, lambda: send(session, key, data))
 
     def announce_link(self, participant: str, on: bool) -> None:
         """Declare or undeclare a token for a link to another context.
 
-        Of the two contexts, the one with the smaller id does so, from the bulk thread: the other
-        end may be stalled, and Zenoh may wait for it.
+        Of the two contexts, the one with the smaller id does so, from a thread of its own: the
+        other end may be stalled, and Zenoh may wait for it.
         """
         session, linked = self._session, self._linked
         if session is None or participant < self._state.participant:
@@ -177,7 +183,7 @@ class ZenohPeerDirectory:
             except zenoh.ZError as error:  # it was closed meanwhile
                 logger.debug("%s: not announced: %s", key, reason(error))
 
-        self._state.bulk.submit(announce)
+        self._announcer.submit(announce)
 
     async def link_status(self) -> LinkStatus:
         """Ask all contexts which links they offer and have; empty without replies in time."""
@@ -295,6 +301,7 @@ def send(session: zenoh.Session, key: str, data: bytes) -> None:
             key,
             data,
             congestion_control=zenoh.CongestionControl.BLOCK,
+            priority=RETRANSMIT_PRIORITY,
             allowed_destination=zenoh.Locality.REMOTE,
         )
     except zenoh.ZError as error:

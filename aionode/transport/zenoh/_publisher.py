@@ -14,7 +14,7 @@ from zenoh import ext
 from aionode.clock import perf_ns
 from aionode.errors import TransportError
 from aionode.graph import EndpointKind
-from aionode.qos import HistoryPolicy, depth_of
+from aionode.qos import depth_of, keeps_all
 from aionode.transport._reliability import WriterHistory
 from aionode.transport._send_thread import SendQueue, SendThread
 from aionode.transport.base import Writer
@@ -77,6 +77,8 @@ class ZenohWriter(Declaration, Writer):
         self._encode: Callable[[Any], bytes] | None = None
         self._publisher: zenoh.Publisher | ext.AdvancedPublisher | None = None
         self._matching: zenoh.MatchingListener[None] | None = None
+        # Whether Zenoh has subscribers, those without a token included; its listener tells.
+        self._is_matching = False
         self._matching_changed = state.queue(self._update_with, limit=1)
         # Whether a small message may be put at once, see `_update_route`.
         self._is_direct = True
@@ -90,7 +92,7 @@ class ZenohWriter(Declaration, Writer):
         # Messages for late readers that were published before the session is open.
         self._early: deque[tuple[bytes, bytes]] = deque(maxlen=self._depth)
         self.active = self._transient
-        self.bounded = qos.history is HistoryPolicy.KEEP_ALL and self._reliable
+        self.bounded = keeps_all(qos)
         # A transient local publisher has none: there Zenoh sends lost messages again.
         self._history: WriterHistory | None = None
         if self._reliable and not self._transient:
@@ -164,6 +166,8 @@ class ZenohWriter(Declaration, Writer):
             self._matching = self._publisher.declare_matching_listener(
                 direct(self._matching_changed.put)
             )
+            # Here only: Zenoh looks through all subscribers of all topics for an answer.
+            self._is_matching = bool(self._publisher.matching_status.matching)  # type: ignore[attr-defined]  # no bool, as the stub says
         self._update()
 
     def undeclare_data(self) -> None:
@@ -231,50 +235,51 @@ class ZenohWriter(Declaration, Writer):
 
     # Readers
 
-    def _update_with(self, _: zenoh.MatchingStatus) -> None:
+    def _update_with(self, status: zenoh.MatchingStatus) -> None:
+        self._is_matching = status.matching
         self._update()
 
     def _update(self) -> None:
-        """Update `active`, the filter and the history from the matching readers."""
-        publisher, history, graph = self._publisher, self._history, self.state.graph
+        """Update `active`, the history and the filter from the matching readers."""
+        history, graph = self._history, self.state.graph
         if self._transient:
             if self._encode is None:
                 self._encode = cdr.encoder(self._msg_type)
             return
-        self._wants = None if graph is None else self._filter_of_readers(graph)
-        self.active = isinstance(publisher, zenoh.Publisher) and bool(
-            publisher.matching_status.matching  # type: ignore[attr-defined]  # no bool, as the stub says
-        )
-        if history is not None and graph is not None and publisher is not None:
-            acknowledging, others = self._matched(graph)
-            self._update_readers(history, acknowledging)
-            # The token of a reader can arrive before Zenoh has a route to it; what is lost until
-            # then is sent again, and so is what is published while a reader is away. A subscriber
-            # without a token may match too; beside readers that acknowledge, none is known.
-            self.active = self.active or bool(history.readers)
-            history.has_other_readers = others or not history.readers
-            self._update_route()
+        self.active = False
+        self._wants = None
+        if graph is not None and self._publisher is not None:
+            readers = self._matched(graph)
+            # The token of a reader can arrive before Zenoh has told of a match, or has a route to
+            # it; what is lost until then is sent again.
+            self.active = self._is_matching or bool(readers)
+            if history is not None:
+                self._update_readers(history, readers)
+            self._wants = self._filter_of(readers)
         if self.active and self._encode is None:
             self._encode = cdr.encoder(self._msg_type)
 
-    def _filter_of_readers(self, graph: Graph) -> Callable[[Any], bool] | None:
+    def _matched(self, graph: Graph) -> list[EndpointInfo]:
+        """Return the matched readers of other contexts."""
+        return [
+            reader
+            for reader in graph.endpoints(EndpointKind.SUBSCRIPTION, name=self.endpoint.name)
+            if reader.node.participant != self.state.participant and self.endpoint.matches(reader)
+        ]
+
+    def _filter_of(self, readers: list[EndpointInfo]) -> Callable[[Any], bool] | None:
         """Return whether any reader wants a message; None if all messages have to be sent."""
         filters = self.state.content_filters
         if not filters or self.state.has_unannounced_peers:
             return None
-        readers = graph.endpoints(EndpointKind.SUBSCRIPTION, name=self.endpoint.name)
-        return filters.wanted_by(
-            [
-                reader.gid
-                for reader in readers
-                if reader.node.participant != self.state.participant
-                and self.endpoint.matches(reader)
-            ],
-            self._msg_type,
-        )
+        gids = {reader.gid for reader in readers}
+        if self._history is not None:
+            gids.update(self._history.readers)  # also those that are away, and may return
+        return filters.wanted_by(gids, self._msg_type)
 
-    def _update_readers(self, history: WriterHistory, acknowledging: dict[bytes, str]) -> None:
+    def _update_readers(self, history: WriterHistory, readers: list[EndpointInfo]) -> None:
         """Add new and returned readers to the history, and remove those that have vanished."""
+        acknowledging, others = self._acknowledging(readers)
         for gid, known in list(history.readers.items()):
             if gid not in acknowledging and not known.away_until_ns:
                 history.remove(gid)
@@ -283,17 +288,22 @@ class ZenohWriter(Declaration, Writer):
                 reader = history.readers.get(gid)
                 if reader is None or reader.away_until_ns:
                     history.add(gid, participant)
+        if self.bounded and history.readers:
+            self.state.acknowledgements.probe(self)
         self._progress()
+        # What is published while a reader is away is sent again. A subscriber without a token may
+        # match too; beside readers that acknowledge, none is known.
+        self.active = self.active or bool(history.readers)
+        history.has_other_readers = others or not history.readers
+        self._update_route()
 
-    def _matched(self, graph: Graph) -> tuple[dict[bytes, str], bool]:
+    def _acknowledging(self, readers: list[EndpointInfo]) -> tuple[dict[bytes, str], bool]:
         """Return the acknowledging readers, and whether others must not lose messages."""
         able = self.state.acknowledgements.participants
         acknowledging: dict[bytes, str] = {}
         others = False
-        for reader in graph.endpoints(EndpointKind.SUBSCRIPTION, name=self.endpoint.name):
+        for reader in readers:
             participant = reader.node.participant
-            if participant == self.state.participant or not self.endpoint.matches(reader):
-                continue
             if participant not in able:
                 others = True
             elif is_reliable(reader.qos):
@@ -417,12 +427,11 @@ class ZenohWriter(Declaration, Writer):
             if session is None or self._transient:
                 publisher.put(payload, attachment=extra)
             else:
-                waits = self._reliable and self.state.is_preparing_shared_memory()
                 session.put(
                     self._key,
                     payload,
                     attachment=extra,
-                    congestion_control=BLOCK if waits else DROP,
+                    congestion_control=DROP,
                     priority=BULK_PRIORITY,
                     allowed_destination=zenoh.Locality.REMOTE,
                 )
@@ -499,6 +508,10 @@ class ZenohWriter(Declaration, Writer):
                 return False
             return True
         return again
+
+    def probe(self) -> bool:
+        """Ask readers that have everything for an answer; return whether to call again."""
+        return self._history is not None and self._history.probe()
 
     def heartbeat(self, reader: ReaderProxy, first: int, last: int) -> None:
         """Send a reader a HEARTBEAT."""

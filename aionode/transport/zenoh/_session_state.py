@@ -40,10 +40,7 @@ FLUSH_S: Final = 2.0
 """How long `flush` waits for reliable messages, while their readers make progress."""
 
 BULK_FLUSH_S: Final = 0.15
-"""How long `flush` waits for large messages, which may be dropped."""
-
-SHARING_NS: Final = 500_000_000
-"""How long Zenoh may take to have its shared memory ready."""
+"""How long `flush` waits for large messages, which may be dropped, and for single contexts."""
 
 
 class LingeringWriter(Protocol):
@@ -100,7 +97,6 @@ class SessionState:
         self.content_filters.on_change.append(self._readers_changed)
         self.has_unannounced_peers = True  # until the other sessions are known
         self._lingered: asyncio.Future[None] | None = None
-        self._shares_from_ns = 0  # when the first large message of this session was sent
         self._declarations: dict[Declaration, None] = {}
 
     def queue(self, handle: Callable[[T], None], limit: int | None = None) -> ThreadsafeQueue[T]:
@@ -121,22 +117,10 @@ class SessionState:
         """Declare everything in `session`."""
         self.session = session
         self.graph = graph
-        self._shares_from_ns = 0
         self.acknowledgements.start(session)
         self.cancellations.start(session)
         for declaration in list(self._declarations):
             declaration.declare(session)
-
-    def is_preparing_shared_memory(self) -> bool:
-        """Return whether Zenoh may be creating its shared memory. Called by the bulk thread.
-
-        Zenoh creates it for the first large message, which takes about 20 ms. That message still
-        goes through the network, in fragments; if one has to wait for more than a millisecond or
-        two, Zenoh drops the whole message (zenoh 1.10).
-        """
-        now_ns = perf_ns()
-        self._shares_from_ns = self._shares_from_ns or now_ns
-        return now_ns - self._shares_from_ns < SHARING_NS
 
     async def flush(self) -> None:
         """Wait until all messages were sent and acknowledged, for `FLUSH_S` at most.
@@ -155,7 +139,8 @@ class SessionState:
                         await send_thread.flush()
         with suppress(TimeoutError):
             async with asyncio.timeout(BULK_FLUSH_S):
-                await self.bulk.flush()
+                for send_thread in (self.bulk, *self.peer_senders.send_threads()):
+                    await send_thread.flush()
 
     def has_lingered(self, writer: LingeringWriter) -> None:
         """Remove a publisher that does not linger any more."""

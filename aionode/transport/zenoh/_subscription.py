@@ -12,7 +12,7 @@ from zenoh import ext
 from aionode.clock import perf_ns
 from aionode.errors import DecodeError
 from aionode.graph import EndpointKind
-from aionode.qos import HistoryPolicy, depth_of
+from aionode.qos import depth_of, keeps_all
 from aionode.transport._content_filters import filter_token, text_of_filter
 from aionode.transport._reliability import NEVER, OVERHEAD_BYTES
 from aionode.transport._writer_proxy import WriterProxy
@@ -23,7 +23,7 @@ from aionode.transport.zenoh._delivery import (
     is_reliable,
     is_transient,
 )
-from aionode.transport.zenoh._handlers import translated
+from aionode.transport.zenoh._handlers import direct, translated
 from aionode.transport.zenoh._session_state import Declaration
 from aionode.wire import _acknack as acknack
 from aionode.wire import cdr
@@ -93,7 +93,7 @@ class ZenohReader(Declaration, ReaderRegistration):
         self._decode: Callable[[bytes], Any] | None = None
         depth = depth_of(endpoint.qos)
         reliable = is_reliable(endpoint.qos)
-        self._keep_all = endpoint.qos.history is HistoryPolicy.KEEP_ALL and reliable
+        self._keep_all = keeps_all(endpoint.qos)
         # A few hundred images waiting for a busy loop would take all memory; what is small may
         # wait for its turn in the subscription's own queue, where it is counted if dropped.
         limit = depth if self._buffers else max(depth, BACKLOG)
@@ -120,7 +120,7 @@ class ZenohReader(Declaration, ReaderRegistration):
     def declare_data(self, session: zenoh.Session) -> None:
         """Declare the subscriber; a transient local one gets the history."""
         self._announce_filter(session)
-        put = self._queue.put
+        put = direct(self._queue.put)
         if self._transient:
             reliable = is_reliable(self.endpoint.qos)
             subscriber: Any = ext.declare_advanced_subscriber(

@@ -15,7 +15,7 @@ from aionode.transport.zenoh._recovery import Recovery
 from aionode.transport.zenoh._services import ZenohRequester, ZenohServer
 from aionode.transport.zenoh._session import ConnectionWatcher, close_session, open_session
 from aionode.transport.zenoh._session_state import SessionState
-from aionode.transport.zenoh._sockets import cut_stuck
+from aionode.transport.zenoh._sockets import LingerSwitch, cut_stuck
 from aionode.transport.zenoh._subscription import ZenohReader
 
 if TYPE_CHECKING:
@@ -59,6 +59,7 @@ class ZenohTransport(Transport):
         self._answered: asyncio.Future[None] | None = None
         self._missing = 0  # how many peers that accept connections were not connected in time
         self._recovery = Recovery(self._state, network, self._watcher.check)
+        self._linger_switch: LingerSwitch | None = None
 
     def __repr__(self) -> str:
         state = "closed" if self._state.session is None else "open"
@@ -90,6 +91,7 @@ class ZenohTransport(Transport):
         self._state.connect(session, graph)
         links = ConnectionWatcher(session, self._state.queue)
         try:
+            self._linger_switch = LingerSwitch(session)
             self._watcher.start(session)
             self.peer_directory.start(session)
             self._recovery.start(session)
@@ -123,6 +125,9 @@ class ZenohTransport(Transport):
         state = self._state
         self._answered = None
         await state.flush()
+        if self._linger_switch is not None:
+            self._linger_switch.close()
+            self._linger_switch = None
         self._recovery.stop()
         self.peer_directory.stop()
         self._watcher.stop()
