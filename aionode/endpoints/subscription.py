@@ -153,6 +153,10 @@ class Subscription(Entity, Generic[ItemT]):
             TypeError: a parameter is not a str.
             EntityDestroyedError: the subscription was destroyed (a RuntimeError).
         """
+        affinity = self._graph_entry.affinity
+        if affinity.is_other_thread():
+            affinity.wait_for(self.set_content_filter, filter_expression, expression_parameters)
+            return
         self._refuse_if_destroyed("set content filter")
         accepts = None
         if filter_expression:

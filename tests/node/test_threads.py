@@ -114,3 +114,15 @@ async def test_many_threads_create_entities_at_once(node: Node) -> None:
 
     assert {one.topic_name for one in created} <= {one.topic_name for one in node.publishers}
     assert len({one._gid for one in created}) == 20
+
+
+async def test_a_content_filter_can_be_set_in_another_thread(node: Node) -> None:
+    """It takes effect between two messages."""
+    subscription = node.create_subscription(String, "/words")
+    publisher = node.create_publisher(String, "/words", 10)
+
+    await asyncio.to_thread(subscription.set_content_filter, "data = 'b'", [])
+    for word in ("a", "b"):
+        publisher.publish(String(data=word))
+
+    assert (await subscription.receive()).data == "b"
