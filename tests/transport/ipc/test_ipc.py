@@ -188,7 +188,7 @@ async def test_a_filtered_stream_loses_nothing_that_passes_when_the_link_ends(
             number += 1
             publisher.publish(Int32(data=number))
             wanted = [n for n in range(first, number) if n % 5 == 0]
-            got = []
+            got: list[int] = []
             while not got or got[-1] != number:
                 got.append((await subscription.receive()).data)
             assert got == [*wanted, number]
