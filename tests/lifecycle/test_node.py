@@ -304,6 +304,25 @@ async def test_shutdown_cancels_what_is_under_way(node: Node, managed: Managed) 
     assert managed.lifecycle_state.label == "finalized"
 
 
+async def test_the_end_of_a_node_cancels_its_transition(
+    node: Node, node_factory: Callable[..., Any]
+) -> None:
+    """As Ctrl-C does: the callback may tidy up, and the state is a primary one."""
+    managed: Managed = node_factory(Managed)
+    managed.outcomes["configure"] = asyncio.Event()
+    client = node.create_client(ChangeState, "/managed/change_state")
+    call = client.call_async(ChangeState.Request(transition=Transition(label="configure")))
+    await settle()
+    assert managed.lifecycle_state.label == "configuring"
+
+    managed.destroy_node()
+    await settle()
+
+    assert managed.lifecycle_state.label == "unconfigured"
+    with pytest.raises(ServiceError):
+        await call
+
+
 async def test_a_timeout_cancels_a_transition(managed: Managed) -> None:
     """`asyncio.timeout` around `trigger_configure` leaves the node unconfigured."""
     managed.outcomes["configure"] = asyncio.Event()
