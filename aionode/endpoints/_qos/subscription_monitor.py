@@ -141,6 +141,11 @@ class SubscriptionMonitor:
         if self._liveliness is not None:
             self._liveliness.note_assertion(gid)
 
+    def note_filtered(self, gid: bytes) -> None:
+        """Take a message that is not delivered: its publisher is alive all the same."""
+        if self._liveliness is not None:
+            self._liveliness.note_message(gid)
+
     # Publishers
 
     def _watch_matches(self) -> None:

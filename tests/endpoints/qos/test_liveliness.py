@@ -166,3 +166,20 @@ async def test_a_destroyed_publisher_asserts_nothing(pair: Pair) -> None:
     publisher.destroy()
     with pytest.raises(EntityDestroyedError, match="assert liveliness"):
         publisher.assert_liveliness()
+
+
+async def test_a_message_that_does_not_pass_the_filter_is_a_sign_of_life(pair: Pair) -> None:
+    """The publisher sends it for that reason, though it could leave it out."""
+    publisher, subscription = await pair.joined(MANUAL, MANUAL)
+    changed = subscription.events
+    await pair.send(publisher, subscription)
+    subscription.set_content_filter("data > 1000", [])
+    for count in (1, 2, 3):
+        await pair.clock.advance(0.9)
+        publisher.publish(Int32(data=0))
+        while subscription.stats.filtered < count:
+            await checkpoint()
+
+    assert waiting(changed, QoSLivelinessChangedInfo) == [ALIVE]
+    await pair.clock.advance(3)
+    assert waiting(changed, QoSLivelinessChangedInfo) == [NOT_ALIVE]
