@@ -13,7 +13,6 @@ from types import ModuleType
 from typing import Any, Final
 
 from aionode.interfaces import shipped_packages
-from aionode.logging import get_logger
 from aionode.rclpy._rosidl import (
     add_folder,
     classes_of,
@@ -28,6 +27,7 @@ ALIASES: Final = {
     "rclpy": "aionode.rclpy",
     "rosidl_parser": "aionode.rclpy._rosidl_parser",
     "rosidl_runtime_py": "aionode.rclpy._rosidl_runtime_py",
+    "sensor_msgs_py": "aionode.rclpy._sensor_msgs_py",
     "ament_index_python": "aionode.rclpy._ament_index_python",
 }
 """The packages of ROS that are packages of aionode; their modules are the same objects."""
@@ -62,6 +62,8 @@ def install(*, interfaces: Iterable[str | Path] = (), prefer_ros: bool = False) 
     if FINDER not in sys.meta_path:
         ros = rclpy_of_ros()
         if ros is not None:
+            from aionode.logging import get_logger  # only if there is something to say
+
             which = f"ROS ({ros})" if prefer_ros else f"aionode, not that of ROS ({ros})"
             get_logger("aionode.rclpy").info(f"using the rclpy of {which}")
             if prefer_ros:
@@ -106,7 +108,7 @@ class AionodeFinder(MetaPathFinder):
         if package in ALIASES:
             own = ".".join((ALIASES[package], inside)) if inside else ALIASES[package]
             return spec_from_loader(fullname, AliasLoader(own)) if exists(own) else None
-        if not has_interfaces(package):
+        if package == "aionode" or not has_interfaces(package):
             return None
         if not inside:
             # A package may have Python modules beside its messages.

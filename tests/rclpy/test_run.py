@@ -40,7 +40,7 @@ Traceback (most recent call last):
     work(sys.argv[-1])
   File "program.py", line 13, in work
     raise Failure("on purpose")
-__main__.Failure: on purpose
+Failure: on purpose
 """
 
 

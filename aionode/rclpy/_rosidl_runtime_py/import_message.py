@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import warnings
+from importlib import import_module
 from typing import Any
 
-from aionode.rclpy._rosidl import classes_of
 from aionode.rclpy._rosidl_parser.definition import NamespacedType
 
 __all__ = ["import_message_from_namespaced_type"]
@@ -26,10 +26,4 @@ def import_message_from_namespaced_type(message_type: Any) -> Any:
             DeprecationWarning,
             stacklevel=2,
         )
-    from importlib import import_module
-
-    module = import_module(".".join(message_type.namespaces))
-    name = message_type.name
-    if name.endswith("_FeedbackMessage"):
-        return classes_of(f"{'/'.join(message_type.namespaces)}/{name.partition('_')[0]}")[name]
-    return getattr(module, name)
+    return getattr(import_module(".".join(message_type.namespaces)), message_type.name)
