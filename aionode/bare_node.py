@@ -136,6 +136,11 @@ class BarePublisher(BareEndpoint):
             if writer.active:
                 writer.write(msg, sample_info)
 
+    def assert_liveliness(self) -> None:
+        """Tell the matched subscriptions that the publisher is alive, without a message."""
+        for writer in self._writers:
+            writer.assert_liveliness()
+
     async def drain(self) -> None:
         """Wait until every reliable KEEP_ALL subscription has room and nothing is left to send."""
         for writer in self._writers:

@@ -36,6 +36,7 @@ class Kept:
         self.messages: list[Any] = []
         self.infos: list[SampleInfo] = []
         self.threads: list[int] = []
+        self.alive: list[bytes] = []
         self.limit = limit
 
     def deliver(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
@@ -43,6 +44,10 @@ class Kept:
         self.messages.append(msg)
         self.infos.append(sample_info)
         self.threads.append(threading.get_ident())
+
+    def note_alive(self, gid: bytes) -> None:
+        """Keep who is alive."""
+        self.alive.append(gid)
 
     def reject(self, error: Exception) -> None:
         """Nothing is rejected here."""
@@ -167,6 +172,19 @@ async def test_a_full_keep_all_reader_makes_publishing_fail(context: Context) ->
             publisher.publish(String(), 1)
 
         assert publisher.published == len(reader.messages) == 1
+
+
+async def test_a_publisher_says_that_it_is_alive(context: Context) -> None:
+    """Liveliness policies are kept by the API above, which has the callbacks."""
+    async with context:
+        node = BareNode(context, "bare")
+        reader = Kept()
+        node.create_subscription(String, "/words", TEN, reader)
+        publisher = node.create_publisher(String, "/words", TEN)
+
+        publisher.assert_liveliness()
+
+        assert reader.alive == [publisher.endpoint.gid]
 
 
 class Answers:

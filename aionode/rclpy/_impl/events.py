@@ -140,6 +140,7 @@ class Watch:
         # Not the handle itself, which is garbage once its user has dropped it.
         self.bare = parent.bare
         self.feed = parent.feed
+        self.assertions = parent.assertions
         self.graph = parent.io.context.graph
         self.io = parent.io
         self.endpoint = parent.endpoint
@@ -336,8 +337,8 @@ class LivelinessLostWatch(Watch):
 class LivelinessChangedWatch(Watch):
     """Counts the publishers that are alive, and those that let their lease pass.
 
-    A publisher shows that it is alive by being there, or, with a manual policy, by its messages;
-    inside one context asserting its liveliness counts as well.
+    A publisher shows that it is alive by being there, or, with a manual policy, by its messages
+    and assertions.
     """
 
     empty = LivelinessChanged()
@@ -347,7 +348,7 @@ class LivelinessChangedWatch(Watch):
         self._publishers: dict[bytes, Alarm | None] = {}
         self._lapsed: set[bytes] = set()
         self.feed.append(self._on_message)
-        self.io.assertions.append(self._on_sign)
+        self.assertions.append(self._on_sign)
         self.io.watch_graph(self.look)
         self.look()
 
@@ -397,7 +398,7 @@ class LivelinessChangedWatch(Watch):
         """Watch no longer."""
         self.io.unwatch_graph(self.look)
         self.feed.remove(self._on_message)
-        self.io.assertions.remove(self._on_sign)
+        self.assertions.remove(self._on_sign)
         for alarm in self._publishers.values():
             if alarm is not None:
                 alarm.cancel()

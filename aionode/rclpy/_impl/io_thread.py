@@ -36,8 +36,6 @@ class IoThread:
         context: The context; it and all that belongs to it are used in this thread only.
         delivery_lock: Held while a message is delivered inside this context, in the thread that
             publishes it, and while a subscription is made. Nothing waits while it is held.
-        assertions: Called in the thread with the gid of each publisher of this context that shows
-            that it is alive.
     """
 
     def __init__(self, context: Context) -> None:
@@ -50,7 +48,6 @@ class IoThread:
         self._opened: Future[None] = Future()
         self.delivery_lock = Lock()
         self._graph_watchers: list[Callable[[], None]] = []
-        self.assertions: list[Callable[[bytes], None]] = []
         # A daemon, as the interpreter waits for others before it calls what `atexit` has.
         self._thread = Thread(target=self._main, name="rclpy-io", daemon=True)
 

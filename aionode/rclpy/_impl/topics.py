@@ -50,6 +50,7 @@ class PublisherHandle(Destroyable):
             node.bare.create_publisher, self._support.wire_type, name, profile_of(qos_profile)
         )
         self.feed: Feed = []
+        self.assertions: list[Callable[[bytes], None]] = []  # of subscriptions only
 
     @property
     def endpoint(self) -> EndpointInfo:
@@ -108,8 +109,7 @@ class PublisherHandle(Destroyable):
 
     def _assert_liveliness(self) -> None:
         self._tell_feed()
-        for assertion in self.io.assertions:
-            assertion(self.endpoint.gid)
+        self.bare.assert_liveliness()
 
     def wait_for_all_acked(self, timeout: Any) -> bool:
         """Wait until everything is handed to the transports; they repeat what is lost."""
@@ -147,12 +147,15 @@ class Inbox:
         self.rejected = 0
         self.accept: Callable[[bytes], bool] | None = None
         self.feed: Feed = []
+        self.assertions: list[Callable[[bytes], None]] = []
         self._signal = signal
         self._post = post
         self._room_waiters: list[Callable[[], None]] = []
 
     def deliver(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
         """Take one message."""
+        if self.feed:
+            self._post(partial(self._tell_feed, sample_info))
         if self.accept is not None and not self.accept(msg.data):
             return
         items = self.items
@@ -161,9 +164,12 @@ class Inbox:
             if self.keep_all:
                 return
         items.append((msg.data, sample_info, sample_info.arrived_ns or now_ns()))
-        if self.feed:
-            self._post(partial(self._tell_feed, sample_info))
         self._signal.notify()
+
+    def note_alive(self, gid: bytes) -> None:
+        """Take the assertion of a publisher that it is alive."""
+        for listener in self.assertions:
+            listener(gid)
 
     def _tell_feed(self, sample_info: SampleInfo) -> None:
         for listener in self.feed:
@@ -210,6 +216,7 @@ class SubscriptionHandle(Destroyable):
         profile = profile_of(qos_profile)
         self.inbox = Inbox(profile, node.signal, node.io.post)
         self.feed = self.inbox.feed
+        self.assertions = self.inbox.assertions
         if content_filter_options is not None:
             self._set_filter(
                 content_filter_options.filter_expression,
