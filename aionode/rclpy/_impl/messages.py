@@ -5,6 +5,8 @@ from __future__ import annotations
 from aionode.rclpy._rosidl import message_class, service_class
 
 __all__ = [
+    "UUID",
+    "CancelGoal",
     "Clock",
     "DescribeParameters",
     "Duration",
@@ -12,6 +14,8 @@ __all__ = [
     "GetParameterTypes",
     "GetParameters",
     "GetTypeDescription",
+    "GoalInfo",
+    "GoalStatus",
     "ListParameters",
     "ListParametersResult",
     "LoggerLevel",
@@ -27,6 +31,10 @@ __all__ = [
     "Time",
 ]
 
+CancelGoal = service_class("action_msgs/srv/CancelGoal")
+GoalInfo = message_class("action_msgs/msg/GoalInfo")
+GoalStatus = message_class("action_msgs/msg/GoalStatus")
+UUID = message_class("unique_identifier_msgs/msg/UUID")
 Duration = message_class("builtin_interfaces/msg/Duration")
 Time = message_class("builtin_interfaces/msg/Time")
 Clock = message_class("rosgraph_msgs/msg/Clock")
