@@ -224,16 +224,25 @@ def strings(type_: FieldType, values: Any, path: str, field: str) -> list[str]:
     return fit(type_, values, path + field)  # type: ignore[no-any-return] # a list
 
 
+@cache
+def numpy_for(kind: str) -> tuple[Any, Any, Any]:
+    """Return ``ndarray``, ``frombuffer`` and the dtype of an element type.
+
+    Numpy is imported on first use, and looking for it each time would cost as much as a copy.
+    """
+    import numpy as np
+
+    return np.ndarray, np.frombuffer, dtype_of(kind)
+
+
 def frozen_array(type_: FieldType, value: Any, path: str, field: str) -> Any:
     """Return the array of a field if it is read-only, else a read-only copy.
 
     Bytes are copied and then read in place, as that takes a third of the time of copying an array
     and marking it. Subclasses, such as masked arrays, know more than their bytes.
     """
-    import numpy as np
-
-    dtype = dtype_of(type_.kind)
-    if value.__class__ is np.ndarray and value.dtype is dtype and value.ndim == 1:
+    ndarray, frombuffer, dtype = numpy_for(type_.kind)
+    if value.__class__ is ndarray and value.dtype is dtype and value.ndim == 1:
         if type_.container != "unbounded":
             check_length(type_, len(value), path + field)
         array = value
@@ -241,8 +250,8 @@ def frozen_array(type_: FieldType, value: Any, path: str, field: str) -> Any:
         array = fit_array(type_, value, path + field)
     if not array.flags.writeable:
         return array
-    if array.__class__ is np.ndarray and array.size:  # there is no buffer of no bytes
-        return np.frombuffer(array.tobytes(), dtype)
+    if array.__class__ is ndarray and len(array):  # there is no buffer of no bytes
+        return frombuffer(array.tobytes(), dtype)
     array = array.copy()
     array.flags.writeable = False
     return array
