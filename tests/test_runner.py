@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import os
 import signal
 import subprocess
@@ -15,6 +16,8 @@ from typing import Any, Self
 import pytest
 
 import aionode
+from aionode import runner
+from aionode._concurrency import checkpoint
 from aionode.errors import AionodeError
 from aionode.node import Node
 from aionode.runner import failure_text
@@ -446,3 +449,51 @@ async def test_inside_a_running_loop_it_says_what_to_use_instead() -> None:
     """A running loop needs no second one, which asyncio's own text does not say."""
     with pytest.raises(RuntimeError, match=r"await node\.run\(\)"):
         aionode.run(lambda: Node("never_made"))
+
+
+async def test_frozen_objects_are_left_out_of_collections() -> None:
+    """A full collection looks at all others, and the loop stands still meanwhile."""
+    before = gc.get_freeze_count()
+    kept = [[] for _ in range(1000)]  # type: ignore[var-annotated]
+    try:
+        aionode.freeze_objects()
+        assert gc.get_freeze_count() >= before + len(kept)
+        assert not any(each is kept for each in gc.get_objects())
+    finally:
+        gc.unfreeze()
+
+
+def test_a_running_program_freezes_its_objects_and_thaws_them_at_the_end(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What runs after `run` is collected as usual."""
+    monkeypatch.setattr(runner, "FREEZE_AFTER_S", 0)
+    before = gc.get_freeze_count()
+    counts = []
+
+    async def main() -> None:
+        while gc.get_freeze_count() == before:
+            await checkpoint()
+        counts.append(gc.get_freeze_count())
+
+    aionode.run(main, args=[])
+    assert counts[0] > before
+    assert before or not gc.get_freeze_count()
+
+
+def test_a_program_without_garbage_collector_is_not_collected(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """It has its reasons."""
+    monkeypatch.setattr(runner, "FREEZE_AFTER_S", 0)
+    monkeypatch.setattr(runner, "freeze_objects", pytest.fail)
+
+    async def main() -> None:
+        for _ in range(3):
+            await checkpoint()
+
+    gc.disable()
+    try:
+        aionode.run(main, args=[])
+    finally:
+        gc.enable()
