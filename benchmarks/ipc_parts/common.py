@@ -134,7 +134,7 @@ class Run:
         first = self.port + 2 + 3 * number
         os.environ["AIONODE_ROUTER_PORT"] = str(self.port + 1)
         os.environ["AIONODE_MEETING_PORTS"] = f"{first},{first + 1},{first + 2}"
-        return Context(link=link, spin_us=float(os.environ.get(SPIN, 0)) if link else 0)
+        return Context(link=link, spin_us=float(os.environ.get(SPIN, "0")) if link else 0)
 
 
 def node_of(name: str, context: Context) -> Node:
