@@ -1,9 +1,10 @@
 # aionode's commands. The first one makes .venv and installs what it needs; nothing else is touched.
 #
 #   make demo      two nodes talk: python -m aionode.examples.pubsub
-#   make test      the tests
+#   make test      the tests, in WORKERS processes: one more than there are processors
+#   make stress    variants of tests that take long: what differs little from what `make test` runs
 #   make check     style, types, layers and structure, the documentation and its code
-#   make coverage  how much of aionode the tests in one process reach; fails below the threshold
+#   make coverage  how much of aionode the tests reach that start no process; fails below 92 %
 #   make bench     the benchmarks; tables, JSON and pictures in benchmarks/results/
 #   make docs      the documentation as pages, in site/
 #   make fuzz      damaged input for every parser: by property tests, and guided by coverage
@@ -20,18 +21,22 @@ BIN := .venv/bin
 SOAK_SECONDS ?= 600
 FUZZ_SECONDS ?= 60
 FAULTS_TIMES ?= 3
+WORKERS ?= auto
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check coverage bench docs fuzz faults soak quotes clean
+.PHONY: help demo test stress check coverage bench docs fuzz faults soak quotes clean
 
 help:
-	@sed -n '3,13s/^# *//p' Makefile
+	@sed -n '3,14s/^# *//p' Makefile
 
 demo: .venv/installed
 	$(BIN)/python -m aionode.examples.pubsub
 
 test: .venv/installed-dev
-	$(BIN)/python -m pytest -q
+	$(BIN)/python -m pytest -q -n $(WORKERS)
+
+stress: .venv/installed-dev
+	$(BIN)/python -m pytest -q -n $(WORKERS) -m stress
 
 check: .venv/installed-dev
 	$(BIN)/ruff check
@@ -42,10 +47,11 @@ check: .venv/installed-dev
 	$(BIN)/python -m pytest -q tests/test_docs.py tests/test_structure.py
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs site
 
-# Tests that start processes reach nothing here. Tests with time limits may fail while every line is
-# counted: `make test` is what judges them, so only the share of the code counts.
+# Lines are counted in the tests' own process only. Tests with time limits may fail meanwhile:
+# `make test` is what judges them, so only the share of the code counts.
 coverage: .venv/installed-dev
-	-$(BIN)/coverage run -m pytest -q --ignore=tests/processes --ignore=tests/test_examples.py
+	-$(BIN)/python -m pytest -q -n $(WORKERS) -m "not processes and not stress" \
+		--cov --cov-report= --cov-fail-under=0
 	$(BIN)/coverage report --skip-covered --sort=cover
 
 bench: .venv/installed-dev

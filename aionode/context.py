@@ -14,8 +14,11 @@ import weakref
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self
 
 from aionode._concurrency import spin_before_blocking, to_the_end
+from aionode._distribution import NO_TYPE_HASH, choose_distribution
 from aionode.arguments import Arguments, Usage
 from aionode.clock import MachineTime, perf_ns
+from aionode.endpoints._core.duplicate_report import DuplicateReport
+from aionode.endpoints._core.loop_affinity import LoopAffinity
 from aionode.endpoints._core.mismatch_report import MismatchReport
 from aionode.errors import ConfigurationError, EntityDestroyedError, ForkedProcessError, brief
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
@@ -91,8 +94,12 @@ class Context:
         spin_us: For how many microseconds the event loop asks for events again and again before it
             lets its thread sleep. That saves waking up, and takes a whole core while messages come
             in shorter intervals. Only for asyncio's own event loop, and one context of each loop.
+        ros_distro: The distribution of the ROS 2 nodes that it talks to, such as ``"humble"``; by
+            default ``ROS_DISTRO``, or ``"jazzy"``. Nodes of Humble and of newer distributions never
+            hear each other, so a context talks to one or the other.
 
     Attributes:
+        ros_distro: The distribution of ROS 2 that it belongs to.
         network: Domain, discovery and peers, from the arguments and the environment.
         graph: The nodes and endpoints known now.
         time_base: Where the time comes from.
@@ -124,6 +131,7 @@ class Context:
         config: str | Path | Mapping[str, Any] | None = None,
         link: bool | None = None,
         spin_us: float = 0,
+        ros_distro: str | None = None,
     ) -> None:
         if isinstance(spin_us, bool) or not isinstance(spin_us, int | float):
             raise TypeError(f"Context: spin_us={brief(spin_us)} is not a number of microseconds")
@@ -131,10 +139,12 @@ class Context:
             raise ValueError(f"Context: spin_us={spin_us} is not 0 or more microseconds")
         self._spin_ns = int(spin_us * 1e3)
         self._stop_spinning: Callable[[], None] | None = None
+        self.ros_distro = choose_distribution(os.environ, ros_distro)
         # Zenoh writes ids without leading zeros, and all peers must see the same text.
         self.participant = secrets.token_hex(16).lstrip("0") or "1"
         self.graph = Graph()
         MismatchReport(self.graph, self.participant)
+        DuplicateReport(self.graph, self.participant)
         self.time_base: TimeBase = clock if clock is not None else MachineTime()
         self.network = network_from(
             os.environ,
@@ -151,6 +161,7 @@ class Context:
         self._shut_down = False  # set by `shutdown`, and never reset
         self._open = False  # whether the transports are open
         self._loop: asyncio.AbstractEventLoop | None = None  # in which it was opened last
+        self._affinity = LoopAffinity()  # the same while it is in use, for calls of other threads
         self._loop_guard = threading.Lock()  # held to check and set `_loop` and `_users`
         self._transition = asyncio.Lock()  # held while the transports open or close
         self._closed = asyncio.Event()  # set when the last user has released the context
@@ -174,13 +185,17 @@ class Context:
             # Imported on demand: it is large, and a local context does not need it.
             from aionode.transport.zenoh import ZenohTransport
 
-            zenoh = ZenohTransport(self.participant, self.network)
+            zenoh = ZenohTransport(self.participant, self.network, self.time_base)
             if not wants_link(link, os.environ):
                 return (LocalTransport(), zenoh)
             from aionode.transport.ipc import IpcTransport
 
             linked = IpcTransport(
-                self.participant, self.network.domain_id, zenoh, zenoh.peer_directory
+                self.participant,
+                self.network.domain_id,
+                zenoh,
+                zenoh.peer_directory,
+                self.time_base,
             )
             return (LocalTransport(), linked)
         raise ValueError(
@@ -282,6 +297,7 @@ class Context:
         with self._loop_guard:  # event loops may run in different threads
             self._bind_to_loop()
             self._users += 1  # before opening, so that another loop sees it in use
+            self._affinity.attach()
         try:
             async with self._transition:
                 if not self._open and not self._shut_down:
@@ -290,6 +306,8 @@ class Context:
                     self._closed.clear()
         except BaseException:
             self._users -= 1
+            if not self._users:
+                self._affinity.detach()
             raise
 
     def _bind_to_loop(self) -> None:
@@ -345,6 +363,7 @@ class Context:
                 self._open = False
                 await self._close_transports()
         if self._users == 0:
+            self._affinity.detach()
             self._closed.set()
 
     async def _close_transports(self) -> None:
@@ -370,6 +389,7 @@ class Context:
         Nothing in it may be closed or garbage-collected, as both would affect what the parent uses.
         """
         self._inherited = True
+        self._affinity.detach()
         for node in self._nodes:
             node._abandon()
         for transport in self._transports:
@@ -429,7 +449,7 @@ class Context:
             endpoint_id=self._new_id(),
             name=name,
             type_name=type_name(ros_type),
-            type_hash=type_hash(ros_type),
+            type_hash=NO_TYPE_HASH if self.ros_distro == "humble" else type_hash(ros_type),
             qos=qos,
             gid=b"",
         )

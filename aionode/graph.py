@@ -10,18 +10,23 @@ import asyncio
 import enum
 from collections import defaultdict
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias, TypeVar
 
 from aionode import names, qos
+from aionode._distribution import distribution_mismatch
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Set as AbstractSet
 
     from aionode.qos import QoSProfile
 
 __all__ = ["TOPIC_KINDS", "EndpointInfo", "EndpointKind", "Graph", "Mismatch", "NodeInfo"]
 
 K = TypeVar("K")
+V = TypeVar("V")
+
+Watcher: TypeAlias = "Callable[[EndpointInfo, bool], None]"
 
 
 class EndpointKind(enum.Enum):
@@ -74,12 +79,13 @@ class Mismatch(NamedTuple):
     """Why two opposite endpoints of one name do not communicate.
 
     Attributes:
-        aspect: What differs: the name of the type, its definition, or the QoS.
+        aspect: What differs: the name of the type, its definition, the distribution of ROS 2, or
+            the QoS.
         reason: Both values, in words.
         policy: The last incompatible policy, if the QoS differs.
     """
 
-    aspect: Literal["type", "definition", "qos"]
+    aspect: Literal["type", "definition", "distribution", "qos"]
     reason: str
     policy: qos.QoSPolicyKind = qos.QoSPolicyKind.INVALID
 
@@ -96,7 +102,7 @@ class EndpointInfo:
         endpoint_id: Number of the endpoint, unique in its context.
         name: Full name of its topic or service.
         type_name: ROS name of its type, such as ``std_msgs/msg/String``.
-        type_hash: RIHS01 hash of the type, as text.
+        type_hash: RIHS01 hash of the type, as text; ``TypeHashNotSupported`` in ROS 2 Humble.
         qos: Its QoS.
         gid: 16 bytes that identify it.
     """
@@ -137,6 +143,9 @@ class EndpointInfo:
         if self.type_name != other.type_name:
             return Mismatch("type", f"type: {self.type_name} here, {other.type_name} there")
         if self.type_hash != other.type_hash:
+            reason = distribution_mismatch(self.type_hash, other.type_hash)
+            if reason is not None:
+                return Mismatch("distribution", reason)
             hashes = f"{self.type_hash} here, {other.type_hash} there"
             return Mismatch("definition", f"definition of {self.type_name}: {hashes}")
         return None
@@ -163,6 +172,8 @@ class Graph:
 
     Attributes:
         changes: Incremented by each change: an answer is valid while this stays the same.
+        unreported: Which mismatches of an endpoint of this context are not logged, since its
+            program gets them as events: ``"qos"``, ``"type"`` and ``"definition"``.
     """
 
     def __init__(self) -> None:
@@ -172,7 +183,11 @@ class Graph:
         self._by_name: dict[tuple[EndpointKind, str], dict[EndpointInfo, None]] = defaultdict(dict)
         self._by_node: dict[NodeInfo, dict[EndpointInfo, None]] = defaultdict(dict)
         self._waiters: dict[asyncio.Future[None], None] = {}  # of `changed`, until the next change
+        self._nodes_by_name: dict[str, dict[NodeInfo, None]] = defaultdict(dict)
         self._listeners: list[Callable[[EndpointInfo], None]] = []
+        self._node_listeners: list[Callable[[NodeInfo], None]] = []
+        self._watchers: dict[tuple[EndpointKind, str], list[Watcher]] = {}
+        self.unreported: dict[EndpointInfo, AbstractSet[str]] = {}
 
     def __repr__(self) -> str:
         return f"<Graph: {len(self._nodes)} nodes, {len(self._endpoints)} endpoints>"
@@ -183,12 +198,16 @@ class Graph:
         """Add `node`; adding it again has no effect."""
         if node not in self._nodes:
             self._nodes[node] = None
+            self._nodes_by_name[node.fully_qualified_name][node] = None
+            for listener in self._node_listeners:
+                listener(node)
             self._wake()
 
     def remove_node(self, node: NodeInfo) -> None:
         """Remove `node`, if it is known."""
         if node in self._nodes:
             del self._nodes[node]
+            _take_out(self._nodes_by_name, node.fully_qualified_name, node)
             self._wake()
 
     def add_endpoint(self, endpoint: EndpointInfo) -> None:
@@ -201,6 +220,7 @@ class Graph:
         self.changes += 1  # before listeners query the graph
         for listener in self._listeners:
             listener(endpoint)
+        self._tell_watchers(endpoint, present=True)
         self._wake()
 
     def remove_endpoint(self, endpoint: EndpointInfo) -> None:
@@ -210,6 +230,8 @@ class Graph:
         del self._endpoints[endpoint]
         _take_out(self._by_name, (endpoint.kind, endpoint.name), endpoint)
         _take_out(self._by_node, endpoint.node, endpoint)
+        self.unreported.pop(endpoint, None)
+        self._tell_watchers(endpoint, present=False)
         self._wake()
 
     def remove_participant(self, participant: str) -> None:
@@ -222,6 +244,31 @@ class Graph:
     def on_endpoint(self, listener: Callable[[EndpointInfo], None]) -> None:
         """Call `listener` with each endpoint added from now on."""
         self._listeners.append(listener)
+
+    def on_node(self, listener: Callable[[NodeInfo], None]) -> None:
+        """Call `listener` with each node added from now on."""
+        self._node_listeners.append(listener)
+
+    def watch(self, kind: EndpointKind, name: str, watcher: Watcher) -> Callable[[], None]:
+        """Call `watcher` with each endpoint of `kind` and `name` that is known, appears or goes.
+
+        Its second argument says whether the endpoint is present. Returns a function that ends this.
+        """
+        watchers = self._watchers.setdefault((kind, name), [])
+        watchers.append(watcher)
+        for endpoint in self.endpoints(kind, name=name):
+            watcher(endpoint, True)
+
+        def unwatch() -> None:
+            watchers.remove(watcher)
+            if not watchers and self._watchers.get((kind, name)) is watchers:
+                del self._watchers[kind, name]
+
+        return unwatch
+
+    def _tell_watchers(self, endpoint: EndpointInfo, *, present: bool) -> None:
+        for watcher in tuple(self._watchers.get((endpoint.kind, endpoint.name), ())):
+            watcher(endpoint, present)
 
     def changed(self) -> asyncio.Future[None]:
         """Return a future that is done at the next change: a node or endpoint added or removed.
@@ -254,6 +301,10 @@ class Graph:
         """Return every node, in the order in which they were added."""
         return list(self._nodes)
 
+    def nodes_named(self, fully_qualified_name: str) -> list[NodeInfo]:
+        """Return the nodes of this name; more than one is a mistake that ROS 2 allows."""
+        return list(self._nodes_by_name.get(fully_qualified_name, ()))
+
     def endpoints(
         self, *kinds: EndpointKind, name: str | None = None, node: NodeInfo | None = None
     ) -> list[EndpointInfo]:
@@ -285,9 +336,9 @@ class Graph:
         return (n for n in self._nodes if n.fully_qualified_name == fully_qualified_name)
 
 
-def _take_out(index: dict[K, dict[EndpointInfo, None]], key: K, endpoint: EndpointInfo) -> None:
-    """Remove `endpoint` from its group, and the group if it is then empty."""
-    del index[key][endpoint]
+def _take_out(index: dict[K, dict[V, None]], key: K, member: V) -> None:
+    """Remove `member` from its group, and the group if it is then empty."""
+    del index[key][member]
     if not index[key]:
         del index[key]
 

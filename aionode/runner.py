@@ -32,8 +32,8 @@ LoopFactory = Callable[[], asyncio.AbstractEventLoop]
 TRACEBACK_VARIABLE = "AIONODE_TRACEBACK"
 """If set to anything, `run` also prints the traceback of aionode's own errors."""
 
-FREEZE_AFTER_S = 1.0
-"""When `run` calls `freeze_objects`: nodes have started by then, and made what they make first."""
+STARTED_SEC = 1.0
+"""After so long a program has imported and made most of what it keeps."""
 
 LIBRARY = Path(__file__).parent
 STANDARD_LIBRARY = Path(asyncio.__file__).parent.parent
@@ -52,8 +52,8 @@ def run(
     the program does not end before it has returned. A second signal ends the process at once, with
     the shell's status for it: 130 after Ctrl-C, 143 after SIGTERM.
 
-    After a second it calls `freeze_objects`, unless the garbage collector is disabled, and undoes
-    that when it returns.
+    A second after the start it calls `freeze_objects`, unless the program has called ``gc.freeze``
+    or ``gc.disable``, and undoes that when it returns.
 
     Args:
         nodes: Nodes, or functions that return one, such as a class, which are called in the
@@ -86,6 +86,7 @@ def run(
         with (
             Context._obeying(arguments),
             signals_to(stop),
+            unfrozen_at_the_end(),
             asyncio.Runner(loop_factory=loop_factory or best_loop_factory()) as runner,
         ):
             runner.run(_until_stopped(nodes, stop))
@@ -184,44 +185,10 @@ class Stop:
             self._task.cancel()
 
 
-def freeze_objects() -> None:
-    """Collect garbage now, and leave every object that exists now out of later collections.
-
-    A full collection looks at every object of the process while the event loop stands still.
-    Afterwards it looks only at what was made since. `run` calls this a second after the start; call
-    it yourself once the nodes of a program of your own run. It takes as long as one collection.
-
-    Objects that were frozen are still freed as soon as nothing refers to them. Only those that
-    refer to each other in a circle stay in memory, until ``gc.unfreeze()``.
-    """
-    gc.collect()
-    gc.freeze()
-
-
-@contextlib.contextmanager
-def freezing_soon() -> Iterator[None]:
-    """Freeze what exists after `FREEZE_AFTER_S`, until the end of the ``with`` block."""
-    if not gc.isenabled():
-        yield
-        return
-    frozen_by_program = gc.get_freeze_count()
-    timer = asyncio.get_running_loop().call_later(FREEZE_AFTER_S, freeze_objects)
-    try:
-        yield
-    finally:
-        timer.cancel()
-        if not frozen_by_program:
-            gc.unfreeze()
-
-
 async def _until_stopped(nodes: Sequence[Runnable], stop: Stop) -> None:
     """Run everything, and return normally if a signal stops it."""
     stop.begin()
-    with freezing_soon():
-        await _run_all(nodes, stop)
-
-
-async def _run_all(nodes: Sequence[Runnable], stop: Stop) -> None:
+    asyncio.get_running_loop().call_later(STARTED_SEC, freeze)
     try:
         async with asyncio.TaskGroup() as tasks:
             for node in nodes:
@@ -238,6 +205,38 @@ def _coroutine_of(node: Runnable) -> Coroutine[Any, Any, None]:
     if inspect.iscoroutine(made):
         return made
     raise TypeError(f"run: {node!r} returned {made!r}, which is neither a node nor a coroutine")
+
+
+def freeze_objects() -> None:
+    """Collect garbage now, and leave every object that exists now out of later collections.
+
+    A full collection looks at every object of the process, and the event loop stands still
+    meanwhile: 30 ms for a node that has nothing of its own, more for each library and node.
+    Afterwards it looks only at what was made since. `run` calls this a second after the start; in
+    a program of your own, call it once the nodes run. It takes as long as one full collection.
+
+    Objects that were frozen are still freed as soon as nothing refers to them. Only those that
+    refer to each other in a circle stay in memory, until ``gc.unfreeze()``.
+    """
+    gc.collect()
+    gc.freeze()
+
+
+def freeze() -> None:
+    """Call `freeze_objects`, unless the program has frozen some or collects no garbage."""
+    if gc.isenabled() and not gc.get_freeze_count():
+        freeze_objects()
+
+
+@contextlib.contextmanager
+def unfrozen_at_the_end() -> Iterator[None]:
+    """Undo what `freeze` has done within, for a process that goes on afterwards."""
+    was_frozen = bool(gc.get_freeze_count())
+    try:
+        yield
+    finally:
+        if not was_frozen:
+            gc.unfreeze()
 
 
 @contextlib.contextmanager
@@ -286,6 +285,8 @@ def signals_to(stop: Callable[[], object]) -> Iterator[None]:
 
 def end_at_once(number: int, _frame: object) -> None:
     """End the process at once: threads cannot be cancelled, and may run for any time."""
+    for each in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(each, signal.SIG_IGN)  # a third one must not print the line again
     text = f"aionode: ended at once by a second signal ({signal.Signals(number).name})\n"
     stderr = 2
     # A reader of stderr that is gone must not keep the process from ending.

@@ -5,11 +5,12 @@ from __future__ import annotations
 import asyncio
 import functools
 import inspect
+import os
 from typing import TYPE_CHECKING, Any
 
 import pytest
 import uvloop
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
 from aionode.node import Node
 
@@ -18,8 +19,13 @@ if TYPE_CHECKING:
 
     from aionode.context import Context
 
+# How long an example takes depends on what else runs, such as the other workers.
+settings.register_profile(
+    "tests", deadline=None, suppress_health_check=[HealthCheck.too_slow], print_blob=True
+)
+settings.load_profile("tests")
 # For `make fuzz`. Tests that set a number of examples of their own take it as a part of this one.
-settings.register_profile("fuzz", max_examples=2000, deadline=None)
+settings.register_profile("fuzz", settings.get_profile("tests"), max_examples=2000)
 
 
 def debugging_loop() -> asyncio.AbstractEventLoop:
@@ -30,16 +36,52 @@ def debugging_loop() -> asyncio.AbstractEventLoop:
     return loop
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Let no async test wait for ever: uvloop swallows what pytest-timeout's signal raises."""
+PROCESSES = (
+    "tests/processes/",
+    "tests/faults/",
+    "tests/cli/test_terminal.py",
+    "tests/cli/test_ending.py",
+    "tests/test_examples.py",
+    "tests/test_web_robot.py",
+    "tests/typing/",
+)
+"""Files and folders whose tests start processes. They take long, so several workers begin here."""
+
+
+@pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads its options
+def pytest_cmdline_main(config: pytest.Config) -> None:
+    """Run each file in one worker, as its tests share what they start, and keep the order."""
+    if config.getoption("numprocesses", None) and config.option.dist == "no":
+        config.option.dist = "loadfile"
+        config.option.loadscopereorder = False
+
+
+@pytest.hookimpl(optionalhook=True)  # of pytest-xdist
+def pytest_xdist_auto_num_workers() -> int:
+    """Use one worker more than there are processors: tests of processes mostly wait."""
+    return (os.cpu_count() or 1) + 1
+
+
+@pytest.hookimpl(tryfirst=True)  # before tests are deselected by their marks
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Bound async tests, mark those of processes, and leave out what one loop can show."""
     for item in items:
+        if item.nodeid.startswith(PROCESSES):
+            item.add_marker("processes")
         if isinstance(item, pytest.Function) and inspect.iscoroutinefunction(item.obj):
             marker = item.get_closest_marker("timeout")
             item.obj = bounded(item.obj, marker.args[0] if marker and marker.args else 60.0)
+            if item.get_closest_marker("one_loop") and "uvloop" in item.name:
+                item.add_marker("stress")
+    if hasattr(config, "workerinput"):  # of pytest-xdist
+        items.sort(key=lambda item: not item.nodeid.startswith(PROCESSES))
 
 
 def bounded(test: Callable[..., Awaitable[None]], limit_s: float) -> Callable[..., Awaitable[None]]:
-    """Return `test` with a time limit a little below that of pytest-timeout."""
+    """Return `test` with a time limit a little below that of pytest-timeout.
+
+    uvloop swallows what pytest-timeout's signal raises.
+    """
 
     @functools.wraps(test)
     async def run(*args: Any, **fixtures: Any) -> None:

@@ -11,12 +11,13 @@ import subprocess
 import sys
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import httpx
 import pytest
 import uvicorn
 
+from aionode.examples.quality_of_service.incompatible_qos import POLICIES
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
 from examples.fastapi_app import make_app
@@ -156,6 +157,87 @@ def test_a_managed_node_fails_is_canceled_and_goes_up_and_down() -> None:
     assert program.process.returncode == 0
 
 
+def test_a_pause_misses_the_deadline_at_both_ends() -> None:
+    """In the pause and not before."""
+    with running("-m", "aionode.examples.quality_of_service.deadline") as program:
+        text = program.rest()
+
+    before, _, after = text.partition("deadline missed")
+    assert "I heard: Talker says 2" in before
+    assert "Offered deadline missed 2 times" in after
+    assert "Requested deadline missed 2 times" in after
+    assert program.process.returncode == 0
+
+
+def test_a_late_subscription_gets_what_is_still_valid() -> None:
+    """The newest messages, and no older ones."""
+    with running("-m", "aionode.examples.quality_of_service.lifespan") as program:
+        text = program.rest()
+
+    heard = [int(number) for number in re.findall(r"I heard: Talker says (\d)", text)]
+    assert heard == list(range(heard[0], 8))
+    assert f"{len(heard)} were valid, {8 - len(heard)} had expired" in text
+    assert 0 < len(heard) < 8
+    assert program.process.returncode == 0
+
+
+def test_liveliness_is_lost_regained_and_ends() -> None:
+    """By topic; both ends learn of it."""
+    with running("-m", "aionode.examples.quality_of_service.liveliness") as program:
+        text = program.rest()
+
+    assert re.findall(r"listener: (.*)", text) == [
+        "alive 1 (+1), not alive 0 (+0)",
+        "alive 0 (-1), not alive 1 (+1)",
+        "alive 1 (+1), not alive 0 (-1)",
+        "alive 0 (-1), not alive 0 (+0)",
+    ]
+    assert "talker:   liveliness lost, 1 times so far" in text
+    assert program.process.returncode == 0
+
+
+def test_automatic_liveliness_lasts_until_the_end() -> None:
+    """The event loop asserts it."""
+    name = "aionode.examples.quality_of_service.liveliness"
+    with running("-m", name, "1500", "--policy", "automatic") as program:
+        text = program.rest()
+
+    assert re.findall(r"listener: (.*)", text) == [
+        "alive 1 (+1), not alive 0 (+0)",
+        "alive 0 (-1), not alive 0 (+0)",
+    ]
+    assert "lost" not in text
+
+
+@pytest.mark.parametrize("policy", POLICIES)
+def test_an_incompatible_policy_is_named_at_both_ends(policy: str) -> None:
+    """And no message is heard."""
+    with running("-m", "aionode.examples.quality_of_service.incompatible_qos", policy) as program:
+        text = program.rest()
+
+    named = policy.removesuffix("_policy").removesuffix("_lease_duration").upper()
+    assert f"A publisher offers less than is requested: {named}" in text
+    assert f"A subscription requests more than is offered: {named}" in text
+    assert "I heard" not in text
+    assert program.process.returncode == 0
+
+
+def test_lost_messages_are_all_told(domain: int) -> None:
+    """What was published is received or lost."""
+    name = "aionode.examples.quality_of_service.message_lost"
+    with running("-m", name, domain=domain) as program:
+        text = program.rest()
+
+    told = [int(count) for count in re.findall(r"lost: +(\d+) messages", text)]
+    published, received, lost = (
+        int(re.search(rf"^{word}: +(\d+)$", text, re.MULTILINE)[1])  # type: ignore[index]  # is there
+        for word in ("published", "received", "lost")
+    )
+    assert sum(told) == lost > 0
+    assert received + lost == published
+    assert program.process.returncode == 0
+
+
 def test_timers_keep_their_grid() -> None:
     """Every fast tick comes while the slow timer works."""
     with running("-m", "aionode.examples.timers") as program:
@@ -180,14 +262,23 @@ def test_overload_counts_every_message() -> None:
     assert program.process.returncode == 0
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        *[pytest.param(("-m", f"aionode.examples.{name}"), id=name) for name in ENDING],
-        *[pytest.param((f"examples/{name}",), id=name) for name in [*ENDLESS, "fastapi_app.py"]],
-    ],
-)
+def ends_by_signal() -> list[Any]:
+    """Return each example with each signal; one of the two signals is left to `make stress`."""
+    pairs = []
+    programs = [
+        *[(name, ("-m", f"aionode.examples.{name}")) for name in ENDING],
+        *[(name, (f"examples/{name}",)) for name in [*ENDLESS, "fastapi_app.py"]],
+    ]
+    for place, (name, arguments) in enumerate(programs):
+        usual, other = (signal.SIGINT, signal.SIGTERM)[:: 1 if place % 2 else -1]
+        pairs += [
+            pytest.param(arguments, usual, id=f"{name}-{usual.name}"),
+            pytest.param(arguments, other, id=f"{name}-{other.name}", marks=pytest.mark.stress),
+        ]
+    return pairs
+
+
+@pytest.mark.parametrize(("arguments", "number"), ends_by_signal())
 def test_a_signal_ends_an_example_cleanly(
     arguments: tuple[str, ...], number: signal.Signals
 ) -> None:
@@ -345,9 +436,10 @@ def test_the_parameters_of_another_node_are_read_and_set(domain: int) -> None:
 
 def test_the_last_message_of_a_program_is_that_the_wheels_stop(domain: int) -> None:
     """Ctrl-C cancels the callback, whose `finally` may still publish."""
+    typed = ["/cmd_vel", "geometry_msgs/msg/Twist"]  # the program may start later
     with (
         running(
-            "-m", "aionode", "topic", "echo", "/cmd_vel", "--field", "linear.x", domain=domain
+            "-m", "aionode", "topic", "echo", *typed, "--field", "linear.x", domain=domain
         ) as echo,
         running("examples/last_message.py", domain=domain) as robot,
     ):

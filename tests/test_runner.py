@@ -16,7 +16,6 @@ from typing import Any, Self
 import pytest
 
 import aionode
-from aionode import runner
 from aionode._concurrency import checkpoint
 from aionode.errors import AionodeError
 from aionode.node import Node
@@ -71,7 +70,7 @@ async def callback(msg):
         print("cancelled", flush=True)
 
 def make():
-    node = aionode.Node("node", context=context)
+    node = aionode.Node("node", context=context, callback_budget_ms=60_000)
     node.create_subscription(String, "words", callback)
     node.create_publisher(String, "words", 10).publish(String())
     return node
@@ -103,7 +102,7 @@ def test_a_second_signal_ends_the_program_at_once() -> None:
             await asyncio.Event().wait()
 
     def make():
-        node = aionode.Node("node", context=context)
+        node = aionode.Node("node", context=context, callback_budget_ms=60_000)
         node.create_timer(0.0, callback)
         return node
 
@@ -129,7 +128,7 @@ def test_the_second_signal_works_while_a_callback_blocks_the_loop() -> None:
             time.sleep(1)
 
     def make():
-        node = aionode.Node("node", context=context)
+        node = aionode.Node("node", context=context, callback_budget_ms=60_000)
         node.create_timer(0.0, callback)
         return node
 
@@ -218,7 +217,7 @@ def test_a_bug_in_a_callback_is_shown_with_its_traceback() -> None:
     """The exit status reports it to the shell."""
     body = """
     def make():
-        node = aionode.Node("node", context=context)
+        node = aionode.Node("node", context=context, callback_budget_ms=60_000)
         node.create_timer(0.0, lambda: 1 / 0)
         return node
 
@@ -389,6 +388,62 @@ def test_run_takes_coroutine_functions() -> None:
     assert ran == [True]
 
 
+@pytest.mark.parametrize("is_frozen_before", [False, True])
+def test_the_search_for_garbage_leaves_out_what_a_running_program_keeps(
+    monkeypatch: pytest.MonkeyPatch, *, is_frozen_before: bool
+) -> None:
+    """A full collection takes 30 ms; a program that freezes by itself is left alone."""
+    monkeypatch.setattr("aionode.runner.STARTED_SEC", 0.0)
+    counts = []
+
+    async def main() -> None:
+        while not gc.get_freeze_count():
+            await checkpoint()
+        await checkpoint()
+        counts.append(gc.get_freeze_count())
+
+    if is_frozen_before:
+        gc.freeze()
+    before = gc.get_freeze_count()
+    try:
+        run_in_this_process(main)
+        after = gc.get_freeze_count()
+    finally:
+        gc.unfreeze()
+
+    assert counts[0] > 1000
+    assert bool(before) is bool(after) is is_frozen_before
+
+
+async def test_frozen_objects_are_left_out_of_collections() -> None:
+    """A full collection looks at all others, and the loop stands still meanwhile."""
+    kept: list[list[int]] = [[] for _ in range(1000)]
+    try:
+        aionode.freeze_objects()
+        assert gc.get_freeze_count() >= len(kept)
+        assert not any(each is kept for each in gc.get_objects())
+    finally:
+        gc.unfreeze()
+
+
+def test_a_program_without_garbage_collector_is_not_collected(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """It has its reasons."""
+    monkeypatch.setattr("aionode.runner.STARTED_SEC", 0.0)
+    monkeypatch.setattr("aionode.runner.freeze_objects", pytest.fail)
+
+    async def main() -> None:
+        for _ in range(3):
+            await checkpoint()
+
+    gc.disable()
+    try:
+        run_in_this_process(main)
+    finally:
+        gc.enable()
+
+
 def test_a_failing_node_ends_the_others() -> None:
     """With the status 1."""
     context = local_context()
@@ -449,51 +504,3 @@ async def test_inside_a_running_loop_it_says_what_to_use_instead() -> None:
     """A running loop needs no second one, which asyncio's own text does not say."""
     with pytest.raises(RuntimeError, match=r"await node\.run\(\)"):
         aionode.run(lambda: Node("never_made"))
-
-
-async def test_frozen_objects_are_left_out_of_collections() -> None:
-    """A full collection looks at all others, and the loop stands still meanwhile."""
-    before = gc.get_freeze_count()
-    kept = [[] for _ in range(1000)]  # type: ignore[var-annotated]
-    try:
-        aionode.freeze_objects()
-        assert gc.get_freeze_count() >= before + len(kept)
-        assert not any(each is kept for each in gc.get_objects())
-    finally:
-        gc.unfreeze()
-
-
-def test_a_running_program_freezes_its_objects_and_thaws_them_at_the_end(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """What runs after `run` is collected as usual."""
-    monkeypatch.setattr(runner, "FREEZE_AFTER_S", 0)
-    before = gc.get_freeze_count()
-    counts = []
-
-    async def main() -> None:
-        while gc.get_freeze_count() == before:
-            await checkpoint()
-        counts.append(gc.get_freeze_count())
-
-    aionode.run(main, args=[])
-    assert counts[0] > before
-    assert before or not gc.get_freeze_count()
-
-
-def test_a_program_without_garbage_collector_is_not_collected(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """It has its reasons."""
-    monkeypatch.setattr(runner, "FREEZE_AFTER_S", 0)
-    monkeypatch.setattr(runner, "freeze_objects", pytest.fail)
-
-    async def main() -> None:
-        for _ in range(3):
-            await checkpoint()
-
-    gc.disable()
-    try:
-        aionode.run(main, args=[])
-    finally:
-        gc.enable()

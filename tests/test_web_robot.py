@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 FAR = 1000.0
 """Metres that the robot would drive for half an hour."""
 
-pytestmark = pytest.mark.timeout(60)
+pytestmark = [pytest.mark.timeout(60), pytest.mark.one_loop]
 
 
 @pytest.fixture

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar, overload
 
 from aionode import qos
 from aionode._node.parameters import NodeParameters
+from aionode.clock import Clock
 from aionode.endpoints._core.graph_entry import GraphEntry
-from aionode.endpoints._core.unenforced_qos import policies_without_effect
+from aionode.endpoints._core.loop_affinity import in_loop_thread
 from aionode.endpoints.client import Client
 from aionode.endpoints.publisher import Publisher
 from aionode.endpoints.service import Service
@@ -21,9 +22,10 @@ from aionode.message import Message, ServiceType, holds_arrays
 from aionode.parameter import declare_qos_overrides
 
 if TYPE_CHECKING:
-    from aionode.clock import Clock
+    from aionode.content_filter import ContentFilterOptions
     from aionode.endpoints._core.callback_runner import OnError
     from aionode.endpoints._core.entity import Entity
+    from aionode.endpoints.events import PublisherEventCallbacks, SubscriptionEventCallbacks
     from aionode.endpoints.service import ServiceCallback
     from aionode.endpoints.subscription import SubscriptionCallback
     from aionode.endpoints.timer import TimerCallback
@@ -36,6 +38,7 @@ __all__ = ["NodeEndpoints"]
 MsgT = TypeVar("MsgT", bound=Message)
 RequestT = TypeVar("RequestT", bound=Message)
 ResponseT = TypeVar("ResponseT", bound=Message)
+TopicT = TypeVar("TopicT", Publisher[Any], Subscription[Any])
 
 
 class NodeEndpoints(NodeParameters):
@@ -66,12 +69,14 @@ class NodeEndpoints(NodeParameters):
         """The timers of this node."""
         return self._entities_of(Timer)
 
+    @in_loop_thread
     def create_publisher(
         self,
         msg_type: type[MsgT],
         topic: str,
         qos_profile: QoSProfile | int,
         *,
+        event_callbacks: PublisherEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
     ) -> Publisher[MsgT]:
         """Return a publisher of `msg_type`.
@@ -80,10 +85,11 @@ class NodeEndpoints(NodeParameters):
             msg_type: A message class.
             topic: Name of the topic; relative names are prefixed with the node's namespace.
             qos_profile: A profile, or a depth: the number of messages to keep.
+            event_callbacks: Called with its events; without them, see `Publisher.events`.
             qos_overriding_options: Which policies parameters may override.
 
         Raises:
-            TypeError: `msg_type` is not a message class, or `qos_profile` has the wrong type.
+            TypeError: `msg_type` is not a message class, or another argument has the wrong type.
             ValueError: `qos_profile` is a negative number.
             InvalidTopicNameException: `topic` is invalid (a ValueError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
@@ -93,12 +99,16 @@ class NodeEndpoints(NodeParameters):
         graph_entry = self._graph_entry(
             EndpointKind.PUBLISHER, topic, msg_type, qos_profile, qos_overriding_options
         )
-        writers = self._register(
-            lambda transport: transport.create_writer(graph_entry.endpoint, msg_type)
+        publisher = Publisher(
+            graph_entry,
+            msg_type,
+            lambda: self._register(
+                lambda transport: transport.create_writer(graph_entry.endpoint, msg_type)
+            ),
+            self.context.time_base,
+            event_callbacks,
         )
-        return self._add_entity(
-            Publisher(graph_entry, msg_type, writers, self.context.time_base), graph_entry
-        )
+        return self._add_with_events(publisher, graph_entry)
 
     @overload
     def create_subscription(
@@ -112,7 +122,9 @@ class NodeEndpoints(NodeParameters):
         raw: Literal[True],
         on_error: OnError = "raise",
         offload: bool = False,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
+        content_filter_options: ContentFilterOptions | None = None,
     ) -> Subscription[bytes]: ...
 
     @overload
@@ -127,9 +139,12 @@ class NodeEndpoints(NodeParameters):
         raw: Literal[False] = False,
         on_error: OnError = "raise",
         offload: bool = False,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
+        content_filter_options: ContentFilterOptions | None = None,
     ) -> Subscription[MsgT]: ...
 
+    @in_loop_thread
     def create_subscription(
         self,
         msg_type: type[Any],
@@ -141,7 +156,9 @@ class NodeEndpoints(NodeParameters):
         raw: bool = False,
         on_error: OnError = "raise",
         offload: bool = False,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
+        content_filter_options: ContentFilterOptions | None = None,
     ) -> Subscription[Any]:
         """Return a subscription to `topic`.
 
@@ -158,11 +175,14 @@ class NodeEndpoints(NodeParameters):
                 ``"log"`` logs and counts it, a function is called with (exception,
                 CallbackContext).
             offload: Whether to run a sync callback in a thread.
+            event_callbacks: Called with its events; without them, see `Subscription.events`.
             qos_overriding_options: Which policies parameters may override.
+            content_filter_options: Which messages to deliver; see `set_content_filter`.
 
         Raises:
             TypeError: an argument has the wrong type, or the callback takes other arguments.
             ValueError: `concurrent`, `on_error` or `qos_profile` is invalid.
+            ContentFilterError: the filter is malformed, or does not fit the type (a ValueError).
             InvalidTopicNameException: `topic` is invalid (a ValueError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
@@ -180,7 +200,13 @@ class NodeEndpoints(NodeParameters):
             raw=raw,
             on_error=on_error,
             offload=offload,
+            event_callbacks=event_callbacks,
         )
+        if content_filter_options is not None:  # before messages can arrive
+            subscription.set_content_filter(
+                content_filter_options.filter_expression,
+                content_filter_options.expression_parameters,
+            )
         subscription._add_registrations(
             self._register(
                 lambda transport: transport.create_reader(
@@ -188,8 +214,9 @@ class NodeEndpoints(NodeParameters):
                 )
             )
         )
-        return self._add_entity(subscription, graph_entry)
+        return self._add_with_events(subscription, graph_entry)
 
+    @in_loop_thread
     def create_service(
         self,
         srv_type: ServiceClass[RequestT, ResponseT],
@@ -229,6 +256,7 @@ class NodeEndpoints(NodeParameters):
             graph_entry,
             srv_type,
             callback,
+            self.create_publisher,
             concurrent=concurrent,
             on_error=on_error,
             offload=offload,
@@ -242,6 +270,7 @@ class NodeEndpoints(NodeParameters):
         )
         return self._add_entity(service, graph_entry)
 
+    @in_loop_thread
     def create_client(
         self,
         srv_type: ServiceClass[RequestT, ResponseT],
@@ -268,9 +297,17 @@ class NodeEndpoints(NodeParameters):
             lambda transport: transport.create_requester(graph_entry.endpoint, srv_type)
         )
         return self._add_entity(
-            Client(graph_entry, srv_type, requesters, self.context.time_base), graph_entry
+            Client(
+                graph_entry,
+                srv_type,
+                requesters,
+                self.context.time_base,
+                self.create_publisher,
+            ),
+            graph_entry,
         )
 
+    @in_loop_thread
     def create_timer(
         self,
         timer_period_sec: float,
@@ -289,7 +326,8 @@ class NodeEndpoints(NodeParameters):
         Args:
             timer_period_sec: The period in seconds; 0 calls as often as the event loop allows.
             callback: Called without arguments, or with a `TimerInfo`; sync or async.
-            clock: The clock to follow; the node's clock by default.
+            clock: The clock to follow; the node's clock by default. A callback group, rclpy's third
+                argument, is accepted here with a warning, and has no effect.
             autostart: Whether it starts at once; otherwise `reset` starts it.
             on_error: What happens on an exception in the callback: ``"raise"`` ends the node,
                 ``"log"`` logs and counts it, a function is called with (exception,
@@ -305,12 +343,35 @@ class NodeEndpoints(NodeParameters):
         timer = Timer(
             callback,
             to_period_ns(timer_period_sec),
-            self._clock if clock is None else clock,
+            self._clock_for_timer(clock),
             partial(self._callbacks.make_runner, on_error=on_error, offload=offload),
             autostart=autostart,
         )
         return self._add_entity(timer)
 
+    def _clock_for_timer(self, given: object) -> Clock:
+        """Return the clock that a timer follows, from the third argument of `create_timer`."""
+        if isinstance(given, Clock):
+            return given
+        if given is None:
+            return self._clock
+        if not hasattr(given, "can_execute"):
+            raise TypeError(
+                f"create_timer: clock is {brief(given)}; give a clock such as SteadyClock(), or "
+                "nothing for the node's clock"
+            )
+        kind = type(given).__name__
+        if kind not in self._warned_about:
+            self._warned_about.add(kind)
+            self._logger.warning(
+                f"create_timer: the third argument is a {kind}, which has no effect: calls of one "
+                "timer never overlap, and callbacks of different entities take turns where they "
+                "await. In aionode this argument is the clock: write create_timer(period, "
+                "callback), and concurrent= on subscriptions and services for calls at once"
+            )
+        return self._clock
+
+    @in_loop_thread
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
         """Return a rate, for ``await rate.sleep()`` or ``async for _ in rate``.
 
@@ -357,6 +418,14 @@ class NodeEndpoints(NodeParameters):
         entity.destroy()
         return True
 
+    def _add_with_events(self, endpoint: TopicT, graph_entry: GraphEntry) -> TopicT:
+        """Own a publisher or subscription, and what calls its event callbacks."""
+        self._add_entity(endpoint, graph_entry)
+        handler = endpoint._monitor.handler
+        if handler is not None:
+            self._add_entity(handler)
+        return endpoint
+
     def _graph_entry(
         self,
         kind: EndpointKind,
@@ -376,8 +445,6 @@ class NodeEndpoints(NodeParameters):
                 "publisher" if kind is EndpointKind.PUBLISHER else "subscription"
             )
             profile = declare_qos_overrides(self, full_name, entity, profile, overriding)
-        if self._constructed:
-            self._warn_of_no_effect(kind, full_name, profile)
         others = [e.qos for e in self.graph.endpoints(kind.opposite, name=full_name)]
         if kind is EndpointKind.PUBLISHER:
             profile = qos.best_available_for_publisher(profile, others)
@@ -387,18 +454,6 @@ class NodeEndpoints(NodeParameters):
             kind, self._info, full_name, ros_type, profile.resolved()
         )
         return GraphEntry(endpoint, self.graph, self._callbacks, self._affinity)
-
-    def _warn_of_no_effect(self, kind: EndpointKind, name: str, profile: QoSProfile) -> None:
-        """Log, once for each endpoint, the QoS policies that have no effect."""
-        policies = policies_without_effect(profile, sends=kind is EndpointKind.PUBLISHER)
-        subject = f"{kind.value} of {name}"
-        if policies and subject not in self._warned_about:
-            self._warned_about.add(subject)
-            self._logger.warning(
-                f"{subject}: {', '.join(policies)}: announced to others and compared with theirs, "
-                "but without effect here: no event is raised and no message dropped because of "
-                "it; to detect silence, compare the time of the last message in a timer"
-            )
 
 
 def load_arrays(ros_type: Any) -> None:

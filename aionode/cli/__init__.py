@@ -35,10 +35,11 @@ def main(argv: Sequence[str] | None = None) -> int:
 
         status = _main.main(argv)
         # Only as the process's main program; after `run`, remaining threads are the user's.
+        # Otherwise Python would wait for threads and run exit handlers, after the answer.
         if argv is None and sys.argv[1:2] != ["run"]:
-            from aionode.cli._support.deadline import leave_if_busy
+            from aionode.cli._support.deadline import leave
 
-            leave_if_busy(status)
+            leave(status)
     except KeyboardInterrupt:
         return 130  # the status by which shells know Ctrl-C
     else:

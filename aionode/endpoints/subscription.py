@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar
 
 from aionode._concurrency import SLICE_NS, checkpoint
 from aionode.clock import perf_ns
+from aionode.content_filter import ContentFilterOptions, compile_filter
 from aionode.endpoints._core.callback_runner import (
     CallbackRunner,
     accepts,
@@ -15,11 +16,13 @@ from aionode.endpoints._core.callback_runner import (
 )
 from aionode.endpoints._core.entity import Entity
 from aionode.endpoints._core.message_queue import MessageQueue
+from aionode.endpoints._qos.subscription_monitor import SubscriptionMonitor
 from aionode.endpoints.stats import CallbackStats
-from aionode.errors import EntityDestroyedError
+from aionode.errors import DecodeError, EntityDestroyedError
 from aionode.graph import EndpointKind
 from aionode.message import Message
-from aionode.qos import DEFAULT_DEPTH, KEEP_ALL_DEPTH, HistoryPolicy
+from aionode.qos import HistoryPolicy, depth_of
+from aionode.transport.base import ReaderRegistration
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Sequence
@@ -27,7 +30,11 @@ if TYPE_CHECKING:
     from aionode.clock import TimeBase
     from aionode.endpoints._core.callback_runner import OnError
     from aionode.endpoints._core.graph_entry import GraphEntry
-    from aionode.errors import DecodeError
+    from aionode.endpoints.events import (
+        EventStream,
+        SubscriptionEvent,
+        SubscriptionEventCallbacks,
+    )
     from aionode.graph import EndpointInfo
     from aionode.qos import QoSProfile
     from aionode.transport.base import Registration, SampleInfo
@@ -83,6 +90,7 @@ class Subscription(Entity, Generic[ItemT]):
         raw: bool,
         on_error: OnError,
         offload: bool,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
     ) -> None:
         endpoint = graph_entry.endpoint
         super().__init__(f"subscription of {endpoint.name}")
@@ -93,6 +101,7 @@ class Subscription(Entity, Generic[ItemT]):
         self.stats = CallbackStats()
         self._graph_entry = graph_entry
         self._registrations: list[Registration] = []  # one for each transport
+        self._content_filter = ContentFilterOptions()
         self._concurrent = checked_concurrency(concurrent, self._subject)
         self._turn_ends_ns = 0
         self._runner: CallbackRunner | None = None
@@ -105,6 +114,8 @@ class Subscription(Entity, Generic[ItemT]):
                 callback, self, self.stats, on_error=on_error, offload=offload
             )
         self._reader = _Reader(endpoint, self.stats, time_base, raw=raw, wants_info=wants == 2)
+        self._monitor = SubscriptionMonitor(graph_entry, self._reader, time_base, event_callbacks)
+        self._reader.note_alive = self._monitor.note_alive
 
     def __repr__(self) -> str:
         return (
@@ -123,6 +134,58 @@ class Subscription(Entity, Generic[ItemT]):
     def get_publisher_count(self) -> int:
         """Return how many publishers are matched, in this process and in others."""
         return self._graph_entry.count_matched(EndpointKind.PUBLISHER)
+
+    # Content filter
+
+    @property
+    def is_cft_enabled(self) -> bool:
+        """Whether a content filter is set."""
+        return bool(self._content_filter.filter_expression)
+
+    def set_content_filter(
+        self, filter_expression: str, expression_parameters: Sequence[str] = ()
+    ) -> None:
+        """Receive only messages that pass a filter, from now on.
+
+        Messages that are already in the queue stay there. Publishers of aionode in other processes
+        learn of the filter as soon as the network allows, and then leave out what no subscription
+        wants; `stats.filtered` counts what arrived and did not pass.
+
+        Args:
+            filter_expression: A condition over the fields of the message, as described in
+                `aionode.content_filter`; an empty one lets all messages pass.
+            expression_parameters: The literals that ``%0`` and the following stand for, as text.
+
+        Raises:
+            ContentFilterError: the expression is malformed, or does not fit the type (a
+                ValueError). The filter before it stays.
+            TypeError: a parameter is not a str.
+            EntityDestroyedError: the subscription was destroyed (a RuntimeError).
+        """
+        self._refuse_if_destroyed("set content filter")
+        accepts = None
+        if filter_expression:
+            accepts = compile_filter(self.msg_type, filter_expression, expression_parameters)
+            if self.raw:
+                accepts = decoding(self.msg_type, accepts)
+        self._content_filter = ContentFilterOptions(filter_expression, list(expression_parameters))
+        self._reader.set_filter(accepts)
+        self._announce_filter()
+
+    def get_content_filter(self) -> ContentFilterOptions:
+        """Return the content filter; its expression is empty if there is none."""
+        given = self._content_filter
+        return ContentFilterOptions(given.filter_expression, list(given.expression_parameters))
+
+    # Events
+
+    @property
+    def events(self) -> EventStream[SubscriptionEvent]:
+        """The events of the subscription: ``async for event in subscription.events``.
+
+        It is the same stream each time; it begins with what has happened so far.
+        """
+        return self._monitor.events()
 
     # Reading without a callback
 
@@ -171,9 +234,17 @@ class Subscription(Entity, Generic[ItemT]):
     def _add_registrations(self, registrations: Sequence[Registration]) -> None:
         """Keep what the transports returned for this reader, to be closed with it."""
         self._registrations.extend(registrations)
+        if self.is_cft_enabled:
+            self._announce_filter()
+
+    def _announce_filter(self) -> None:
+        for registration in self._registrations:
+            if isinstance(registration, ReaderRegistration):
+                registration.set_content_filter(self._content_filter)
 
     def _run(self) -> Coroutine[Any, Any, None] | None:
         """Return the coroutine that calls the callback; None without a callback."""
+        self._monitor.start()
         if self._runner is None:
             return None
         receive = self._runner.receive
@@ -188,10 +259,26 @@ class Subscription(Entity, Generic[ItemT]):
 
     def _close(self) -> None:
         """Withdraw the subscription; unread messages can still be read, without a callback."""
+        self._monitor.close()
         self._graph_entry.close()
         for registration in self._registrations:
             registration.close()
         self._reader.close(discard=self._runner is not None)
+
+
+def decoding(msg_type: type[Message], accepts: Callable[[Any], bool]) -> Callable[[Any], bool]:
+    """Return a filter for messages that are delivered as CDR bytes."""
+    from aionode.wire import cdr  # few subscriptions are raw
+
+    decode = cdr.decoder(msg_type)
+
+    def accepts_bytes(data: Any) -> bool:
+        try:
+            return accepts(decode(data))
+        except DecodeError:
+            return True  # a raw subscription gets malformed messages, too
+
+    return accepts_bytes
 
 
 class _Reader(MessageQueue[Any]):
@@ -203,14 +290,23 @@ class _Reader(MessageQueue[Any]):
         time_base: Where the arrival time in a `MessageInfo` comes from.
         raw: Whether messages come as CDR bytes.
         wants_info: Whether the items are pairs of a message and its `MessageInfo`.
+
+    Attributes:
+        note_alive: Takes the assertion of a publisher that it is alive.
+        on_arrival: Called with each message; returns whether to deliver it. None for all.
+        on_lost: Called with the number of messages that are found missing; None for nothing.
     """
 
     __slots__ = (
+        "_accepts",
         "_closed",
         "_last_sequences",
         "_now_ns",
         "_reception_sequence",
         "endpoint",
+        "note_alive",
+        "on_arrival",
+        "on_lost",
         "raw",
         "wants_info",
     )
@@ -225,24 +321,27 @@ class _Reader(MessageQueue[Any]):
         wants_info: bool,
     ) -> None:
         keep_all = endpoint.qos.history is HistoryPolicy.KEEP_ALL
-        depth = endpoint.qos.depth or DEFAULT_DEPTH
-        super().__init__(
-            max(depth, KEEP_ALL_DEPTH) if keep_all else depth, stats, keep_all=keep_all
-        )
+        super().__init__(depth_of(endpoint.qos), stats, keep_all=keep_all)
         self.endpoint = endpoint
         self.raw = raw
         self.wants_info = wants_info
         self._now_ns = time_base.system_ns
         self._closed = False
+        self._accepts: Callable[[Any], bool] | None = None  # the content filter
+        self.note_alive: Callable[[bytes], None]
+        self.on_arrival: Callable[[SampleInfo], bool] | None = None
+        self.on_lost: Callable[[int], None] | None = None
         # By gid, for publishers in other processes; the one heard last is last.
         self._last_sequences: dict[bytes, int] = {}
         self._reception_sequence = 0
 
     def deliver(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
         """Take one message from a transport; see `Reader` for `inline_deadline_ns`."""
-        if self._closed:
-            return
-        if sample_info.remote:
+        if self._accepts is not None:
+            if not self._accepts(msg):
+                self.stats.filtered += 1
+                return
+        elif sample_info.remote:
             # Moved to the end, so that the first has been silent for longest.
             sequences = self._last_sequences
             gid, sequence = sample_info.gid, sample_info.sequence
@@ -252,9 +351,19 @@ class _Reader(MessageQueue[Any]):
                 self._note_gap(gid, last, sequence)
             elif len(sequences) > REMEMBERED_PUBLISHERS:
                 del sequences[next(iter(sequences))]
+        if self.on_arrival is not None and not self.on_arrival(sample_info):
+            return
         item = (msg, self._info(sample_info)) if self.wants_info else msg
         if not (inline_deadline_ns and self.take_inline(item, inline_deadline_ns)):
             self.put(item)
+
+    def set_filter(self, accepts: Callable[[Any], bool] | None) -> None:
+        """Deliver only what `accepts` is true of, or everything.
+
+        Gaps are not counted with a filter: publishers may leave out what does not pass.
+        """
+        self._accepts = accepts
+        self._last_sequences.clear()
 
     def reject(self, error: DecodeError) -> None:  # noqa: ARG002  # the transport has logged it
         """Count bytes that are not a message of the subscription's type."""
@@ -268,6 +377,9 @@ class _Reader(MessageQueue[Any]):
     def close(self, *, discard: bool) -> None:
         """Take no more messages, wake all that wait, and drop unread messages if `discard`."""
         self._closed = True
+        self._accepts = None
+        self.on_arrival = refuse
+        self.on_lost = None
         if discard:
             self.discard()
         self.wake()
@@ -275,6 +387,8 @@ class _Reader(MessageQueue[Any]):
     def _note_gap(self, gid: bytes, last: int, sequence: int) -> None:
         if sequence > last:
             self.stats.lost += sequence - last - 1
+            if self.on_lost is not None:
+                self.on_lost(sequence - last - 1)
         else:  # an old one again
             self._last_sequences[gid] = last
 
@@ -287,3 +401,8 @@ class _Reader(MessageQueue[Any]):
             reception_sequence_number=self._reception_sequence,
             publisher_gid=sample_info.gid,
         )
+
+
+def refuse(sample_info: SampleInfo) -> bool:  # noqa: ARG001  # as `on_arrival`
+    """Deliver nothing: the subscription is closed."""
+    return False

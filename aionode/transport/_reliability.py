@@ -8,6 +8,9 @@ drops. The reader's end is `_writer_proxy`.
 The loss of the last message of a burst is detected by heartbeats: a writer that has been idle for a
 moment announces its last sequence number, and repeats this at growing intervals until it is
 acknowledged. The terms are those of RTPS.
+
+A reader that vanishes without having answered for a while was frozen or cut off, and is waited for.
+A reader that has everything is not asked by heartbeats, so a KEEP_ALL writer probes it.
 """
 
 from __future__ import annotations
@@ -57,6 +60,9 @@ HEARTBEAT_NS: Final = 1_000_000_000
 
 SILENT_NS: Final = 3_000_000_000
 """A reader that vanishes after so long without an answer was frozen or cut off, and may return."""
+
+UNHEARD_NS: Final = 500_000_000
+"""A reader that has everything, and from which nothing came for so long, is probed."""
 
 FLAPPING_NS: Final = 10_000_000_000
 """A reader that vanishes so soon after its return may return once more, and just as soon."""
@@ -219,7 +225,8 @@ class WriterHistory:
         if reader is None or reader.away_until_ns:
             return
         now_ns = self._now_ns()
-        if reader.acked < self.sent and now_ns - reader.heard_ns >= SILENT_NS:
+        asked = self._keep_all or reader.acked < self.sent
+        if asked and now_ns - reader.heard_ns >= SILENT_NS:
             reader.away_until_ns = now_ns + RETURN_NS
         elif reader.returned_ns and now_ns - reader.returned_ns < FLAPPING_NS:
             reader.away_until_ns = now_ns + FLAPPING_NS
@@ -461,6 +468,22 @@ class WriterHistory:
                     reader.interval_ns = min(reader.interval_ns * 2, HEARTBEAT_NS)
                     self._side.heartbeat(reader, reader.acked + 1, self.sent)
         return bool(self.entries) or any(reader.away_until_ns for reader in self.readers.values())
+
+    def probe(self) -> bool:
+        """Ask readers that have everything for an answer; return whether to call again.
+
+        To be called more often than every `SILENT_NS` for a KEEP_ALL writer, for which the silence
+        of a reader that vanishes means that it may return.
+        """
+        now_ns = self._now_ns()
+        for reader in self.readers.values():
+            if (
+                not reader.away_until_ns
+                and reader.acked >= self.sent
+                and now_ns - reader.heard_ns >= UNHEARD_NS
+            ):
+                self._side.heartbeat(reader, reader.acked + 1, self.sent)
+        return bool(self.readers)
 
     def give_up(self) -> int:
         """Drop everything; return how many messages some reader does not have."""

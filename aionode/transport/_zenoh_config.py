@@ -55,7 +55,7 @@ BLOCK_US: Final = 10_000_000
 BATCHES: Final = 16
 """How many batches of 64 kB wait for a peer that is busy, of each priority in `BURSTING`."""
 
-BURSTING: Final = ("interactive_high", "interactive_low", "data_high")
+BURSTING: Final = ("control", "interactive_low", "data_high")
 """The priorities of what the loop sends: tokens, requests and replies, messages."""
 
 

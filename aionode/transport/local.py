@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.errors import ServiceError
 from aionode.message import snapshotter
-from aionode.qos import DurabilityPolicy, HistoryPolicy, ReliabilityPolicy
+from aionode.qos import DurabilityPolicy, depth_of, keeps_all
 from aionode.transport.base import Registration, Request, Requester, SampleInfo, Transport, Writer
 
 if TYPE_CHECKING:
@@ -21,9 +21,6 @@ if TYPE_CHECKING:
     from aionode.transport.base import Call, Reader, ReplyTo, Serve
 
 __all__ = ["LocalTransport"]
-
-KEPT_FOR_LATE_READERS = 10_000
-"""How many messages a transient local publisher keeps that keeps all."""
 
 
 class LocalTransport(Transport):
@@ -120,7 +117,10 @@ class _Topic:
 
 
 class LocalReader(Registration):
-    """A subscription as its publishers in the same context see it."""
+    """A subscription as its publishers in the same context see it.
+
+    Its content filter is applied where a message is delivered, which is still within `publish`.
+    """
 
     def __init__(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader, topic: _Topic
@@ -129,10 +129,7 @@ class LocalReader(Registration):
         self.msg_type = msg_type
         self.reader = reader
         self._topic = topic
-        qos = endpoint.qos
-        self.bounded = (
-            qos.history is HistoryPolicy.KEEP_ALL and qos.reliability is ReliabilityPolicy.RELIABLE
-        )
+        self.bounded = keeps_all(endpoint.qos)
 
     def delivery_from(self, msg_type: type[Any]) -> Callable[[Any, SampleInfo], None]:
         """Return what takes messages of `msg_type` to the reader, in the form that it wants."""
@@ -166,8 +163,7 @@ class LocalWriter(Writer):
         self._history: deque[tuple[Any, SampleInfo]] | None = None
         qos = endpoint.qos
         if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL:
-            keeps_all = qos.history is HistoryPolicy.KEEP_ALL
-            self._history = deque(maxlen=KEPT_FOR_LATE_READERS if keeps_all else qos.depth or None)
+            self._history = deque(maxlen=depth_of(qos))
         self.active = self._history is not None
         self.bounded = False
 
@@ -178,10 +174,7 @@ class LocalWriter(Writer):
         deliver = reader.delivery_from(self._msg_type)
         wanted = reader.endpoint.qos
         if self._history and wanted.durability is DurabilityPolicy.TRANSIENT_LOCAL:
-            missed = list(self._history)
-            if wanted.history is not HistoryPolicy.KEEP_ALL and wanted.depth:
-                missed = missed[-wanted.depth :]
-            for msg, sample_info in missed:
+            for msg, sample_info in list(self._history)[-depth_of(wanted) :]:
                 deliver(msg, sample_info)
         self._matched[reader] = deliver
         # Not `_update`, which looks at all: many may meet many.
@@ -210,6 +203,11 @@ class LocalWriter(Writer):
     def has_room(self) -> bool:
         """Whether every reliable KEEP_ALL reader can take one more message."""
         return all(reader.reader.has_room() for reader in self._matched if reader.bounded)
+
+    def assert_liveliness(self) -> None:
+        """Tell every reader."""
+        for reader in self._matched:
+            reader.reader.note_alive(self.endpoint.gid)
 
     async def drain(self) -> None:
         """Wait until `has_room`."""

@@ -63,19 +63,25 @@ def wait_until_full(pipe: int) -> None:
     waiting.wait(0.1)  # for the write that does not fit
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+PUB = ["topic", "pub", "-r", "1000", "/out", "std_msgs/msg/String"]
+RUN = ["run", "chatterbox.py:Chatterbox"]
+
+
 @pytest.mark.parametrize(
-    ("stream", "arguments"),
+    ("number", "stream", "arguments"),
     [
-        ("stdout", ["topic", "pub", "-r", "1000", "/out", "std_msgs/msg/String"]),
-        ("stdout", ["topic", "pub", "-r", "1000", "--json", "/out", "std_msgs/msg/String"]),
-        ("stderr", ["run", "chatterbox.py:Chatterbox"]),
+        (signal.SIGINT, "stdout", PUB),
+        (signal.SIGTERM, "stdout", [*PUB, "--json"]),
+        (signal.SIGTERM, "stderr", RUN),
+        pytest.param(signal.SIGTERM, "stdout", PUB, marks=pytest.mark.stress),
+        pytest.param(signal.SIGINT, "stdout", [*PUB, "--json"], marks=pytest.mark.stress),
+        pytest.param(signal.SIGINT, "stderr", RUN, marks=pytest.mark.stress),
     ],
 )
 def test_a_signal_ends_a_command_whose_output_is_not_read(
+    number: signal.Signals,
     stream: str,
     arguments: list[str],
-    number: signal.Signals,
     env: dict[str, str],
     tmp_path: Path,
 ) -> None:
@@ -226,9 +232,13 @@ async def close_session(session):
     threading.Thread(target=threading.Event().wait).start()
 transport.close_session = close_session
 """
+HANGING_EXIT = """
+import atexit, threading
+atexit.register(threading.Event().wait)
+"""
 
 
-@pytest.mark.parametrize("hanging", [HANGING_LOOP, HANGING_THREAD])
+@pytest.mark.parametrize("hanging", [HANGING_LOOP, HANGING_THREAD, HANGING_EXIT])
 @pytest.mark.parametrize(
     ("arguments", "status", "stdout", "stderr"),
     [

@@ -184,16 +184,25 @@ FIBONACCI = "example_interfaces/action/Fibonacci"
     ("arguments", "when", "status"),
     [
         ("topic echo /chatter", "data: Hello", 0),
-        ("topic hz /chatter", "average rate: ", 0),
+        pytest.param("topic hz /chatter", "average rate: ", 0, marks=pytest.mark.stress),
         ("topic hz /chatter /stamped", "min_delta", 0),
         ("topic bw /chatter", "/s from", 0),
-        ("topic delay /stamped", "average delay: ", 0),
-        ("topic pub /out std_msgs/msg/String", "publishing #1", 0),
+        pytest.param("topic delay /stamped", "average delay: ", 0, marks=pytest.mark.stress),
+        pytest.param(
+            "topic pub /out std_msgs/msg/String", "publishing #1", 0, marks=pytest.mark.stress
+        ),
         ("topic pub -1 /out std_msgs/msg/String", "Waiting for at least 1", 130),
-        ("topic hz /unknown", "does not appear to be published yet", 0),
+        pytest.param(
+            "topic hz /unknown", "does not appear to be published yet", 0, marks=pytest.mark.stress
+        ),
         (f"service call /unknown {ADD}", "waiting for service to become available", 130),
         (f"action send_goal /fibonacci {FIBONACCI}", "Goal accepted", 130),
-        (f"action send_goal /unknown {FIBONACCI}", "Waiting for an action server", 130),
+        pytest.param(
+            f"action send_goal /unknown {FIBONACCI}",
+            "Waiting for an action server",
+            130,
+            marks=pytest.mark.stress,
+        ),
         ("router -l tcp/127.0.0.1:0", "Router is listening", 0),
     ],
 )

@@ -17,8 +17,8 @@ from collections.abc import Iterator
 from importlib.metadata import version
 from pathlib import Path
 
-from tests.faults.cases import NOTHING, all_cases
-from tests.faults.harness import RECOVERY_LIMIT_S, Case, Outcome, Skipped, run_together
+from tests.faults.cases import all_cases
+from tests.faults.harness import GAP_LIMIT_S, RECOVERY_LIMIT_S, Case, Outcome, Skipped, run_together
 
 SIDE_BY_SIDE = 10
 """How many cases run at once; of those that mostly wait, twice as many."""
@@ -34,7 +34,7 @@ def row(case: Case, results: list[Result]) -> tuple[str, bool]:
     """Return the line of a case, and whether its promise was broken."""
     skipped = [result for result in results if isinstance(result, Skipped)]
     if skipped:
-        return f"| {case.name} | 0 |  |  |  |  |  |  |  |  | skipped: {skipped[0]} |", False
+        return f"| {case.name} | 0 |{'  |' * 10} skipped: {skipped[0]} |", False
     done = [result for result in results if isinstance(result, Outcome)]
     problems = [text for result in done for text in case.broken(result)]
     problems += [repr(result) for result in results if not isinstance(result, Outcome)]
@@ -47,7 +47,10 @@ def row(case: Case, results: list[Result]) -> tuple[str, bool]:
         sum(each.doubled for each in done),
         sum(bool(each.hung) for each in done),
         f"{max((each.recovery_s for each in done), default=0):.1f} s",
-        f"{max((each.gap_s for each in done), default=0) * 1000:.0f} ms",
+        *(
+            f"{max((getattr(each, gap) for each in done), default=0) * 1000:.0f} ms"
+            for gap in ("own_gap_s", "gap_s", "control_gap_s")
+        ),
         f"{max((each.end_s for each in done), default=0):.1f} s",
         f"broken: {problems[0]}" if problems else "kept",
     )
@@ -56,10 +59,10 @@ def row(case: Case, results: list[Result]) -> tuple[str, bool]:
 
 
 def batches(cases: list[Case], size: int) -> Iterator[list[Case]]:
-    """Yield cases that run side by side, with the one in which nothing happens."""
+    """Yield cases that run side by side."""
     for is_long, alike in itertools.groupby(cases, lambda case: case.lasts_s > LONG_S):
         while batch := list(itertools.islice(alike, 2 * size if is_long else size)):
-            yield [*batch, NOTHING]
+            yield batch
 
 
 def main() -> None:
@@ -72,24 +75,21 @@ def main() -> None:
     options = parser.parse_args()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))  # cleans up
     cases = [case for case in all_cases() if re.search(options.only, case.name)]
-    results: dict[str, list[Result]] = {case.name: [] for case in (*cases, NOTHING)}
+    results: dict[str, list[Result]] = {case.name: [] for case in cases}
     try:
         for _ in range(options.times):
             for batch in batches(cases, options.side_by_side):
                 for case, result in zip(batch, asyncio.run(run_together(batch)), strict=True):
                     results[case.name].append(result)
-                    if case.name != NOTHING.name:
-                        print(row(case, [result])[0], flush=True)  # noqa: T201 - a program
+                    print(row(case, [result])[0], flush=True)  # noqa: T201 - a program
     finally:  # what has run is told also when the rest is not waited for
         rows = [row(case, results[case.name]) for case in cases if results[case.name]]
-        tell(rows, results[NOTHING.name], options.side_by_side, options.write)
+        tell(rows, options.side_by_side, options.write)
     broken = sum(is_broken for _, is_broken in rows)
     sys.exit(f"{broken} of {len(rows)} cases broke a promise" if broken else 0)
 
 
-def tell(
-    rows: list[tuple[str, bool]], idle: list[Result], side_by_side: int, path: Path | None
-) -> None:
+def tell(rows: list[tuple[str, bool]], side_by_side: int, path: Path | None) -> None:
     """Print the page, and write it where it is wanted."""
     page = PAGE.read_text(encoding="utf-8").format(
         together=side_by_side,
@@ -98,7 +98,7 @@ def tell(
         python=platform.python_version(),
         version=version("aionode"),
         limit=RECOVERY_LIMIT_S,
-        noise=1000 * max((each.gap_s for each in idle if isinstance(each, Outcome)), default=0.0),
+        gap=1000 * GAP_LIMIT_S,
         rows="\n".join(line for line, _ in rows),
     )
     print(page)  # noqa: T201 - a program

@@ -8,7 +8,7 @@ from collections.abc import Awaitable, Callable
 
 from tests.faults.harness import Stage
 
-__all__ = ["Fault", "all_of", "end_and_replace", "freeze", "replace", "wait"]
+__all__ = ["Fault", "all_of", "end_and_replace", "freeze", "freeze_idle", "replace", "wait"]
 
 Fault = Callable[[Stage], Awaitable[None]]
 
@@ -28,6 +28,21 @@ def freeze(name: str, seconds: float) -> Fault:
     async def strike(stage: Stage) -> None:
         stage.children[name].send(signal.SIGSTOP)
         await asyncio.sleep(seconds)
+        stage.children[name].send(signal.SIGCONT)
+
+    return strike
+
+
+def freeze_idle(name: str, talker: str, seconds: float, *, idle_s: float) -> Fault:
+    """Stop a process that has everything, and let its publisher say nothing for a while."""
+
+    async def strike(stage: Stage) -> None:
+        stage.children[talker].tell("pause")
+        await asyncio.sleep(1.0)  # everything arrives
+        stage.children[name].send(signal.SIGSTOP)
+        await asyncio.sleep(idle_s)
+        stage.children[talker].tell("go on")
+        await asyncio.sleep(seconds - idle_s)
         stage.children[name].send(signal.SIGCONT)
 
     return strike

@@ -19,7 +19,15 @@ from typing import Any, Literal
 
 import msgspec
 
-from tests.faults.roles import REPORTS_VARIABLE, Report, Role, hear_mark, missing
+from tests.faults.roles import (
+    REPORTS_VARIABLE,
+    Report,
+    Role,
+    Word,
+    hear_mark,
+    missing,
+    stream_key,
+)
 from tests.support.peers import isolated_environment
 
 __all__ = ["Case", "Outcome", "Skipped", "Stage", "run_case", "run_together"]
@@ -48,6 +56,13 @@ END_LIMIT_S = 10.0
 """How long a process may take to end; then it is killed."""
 
 
+GAP_LIMIT_S = 0.05
+"""How long a loop may stand still by itself."""
+
+CONTROL = Role("control", control=True)
+"""What the machine makes any process wait for, however little it does."""
+
+
 class Skipped(Exception):  # noqa: N818  # no error
     """The machine cannot do this; the text says why."""
 
@@ -58,21 +73,27 @@ class Outcome(msgspec.Struct):
     Attributes:
         sent: Messages, once for each reader of theirs, and calls and goals.
         lost: How many of them did not arrive, or ended with an error.
+        kept_lost: How many messages of KEEP_ALL publishers are among these.
         told: How many of those were told: counted by a publisher or subscription, or an error.
         doubled: How many arrived twice.
         hung: What did not work again, took longer than its time limit, or did not end.
         recovery_s: From the end of the fault until everything worked again.
         gap_s: The longest time for which the loop of a process that was not hurt did not turn.
+        own_gap_s: The same without the time for which its threads waited for a core of the machine.
+        control_gap_s: As `gap_s`, of a process beside them that has no node.
         end_s: The longest that a process took to end after SIGTERM.
     """
 
     sent: int = 0
     lost: int = 0
+    kept_lost: int = 0
     told: int = 0
     doubled: int = 0
     hung: list[str] = []
     recovery_s: float = 0.0
     gap_s: float = 0.0
+    own_gap_s: float = 0.0
+    control_gap_s: float = 0.0
     end_s: float = 0.0
 
 
@@ -84,8 +105,9 @@ class Case(msgspec.Struct, frozen=True):
         roles: The processes.
         strike: The fault; returns when it is over.
         hurt: Names of the processes whose own event loop the fault stops.
-        loss: What may be lost: ``none``, only what is ``told``, or ``any``, where readers that a
-            publisher takes for gone miss what it says meanwhile.
+        loss: What may be lost: ``none`` of a KEEP_ALL publisher and only what is told of others,
+            only what is ``told``, or ``any``, where readers that a publisher takes for gone miss
+            what it says meanwhile.
         recovery_limit_s: After how long everything has to work again.
         lasts_s: About how long the fault takes; those alike run side by side.
         short: Whether it is part of the ordinary tests.
@@ -102,22 +124,26 @@ class Case(msgspec.Struct, frozen=True):
     short: bool = False
     around: contextlib.AbstractContextManager[None] = contextlib.nullcontext()
 
-    def broken(self, outcome: Outcome) -> list[str]:
+    def broken(self, outcome: Outcome, gap_limit_s: float = GAP_LIMIT_S) -> list[str]:
         """Return which promises an outcome breaks."""
         untold = outcome.lost - outcome.told
         return [
             text
             for is_broken, text in (
                 (
-                    self.loss == "none" and outcome.lost > 0,
-                    f"{outcome.lost} of {outcome.sent} lost",
+                    self.loss == "none" and outcome.kept_lost > 0,
+                    f"{outcome.kept_lost} of {outcome.sent} lost",
                 ),
-                (self.loss == "told" and untold > 0, f"{untold} of {outcome.sent} lost untold"),
+                (self.loss != "any" and untold > 0, f"{untold} of {outcome.sent} lost untold"),
                 (outcome.doubled > 0, f"{outcome.doubled} doubled"),
                 (bool(outcome.hung), f"hung: {', '.join(outcome.hung)}"),
                 (
                     outcome.recovery_s > self.recovery_limit_s,
                     f"recovered after {outcome.recovery_s:.1f} s, not {self.recovery_limit_s:g} s",
+                ),
+                (
+                    outcome.own_gap_s > gap_limit_s,
+                    f"a loop stood still for {1000 * outcome.own_gap_s:.0f} ms",
                 ),
             )
             if is_broken
@@ -196,11 +222,11 @@ class Child:
         if self._process is not None and self.runs:
             os.killpg(self._process.pid, number)
 
-    def hush(self) -> None:
-        """Make it publish and call no more."""
+    def tell(self, word: Word) -> None:
+        """Say something to it."""
         if self._process is not None and self._process.stdin is not None and self.runs:
             with contextlib.suppress(ConnectionError):
-                self._process.stdin.write(b"quiet\n")
+                self._process.stdin.write(f"{word}\n".encode())
 
     async def until_ended(self) -> int:
         """Wait for its end, and return its status."""
@@ -302,7 +328,7 @@ class Stage:
     async def until_arrived(self) -> None:
         """Send no more, and wait until all that is under way has arrived, or nothing moves."""
         for child in self.children.values():
-            child.hush()
+            child.tell("quiet")
         # A backlog that takes long to be over takes as long again to arrive, and then some.
         limit_s = max(QUIET_LIMIT_S, 1.5 * self.case.recovery_limit_s)
         ends_s = time.monotonic() + limit_s
@@ -320,14 +346,21 @@ class Stage:
         children = [*self.children.values(), *self.former]
         return {key: number for child in children for key, number in child.last.sent.items()}
 
-    def lost(self) -> int:
-        """Return how many messages are missing at readers that live."""
+    def lost(self, *, only_kept: bool = False) -> int:
+        """Return how many messages are missing at readers that live; all, or of KEEP_ALL ones."""
         sent = self.streams()
+        kept = tuple(
+            stream_key(publish.topic, role.name)
+            for role in self.case.roles
+            for publish in role.publish
+            if publish.keep_all
+        )
         killed = {key for child in self.former if not child.last.last for key in child.last.sent}
         return sum(
             missing(ranges, 0 if key in killed else sent.get(key, 0))
             for child in self.children.values()
             for key, ranges in child.last.heard.items()
+            if not only_kept or key.startswith(kept)
         )
 
     def outcome(self, steady_s: float, quiet_s: float) -> Outcome:
@@ -343,16 +376,20 @@ class Stage:
             for begin, end in ranges
         )
         lost = self.lost()
-        gaps = [
-            report.gap_s
-            for child in children
-            if child.role.name not in self.case.hurt
-            for report in child.reports
-            if max(steady_s, child.started_s) < report.time_s < quiet_s
-        ]
+        steady = {
+            control: [
+                report
+                for child in children
+                if child.role.control is control and child.role.name not in self.case.hurt
+                for report in child.reports
+                if max(steady_s, child.started_s) < report.time_s < quiet_s
+            ]
+            for control in (False, True)
+        }
         return Outcome(
             sent=heard + lost + calls,
             lost=lost + failed,
+            kept_lost=self.lost(only_kept=True),
             told=min(lost, sum(report.told for report in last)) + failed,
             doubled=sum(report.doubled for report in last),
             hung=[
@@ -360,7 +397,9 @@ class Stage:
                 for child in children
                 if child.last.hung and child.role.name not in self.case.hurt
             ],
-            gap_s=max(gaps, default=0.0),
+            gap_s=max((report.gap_s for report in steady[False]), default=0.0),
+            own_gap_s=max((report.own_gap_s for report in steady[False]), default=0.0),
+            control_gap_s=max((report.gap_s for report in steady[True]), default=0.0),
             end_s=max(child.end_s for child in children),
         )
 
@@ -403,7 +442,7 @@ async def run_case(case: Case, barrier: asyncio.Barrier | None = None) -> Outcom
         try:
             stack.enter_context(case.around)
             stage = await stack.enter_async_context(staged(case))
-            for role in case.roles:
+            for role in (*case.roles, CONTROL):
                 await stage.start(role)
             hung = await stage.until_working(0.001, READY_LIMIT_S)
         finally:

@@ -1,7 +1,6 @@
 """The program of one process of a fault case: ``python -m tests.faults.process ROLE``.
 
-ROLE is a `Role` as JSON. A line on stdin makes it publish, call and send goals no more; SIGTERM
-ends it.
+ROLE is a `Role` as JSON. Each line on stdin is a `Word`; SIGTERM ends it.
 """
 
 from __future__ import annotations
@@ -13,6 +12,7 @@ import os
 import sys
 import time
 from contextlib import suppress
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -44,6 +44,9 @@ __all__ = ["Reporter", "text", "told_by"]
 
 REPORT_S = 0.1
 TICK_S = 0.01
+LONG_S = 0.02
+"""From when on it is asked what other threads have waited for, which takes a millisecond."""
+
 CALL_LIMIT_S = 1.0
 GOAL_LIMIT_S = 3.0
 HUNG_S = 2.0
@@ -70,13 +73,48 @@ def told_by(endpoint: Any) -> int:
     return int(endpoint.stats.dropped) + int(getattr(endpoint.stats, "lost", 0))
 
 
+class CoreWait:
+    """For how long the threads of this process were ready to run, but had no core of the machine.
+
+    Where the system does not tell, that is always 0.
+    """
+
+    def __init__(self) -> None:
+        self._own = -1
+        with suppress(OSError):
+            self._own = os.open("/proc/thread-self/schedstat", os.O_RDONLY)
+        self._own_s = self._read()
+        self._others_s: dict[str, float] = {}
+        self.largest_of_others()
+
+    def _read(self) -> float:
+        return int(os.pread(self._own, 100, 0).split()[1]) / 1e9 if self._own >= 0 else 0.0
+
+    def own(self) -> float:
+        """Return the time of this thread since the last call, in seconds."""
+        before_s, self._own_s = self._own_s, self._read()
+        return self._own_s - before_s
+
+    def largest_of_others(self) -> float:
+        """Return the longest time of one other thread since the last call, in seconds.
+
+        It may have held what this thread waited for, such as the GIL.
+        """
+        before_s, self._others_s = self._others_s, {}
+        for stat in Path("/proc/self/task").glob("*/schedstat"):
+            with suppress(OSError):  # the thread has just ended
+                if stat.parent.name != str(os.getpid()):
+                    self._others_s[stat.parent.name] = int(stat.read_bytes().split()[1]) / 1e9
+        waited = (each - before_s.get(name, each) for name, each in self._others_s.items())
+        return max(waited, default=0.0)
+
+
 class Reporter:
     """Collects what a process sees, and tells it."""
 
     def __init__(self) -> None:
         self.report = Report()
         self.endpoints: list[Any] = []
-        self._last_s = 0.0
 
     def hear(self, topic: str, data: str) -> None:
         """Take a message."""
@@ -90,12 +128,19 @@ class Reporter:
     def watch(self) -> None:
         """Measure for how long the event loop does not turn, from now on."""
         loop = asyncio.get_running_loop()
-        self._last_s = time.monotonic()
+        last_s = time.monotonic()
+        self.core_wait = CoreWait()
 
         def tick() -> None:
+            nonlocal last_s
             now_s = time.monotonic()
-            self.report.gap_s = max(self.report.gap_s, now_s - self._last_s - TICK_S)
-            self._last_s = now_s
+            gap_s = now_s - last_s - TICK_S
+            own_gap_s = gap_s - self.core_wait.own()
+            if own_gap_s > LONG_S:
+                own_gap_s -= self.core_wait.largest_of_others()
+            self.report.gap_s = max(self.report.gap_s, gap_s)
+            self.report.own_gap_s = max(self.report.own_gap_s, own_gap_s)
+            last_s = now_s
             loop.call_later(TICK_S, tick)
 
         loop.call_later(TICK_S, tick)
@@ -105,12 +150,13 @@ class Reporter:
         self.report.time_s = time.monotonic()
         self.report.told = sum(map(told_by, self.endpoints))
         os.write(int(os.environ[REPORTS_VARIABLE]), msgspec.json.encode(self.report) + b"\n")
-        self.report.gap_s = 0.0
+        self.report.gap_s = self.report.own_gap_s = 0.0
 
     async def go_on(self) -> None:
         """Print reports without end."""
         while True:
             self.tell()
+            self.core_wait.largest_of_others()  # what was before this belongs to no later gap
             await asyncio.sleep(REPORT_S)
 
 
@@ -122,23 +168,34 @@ class Process:
         self.reporter = Reporter()
         self.report = self.reporter.report
         self.quiet = asyncio.Event()
+        self.publishes = asyncio.Event()
+        self.publishes.set()
 
     async def run(self) -> None:
         """Do everything, until the process is to end."""
         os.set_blocking(sys.stdin.fileno(), False)
-        asyncio.get_running_loop().add_reader(sys.stdin, self.hush)
+        asyncio.get_running_loop().add_reader(sys.stdin, self.obey)
         self.reporter.watch()
         async with asyncio.TaskGroup() as tasks:
             tasks.create_task(self.reporter.go_on())
-            if self.role.router:
+            if self.role.control:
+                self.report.ready = True
+            elif self.role.router:
                 await self.route()
             else:
                 await self.be_node()
 
-    def hush(self) -> None:
-        """Publish and call no more."""
-        asyncio.get_running_loop().remove_reader(sys.stdin)
-        self.quiet.set()
+    def obey(self) -> None:
+        """Do what a line of stdin says."""
+        word = sys.stdin.readline().strip()
+        if word == "pause":
+            self.publishes.clear()
+        elif word == "go on":
+            self.publishes.set()
+        else:
+            asyncio.get_running_loop().remove_reader(sys.stdin)
+            self.publishes.set()
+            self.quiet.set()
 
     async def route(self) -> None:
         """Be a router."""
@@ -220,6 +277,7 @@ class Process:
             number += 1
             if publish.period_s or number % 50 == 0:
                 await asyncio.sleep(publish.period_s)
+            await self.publishes.wait()
         if publish.count:
             await publisher.drain()
 

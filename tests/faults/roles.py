@@ -19,6 +19,7 @@ __all__ = [
     "Publish",
     "Report",
     "Role",
+    "Word",
     "hear_mark",
     "missing",
     "note",
@@ -28,6 +29,10 @@ __all__ = [
 REPORTS_VARIABLE = "AIONODE_FAULTS_REPORTS"
 
 Output = Literal["file", "full", "unread"]
+
+Word = Literal["pause", "go on", "quiet"]
+"""What a process is told in a line on its stdin: to publish nothing until it is to go on, or to
+publish, call and send goals no more."""
 
 
 class Publish(msgspec.Struct, frozen=True):
@@ -88,6 +93,7 @@ class Role(msgspec.Struct, frozen=True):
             rmw_zenoh, the lease of 60 s included. It can only publish and hear.
         noisy: Whether it writes to stdout and stderr without end.
         fork: Whether it makes a node in a forked child of its own.
+        control: Whether it has no node, and does nothing but watch its event loop.
         env: Variables of its environment.
         wrapper: A command that runs it, such as ``ip netns exec NAME``.
         output: Where its stdout and stderr go: to a ``file``, to ``/dev/full``, or into a pipe that
@@ -107,6 +113,7 @@ class Role(msgspec.Struct, frozen=True):
     ros: bool = False
     noisy: bool = False
     fork: bool = False
+    control: bool = False
     env: dict[str, str] = {}
     wrapper: tuple[str, ...] = ()
     output: Output = "file"
@@ -119,6 +126,7 @@ class Report(msgspec.Struct):
         time_s: When, by `time.monotonic`, which all processes of a host have in common.
         ready: Whether its node runs.
         gap_s: The longest time for which its event loop did not turn, since the last report.
+        own_gap_s: The same without the time for which its threads waited for a core of the machine.
         marks: For each thing that works, the start of the last time that it did: see `hear_mark`;
             ``call`` and ``goal`` for an answer and a result.
         sent: How many messages it has published, by `stream_key`.
@@ -134,6 +142,7 @@ class Report(msgspec.Struct):
     time_s: float = 0.0
     ready: bool = False
     gap_s: float = 0.0
+    own_gap_s: float = 0.0
     marks: dict[str, float] = {}
     sent: dict[str, int] = {}
     heard: dict[str, list[tuple[int, int]]] = {}
@@ -150,8 +159,11 @@ def hear_mark(topic: str, sender: str) -> str:
     return f"hear {topic} {sender}"
 
 
-def stream_key(topic: str, sender: str, pid: int) -> str:
-    """Return what tells the messages of one publisher from those of its successor."""
+def stream_key(topic: str, sender: str, pid: int | Literal[""] = "") -> str:
+    """Return what tells the messages of one publisher from those of its successor.
+
+    Without the process id it is what all of them begin with.
+    """
     return f"{topic} {sender} {pid}"
 
 

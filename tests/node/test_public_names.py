@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+
 import pytest
 
 from aionode import Context, Node, Supervisor
@@ -45,7 +47,8 @@ report_progress trigger_activate trigger_cleanup trigger_configure trigger_deact
 trigger_shutdown
 """
 CONTEXT = """
-arguments as_default default domain_id graph network ok participant shutdown time_base transports
+arguments as_default default domain_id graph network ok participant ros_distro shutdown time_base
+transports
 """
 TRANSPORT = """
 abandon all_known close create_node create_reader create_requester create_server create_writer
@@ -79,4 +82,4 @@ def test_the_list_of_the_context_is_that_of_the_class() -> None:
     """The attributes of an instance are those that the docstring lists."""
     attributes = set(public_names(local_context())) - set(public_names(Context))
 
-    assert all(f"        {name}: " in (Context.__doc__ or "") for name in attributes)
+    assert all(f"\n    {name}: " in inspect.cleandoc(Context.__doc__ or "") for name in attributes)

@@ -58,7 +58,7 @@ def router_with_a_listener() -> Iterator[tuple[zenoh.Session, Overheard]]:
         yield asking, overheard
 
 
-@pytest.mark.parametrize("link", ["on", "off"])
+@pytest.mark.parametrize("link", ["on", pytest.param("off", marks=pytest.mark.stress)])
 def test_nodes_and_commands_ask_no_admin_space(link: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two nodes with a link between them or without one, the questions of a user, and the doctor.
 

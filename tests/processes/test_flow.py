@@ -132,8 +132,15 @@ def test_a_reader_that_pauses_with_its_loop_free_has_everything() -> None:
         assert not [line for line in reader.rest_so_far() if line.startswith("wrong")]
 
 
-@pytest.mark.parametrize("role", ["lister", "plain"])
-@pytest.mark.parametrize(("messages", "size"), [(20_000, 20), (200, 20_000)])
+@pytest.mark.parametrize(
+    ("role", "messages", "size"),
+    [
+        ("lister", 20_000, 20),
+        ("plain", 200, 20_000),
+        pytest.param("lister", 200, 20_000, marks=pytest.mark.stress),
+        pytest.param("plain", 20_000, 20, marks=pytest.mark.stress),
+    ],
+)
 def test_a_reliable_burst_within_the_depth_arrives_as_a_whole(
     role: str, messages: int, size: int
 ) -> None:

@@ -12,8 +12,17 @@ PROGRAM = "tests/processes/stopping_member.py"
 TOPICS = ("/timer", "/thread", "/goal")
 
 
-@pytest.mark.parametrize("link", ["on", "off"])
-@pytest.mark.parametrize("end", ["SIGINT", "SIGTERM", "leave"])
+@pytest.mark.parametrize(
+    ("link", "end"),
+    [
+        ("on", "SIGINT"),
+        ("off", "SIGTERM"),
+        ("on", "leave"),
+        pytest.param("off", "SIGINT", marks=pytest.mark.stress),
+        pytest.param("on", "SIGTERM", marks=pytest.mark.stress),
+        pytest.param("off", "leave", marks=pytest.mark.stress),
+    ],
+)
 def test_what_callbacks_publish_in_finally_arrives(
     monkeypatch: pytest.MonkeyPatch, link: str, end: str
 ) -> None:
@@ -33,7 +42,7 @@ def test_what_callbacks_publish_in_finally_arrives(
         assert not [line for _, line in robot.lines if "Error" in line or "Traceback" in line]
 
 
-@pytest.mark.parametrize("link", ["on", "off"])
+@pytest.mark.parametrize("link", [pytest.param("on", marks=pytest.mark.stress), "off"])
 def test_a_destroyed_node_lets_its_callbacks_stop_the_robot(
     monkeypatch: pytest.MonkeyPatch, link: str
 ) -> None:

@@ -76,6 +76,7 @@ def parts_of(cls: Any) -> Iterator[type[Message]]:
         yield cls
 
 
+@cache  # hypothesis takes longer to make a strategy than to draw from it
 def messages(cls: type[Message], *, nan: bool = False) -> st.SearchStrategy[Any]:
     """Return a strategy for messages of one class, in the forms that a reader gets.
 

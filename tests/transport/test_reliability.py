@@ -322,6 +322,44 @@ def test_a_reader_that_answered_just_now_has_ended_when_it_vanishes() -> None:
     assert wire.lost_count == 0
 
 
+@pytest.mark.parametrize("answers", [True, False])
+def test_an_idle_keep_all_writer_knows_whether_a_vanished_reader_was_frozen(
+    *, answers: bool
+) -> None:
+    """It has acknowledged everything, so only a probe tells a frozen reader from a killed one."""
+    wire = Wire(1, keep_all=True, depth=1000)
+    (name,) = wire.names
+    wire.publish()
+    wire.settle()
+    for _ in range(10):
+        wire.clock.ns += 1_000_000_000
+        assert wire.history.probe()
+        if answers:
+            wire.settle()
+        wire.control.clear()
+    wire.history.remove(name)
+    assert (name in wire.history.readers) is not answers
+    wire.publish()
+    wire.topic[name].clear()
+    if not answers:
+        wire.history.add(name, "")
+        wire.settle()
+        assert wire.heard[name] == [1, 2]
+    assert wire.history.done
+    assert wire.lost_count == 0
+
+
+def test_a_reader_that_answers_anyway_is_not_probed() -> None:
+    """A probe is for silence: a busy publisher sends none."""
+    wire = Wire(1, keep_all=True, depth=1000)
+    wire.publish()
+    wire.settle()
+    assert wire.history.probe()
+    assert not wire.control
+    wire.history.remove(wire.names[0])
+    assert not wire.history.probe()
+
+
 def test_a_heavy_loss_is_made_good_without_sending_much_twice() -> None:
     """A storm of repetitions would make congestion worse."""
     wire = Wire(1, keep_all=False, depth=20_000)

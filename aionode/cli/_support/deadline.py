@@ -9,7 +9,7 @@ import threading
 
 from aionode._streams import accepts
 
-__all__ = ["Deadline", "leave_if_busy"]
+__all__ = ["Deadline", "leave"]
 
 
 class Deadline:
@@ -44,12 +44,3 @@ def leave(status: int, text: str = "") -> None:
         with contextlib.suppress(OSError):
             os.write(sys.stderr.fileno(), text.encode(errors="backslashreplace"))
     os._exit(status)
-
-
-def leave_if_busy(status: int) -> None:
-    """Exit at once if a thread is still running, for example one that closes a connection.
-
-    Python would wait for it, or stop a daemon thread inside native code, which aborts the process.
-    """
-    if threading.active_count() > 1:
-        leave(status)

@@ -32,6 +32,9 @@ class MismatchReport:
             own, other = (known, new) if self._is_own(known) else (new, known)
             if not self._is_own(own):
                 continue
+            found = own.compare(other)
+            if found is not None and found.aspect in self._graph.unreported.get(own, ()):
+                continue
             text = mismatch_text(own, other)
             if text is not None:
                 get_logger(logger_name(own.node.namespace, own.node.name)).warning(text)
@@ -51,6 +54,11 @@ def mismatch_text(own: EndpointInfo, other: EndpointInfo) -> str | None:
         return (
             f"{where}: the {peer} has type {other.type_name}, this {own.kind.value} "
             f"{own.type_name}. They will not hear each other; use one type, or another name"
+        )
+    if found.aspect == "distribution":
+        return (
+            f"{where}: the {peer} is of another distribution of ROS 2, and they will not hear each "
+            f"other; {found.reason}"
         )
     if found.aspect == "definition":
         return (

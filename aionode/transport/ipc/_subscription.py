@@ -22,19 +22,20 @@ number from any route, also from a new link, and holds what is further ahead.
 from __future__ import annotations
 
 import enum
-from collections import deque
+from collections import defaultdict, deque
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import DecodeError, FrameError
 from aionode.message import fields
 from aionode.qos import ReliabilityPolicy, depth_of, keeps_all
-from aionode.transport.base import Registration, SampleInfo
+from aionode.transport.base import ReaderRegistration, Registration, SampleInfo
 from aionode.transport.ipc._protocol import Close, Credit, Open, Switched, can_link
 from aionode.wire import cdr
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
+    from aionode.content_filter import ContentFilterOptions
     from aionode.graph import EndpointInfo
     from aionode.transport.base import Reader
     from aionode.transport.ipc._connection import Connection
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
     from aionode.transport.ipc._registry import LinkRegistry
     from aionode.wire.cdr import Data
 
-__all__ = ["IpcReader", "RemotePublisher", "Route", "may_be_large"]
+__all__ = ["IpcReader", "RemotePublisher", "Route", "heard_from", "may_be_large"]
 
 WINDOW: Final = 1_000
 """How many messages a KEEP_ALL subscription lets a publisher send ahead of what it has used."""
@@ -434,7 +435,7 @@ class RemotePublisher:
             self.connection.send(Credit(self.publisher, self.gid, used, last))
 
 
-class IpcReader(Registration):
+class IpcReader(ReaderRegistration):
     """A subscription that hears some of its publishers over links.
 
     Zenoh delivers to this in place of the subscription's own reader, so that what arrives over both
@@ -457,6 +458,7 @@ class IpcReader(Registration):
         self.endpoint = reader.endpoint
         self.raw = reader.raw
         self.reject = reader.reject
+        self.note_alive = reader.note_alive
         self.when_room = reader.when_room
         self.wait_for_room = reader.wait_for_room
         self.deliver_local = reader.deliver
@@ -503,6 +505,11 @@ class IpcReader(Registration):
         if remote_publisher.connection is None:
             remote_publisher.open(connection)
 
+    def set_content_filter(self, content_filter: ContentFilterOptions) -> None:
+        """Announce which messages are wanted, to publishers at the other end of links as well."""
+        if isinstance(self._zenoh, ReaderRegistration):
+            self._zenoh.set_content_filter(content_filter)
+
     def forget(self, remote_publisher: RemotePublisher) -> None:
         """Forget a publisher that was destroyed, when nothing of it is on its way any more."""
         self.remote_publishers.pop(remote_publisher.publisher, None)
@@ -526,3 +533,15 @@ def may_be_large(msg_type: type[Any]) -> bool:
         else type_.container == "unbounded" and type_.kind not in ("string", "wstring")
         for type_ in types
     )
+
+
+def heard_from(
+    readers: Iterable[IpcReader], participant: str
+) -> dict[bytes, list[RemotePublisher]]:
+    """Return what subscriptions keep about the publishers of a context, by their gids."""
+    heard: dict[bytes, list[RemotePublisher]] = defaultdict(list)
+    for reader in readers:
+        for remote_publisher in reader.remote_publishers.values():
+            if remote_publisher.participant == participant:
+                heard[remote_publisher.publisher].append(remote_publisher)
+    return heard

@@ -16,8 +16,16 @@ from aionode.transport.ipc._service import IpcRequester, IpcServer
 from aionode.transport.ipc._subscription import IpcReader, may_be_large
 
 if TYPE_CHECKING:
+    from aionode.clock import TimeBase
     from aionode.graph import EndpointInfo, Graph, NodeInfo
-    from aionode.transport.base import LinkStatus, Reader, Registration, Requester, Serve, Writer
+    from aionode.transport.base import (
+        LinkStatus,
+        Reader,
+        Registration,
+        Requester,
+        Serve,
+        Writer,
+    )
     from aionode.transport.ipc._registry import PeerDirectory
 
 __all__ = ["IpcTransport"]
@@ -33,13 +41,21 @@ class IpcTransport(Transport):
         domain_id: The ROS domain.
         zenoh: The other transport.
         peer_directory: What the other transport knows about other contexts.
+        time_base: The time of the context; by default that of the machine.
     """
 
     def __init__(
-        self, participant: str, domain_id: int, zenoh: Transport, peer_directory: PeerDirectory
+        self,
+        participant: str,
+        domain_id: int,
+        zenoh: Transport,
+        peer_directory: PeerDirectory,
+        time_base: TimeBase | None = None,
     ) -> None:
         self.zenoh = zenoh
         self.manager = LinkManager(participant, domain_id, peer_directory)
+        if time_base is not None:
+            self.manager.now_ns = time_base.system_ns
         self._peer_directory = peer_directory
         self._graph: Graph | None = None
 

@@ -32,6 +32,9 @@ PREFIX: Final = "@aionode"
 TICK_S: Final = 0.05
 """The interval of `tick` for publishers and subscriptions that wait for something."""
 
+PROBE_S: Final = 1.0
+"""The interval of `probe` for publishers that have to know whether their readers answer."""
+
 LIMIT: Final = 20_000
 """How many submessages wait for the loop; those that are dropped will be repeated."""
 
@@ -45,6 +48,9 @@ class StatefulWriter(Protocol):
     def tick(self) -> bool:
         """Do what is due; return whether to call again."""
 
+    def probe(self) -> bool:
+        """Ask readers for an answer; return whether to call again."""
+
 
 class StatefulReader(Protocol):
     """A subscription that acknowledges messages."""
@@ -54,6 +60,42 @@ class StatefulReader(Protocol):
 
     def tick(self) -> bool:
         """Do what is due; return whether to call again."""
+
+
+class Repeater:
+    """Calls functions at an interval, each until it returns False.
+
+    Args:
+        interval_s: The interval.
+    """
+
+    def __init__(self, interval_s: float) -> None:
+        self._interval_s = interval_s
+        self._calls: dict[Callable[[], bool], None] = {}
+        self._timer: asyncio.TimerHandle | None = None
+
+    def add(self, call: Callable[[], bool]) -> None:
+        """Call `call` from now on."""
+        self._calls[call] = None
+        self._go_on()
+
+    def _go_on(self) -> None:
+        if self._calls and self._timer is None:
+            self._timer = asyncio.get_running_loop().call_later(self._interval_s, self._run)
+
+    def _run(self) -> None:
+        self._timer = None
+        for call in list(self._calls):
+            if not call():
+                self._calls.pop(call, None)
+        self._go_on()
+
+    def clear(self) -> None:
+        """Call nothing any more."""
+        self._calls.clear()
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
 
 
 class Acknowledgements:
@@ -92,8 +134,8 @@ class Acknowledgements:
         self._declared: list[zenoh.Subscriber[None] | zenoh.LivelinessToken] = []
         self._queue: ThreadsafeQueue[zenoh.Sample] = ThreadsafeQueue(waker, self._take, LIMIT)
         self._tokens: ThreadsafeQueue[zenoh.Sample] = ThreadsafeQueue(waker, self._take_token)
-        self._busy: dict[StatefulWriter | StatefulReader, None] = {}
-        self._timer: asyncio.TimerHandle | None = None
+        self._ticks = Repeater(TICK_S)
+        self._probes = Repeater(PROBE_S)
 
     def start(self, session: zenoh.Session) -> None:
         """Subscribe, and declare the token. To be called before any endpoint is declared."""
@@ -118,10 +160,8 @@ class Acknowledgements:
         self._queue.clear()
         self._tokens.clear()
         self.participants.clear()
-        self._busy.clear()
-        if self._timer is not None:
-            self._timer.cancel()
-            self._timer = None
+        self._ticks.clear()
+        self._probes.clear()
 
     def send(self, participant: str, data: bytes, priority: zenoh.Priority = LOOP_PRIORITY) -> None:
         """Send a submessage to another context; it may be lost. Large ones go from a thread."""
@@ -141,17 +181,13 @@ class Acknowledgements:
 
     def watch(self, endpoint: StatefulWriter | StatefulReader) -> None:
         """Call `endpoint.tick` from now on until it returns False."""
-        self._busy[endpoint] = None
-        if self._timer is None and self._session is not None:
-            self._timer = asyncio.get_running_loop().call_later(TICK_S, self._tick)
+        if self._session is not None:
+            self._ticks.add(endpoint.tick)
 
-    def _tick(self) -> None:
-        self._timer = None
-        for endpoint in list(self._busy):
-            if not endpoint.tick():
-                self._busy.pop(endpoint, None)
-        if self._busy and self._session is not None:
-            self._timer = asyncio.get_running_loop().call_later(TICK_S, self._tick)
+    def probe(self, writer: StatefulWriter) -> None:
+        """Call `writer.probe` from now on until it returns False."""
+        if self._session is not None:
+            self._probes.add(writer.probe)
 
     def _take(self, sample: zenoh.Sample) -> None:
         submessage = acknack.unpack(sample.payload.to_bytes())

@@ -1,7 +1,8 @@
-"""Limits, sizes and QoS that publishers, subscriptions and services over Zenoh share."""
+"""Limits, sizes, QoS and attachments that publishers, subscriptions and services share."""
 
 from __future__ import annotations
 
+import logging
 from typing import TYPE_CHECKING, Any
 
 import zenoh
@@ -9,9 +10,16 @@ import zenoh
 from aionode.message import fields
 from aionode.qos import DurabilityPolicy, ReliabilityPolicy
 from aionode.transport._zenoh_config import BLOCK_US
+from aionode.transport.base import SampleInfo
 from aionode.transport.zenoh._session_state import FLUSH_S
+from aionode.wire._attachment import unpack_fields
 
 if TYPE_CHECKING:
+    from collections.abc import Container, Iterable
+
+    from zenoh import ext
+
+    from aionode.graph import EndpointInfo
     from aionode.qos import QoSProfile
 
 __all__ = [
@@ -21,10 +29,19 @@ __all__ = [
     "FLUSH_NS",
     "GIVEN_UP_NS",
     "STILL_NS",
+    "UNKNOWN_GID",
+    "acknowledging",
     "has_buffers",
     "is_reliable",
     "is_transient",
+    "sample_info_of",
+    "withdraw",
 ]
+
+logger = logging.getLogger("aionode.transport.zenoh")
+
+UNKNOWN_GID = bytes(16)
+"""The gid of a message without a valid attachment."""
 
 BULK_BYTES = 60_000
 """From this size on a message is sent from a thread: it takes more than one packet of Zenoh's."""
@@ -66,3 +83,44 @@ def is_reliable(qos: QoSProfile) -> bool:
 def is_transient(qos: QoSProfile) -> bool:
     """Whether late subscriptions get what was published before."""
     return qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
+
+
+def sample_info_of(extra: zenoh.ZBytes | None) -> SampleInfo | None:
+    """Return the contents of an attachment; None without one in a known form."""
+    if extra is None:
+        return None
+    fields = unpack_fields(extra.to_bytes())
+    return None if fields is None else SampleInfo(fields[2], fields[0], fields[1], True)
+
+
+def acknowledging(
+    readers: Iterable[EndpointInfo], participants: Container[str]
+) -> tuple[dict[bytes, str], bool]:
+    """Return which readers acknowledge, with their contexts, and whether others must lose nothing.
+
+    Transient local readers get Zenoh's own history.
+
+    Args:
+        readers: The matched readers.
+        participants: The contexts that acknowledge.
+    """
+    found: dict[bytes, str] = {}
+    others = False
+    for reader in readers:
+        participant = reader.node.participant
+        if participant not in participants:
+            others = True
+        elif is_reliable(reader.qos):
+            if is_transient(reader.qos):
+                others = True
+            else:
+                found[reader.gid] = participant
+    return found, others
+
+
+def withdraw(publisher: zenoh.Publisher | ext.AdvancedPublisher) -> None:
+    """Undeclare a publisher, unless its session has been closed already."""
+    try:
+        publisher.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
+    except zenoh.ZError as error:
+        logger.debug("%s: not undeclared: %s", publisher.key_expr, error)

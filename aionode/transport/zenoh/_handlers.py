@@ -15,6 +15,7 @@ __all__ = [
     "CALL_PRIORITY",
     "LOOP_PRIORITY",
     "PATIENT_PRIORITY",
+    "RETRANSMIT_PRIORITY",
     "direct",
     "reason",
     "translated",
@@ -23,10 +24,14 @@ __all__ = [
 # Zenoh has a queue for each priority and peer. A thread that waits for room in one (congestion
 # control BLOCK, and for a moment DROP) locks it, and all other threads that put into it wait too.
 # So messages from the event loop have a queue of their own, in which no thread ever waits. Zenoh's
-# default, DATA, is left to Zenoh's own messages and to replies to ROS 2 nodes.
+# default, DATA, is left to Zenoh's own messages and to replies to ROS 2 nodes; tokens and other
+# declarations are CONTROL.
 
 LOOP_PRIORITY = zenoh.Priority.DATA_HIGH
 """Of messages from the event loop: always with congestion control DROP."""
+
+RETRANSMIT_PRIORITY = zenoh.Priority.INTERACTIVE_HIGH
+"""Of what a broken link did not deliver, sent from a thread for each peer with BLOCK."""
 
 CALL_PRIORITY = zenoh.Priority.INTERACTIVE_LOW
 """Of requests and their replies, sent with BLOCK."""

@@ -77,11 +77,21 @@ class PeerSenders:
                     break
         if slow is None:
             job()
-            return
-        if slow.send_thread is None:
+        else:
+            self._submit(slow, job)
+
+    def submit(self, participant: str, job: Callable[[], None]) -> None:
+        """Run `job`, which sends to one peer, in the thread for it."""
+        peer = self._peers.get(participant)
+        if peer is None:
+            peer = self._peers[participant] = PeerSender()
+        self._submit(peer, job)
+
+    def _submit(self, peer: PeerSender, job: Callable[[], None]) -> None:
+        if peer.send_thread is None:
             self._tidy()
-            slow.send_thread = SendThread("aionode-peer", self._waker)
-        slow.send_thread.submit(job)
+            peer.send_thread = SendThread("aionode-peer", self._waker)
+        peer.send_thread.submit(job)
 
     def _tidy(self) -> None:
         """End idle threads, and forget idle peers if there are many."""

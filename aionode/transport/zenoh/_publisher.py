@@ -14,7 +14,7 @@ from zenoh import ext
 from aionode.clock import perf_ns
 from aionode.errors import TransportError
 from aionode.graph import EndpointKind
-from aionode.qos import HistoryPolicy, depth_of
+from aionode.qos import depth_of, is_unlimited, keeps_all
 from aionode.transport._reliability import WriterHistory
 from aionode.transport._send_thread import SendQueue, SendThread
 from aionode.transport.base import Writer
@@ -25,9 +25,11 @@ from aionode.transport.zenoh._delivery import (
     FLUSH_NS,
     GIVEN_UP_NS,
     STILL_NS,
+    acknowledging,
     has_buffers,
     is_reliable,
     is_transient,
+    withdraw,
 )
 from aionode.transport.zenoh._handlers import (
     BULK_PRIORITY,
@@ -89,10 +91,12 @@ class ZenohWriter(Declaration, Writer):
         self._transient = is_transient(qos)
         self._depth = depth_of(qos)
         self._reliable = is_reliable(qos)
+        lifespan = qos.lifespan
+        self._lifespan_ns = 0 if is_unlimited(lifespan) else lifespan.nanoseconds
         # Messages for late readers that were published before the session is open.
         self._early: deque[tuple[bytes, bytes]] = deque(maxlen=self._depth)
         self.active = self._transient
-        self.bounded = qos.history is HistoryPolicy.KEEP_ALL and self._reliable
+        self.bounded = keeps_all(qos)
         # A transient local publisher has none: there Zenoh sends lost messages again.
         self._history: WriterHistory | None = None
         if self._reliable and not self._transient:
@@ -103,6 +107,9 @@ class ZenohWriter(Declaration, Writer):
         # Large messages, and small ones after them to keep the order.
         self._large = self._send_queue(state.bulk, keep_all=False)
         self._bulk_only = self._transient and not self.bounded and has_buffers(msg_type)
+        # Whether any reader wants a message; None if one wants all, or may be there unseen.
+        self._wants: Callable[[Any], bool] | None = None
+        self._filtered = 0
         # Messages for readers that do not acknowledge, once it was needed; from then on it is used
         # for all messages, to keep the order.
         self._patient: SendQueue | None = None
@@ -237,15 +244,17 @@ class ZenohWriter(Declaration, Writer):
         self._update()
 
     def _update(self) -> None:
-        """Update `active` and the history from the matching readers."""
+        """Update `active`, the filter and the history from the matching readers."""
         history, graph = self._history, self.state.graph
         if self._transient:
             if self._encode is None:
                 self._encode = cdr.encoder(self._msg_type)
             return
         self.active = False
+        self._wants = None
         if graph is not None and self._publisher is not None:
             readers = self._matched(graph)
+            self._wants = self._filter_of(readers)
             # The token of a reader can arrive before Zenoh has told of a match, or has a route to
             # it; what is lost until then is sent again.
             self.active = self._is_matching or bool(readers)
@@ -262,17 +271,27 @@ class ZenohWriter(Declaration, Writer):
             if reader.node.participant != self.state.participant and self.endpoint.matches(reader)
         ]
 
+    def _filter_of(self, readers: list[EndpointInfo]) -> Callable[[Any], bool] | None:
+        """Return whether any reader wants a message; None if all messages have to be sent."""
+        filters = self.state.content_filters
+        if not filters or self.state.has_unannounced_peers:
+            return None
+        return filters.wanted_by([reader.gid for reader in readers], self._msg_type)
+
     def _update_readers(self, history: WriterHistory, readers: list[EndpointInfo]) -> None:
         """Add new and returned readers to the history, and remove those that have vanished."""
-        acknowledging, others = self._acknowledging(readers)
+        able = self.state.acknowledgements.participants
+        found, others = acknowledging(readers, able)
         for gid, known in list(history.readers.items()):
-            if gid not in acknowledging and not known.away_until_ns:
+            if gid not in found and not known.away_until_ns:
                 history.remove(gid)
         if not self._closed:
-            for gid, participant in acknowledging.items():
+            for gid, participant in found.items():
                 reader = history.readers.get(gid)
                 if reader is None or reader.away_until_ns:
                     history.add(gid, participant)
+        if self.bounded and history.readers:
+            self.state.acknowledgements.probe(self)
         self._progress()
         # What is published while a reader is away is sent again. A subscriber without a token may
         # match too; beside readers that acknowledge, none is known.
@@ -280,26 +299,13 @@ class ZenohWriter(Declaration, Writer):
         history.has_other_readers = others or not history.readers
         self._update_route()
 
-    def _acknowledging(self, readers: list[EndpointInfo]) -> tuple[dict[bytes, str], bool]:
-        """Return the acknowledging readers, and whether others must not lose messages."""
-        able = self.state.acknowledgements.participants
-        acknowledging: dict[bytes, str] = {}
-        others = False
-        for reader in readers:
-            participant = reader.node.participant
-            if participant not in able:
-                others = True
-            elif is_reliable(reader.qos):
-                if is_transient(reader.qos):
-                    others = True
-                else:
-                    acknowledging[reader.gid] = participant
-        return acknowledging, others
-
     # Messages
 
     def write(self, msg: Any, sample_info: SampleInfo) -> None:
-        """Send `msg`."""
+        """Send `msg`, unless no reader wants it: the history takes a jump of its numbers."""
+        if self._wants is not None and not self._wants(msg):
+            self._filtered += 1
+            return
         encode = self._encode
         if encode is None:
             encode = self._encode = cdr.encoder(self._msg_type)
@@ -347,7 +353,9 @@ class ZenohWriter(Declaration, Writer):
             self._put_patiently(publisher, payload, extra)
         elif size >= BULK_BYTES or self._bulk_only or self._is_large_used:
             self._is_large_used = True
-            self._large.put(lambda: self._send(publisher, payload, extra))
+            self._large.put(
+                self._unless_expired(extra, partial(self._send, publisher, payload, extra))
+            )
         else:
             try:
                 publisher.put(payload, attachment=extra)
@@ -384,7 +392,24 @@ class ZenohWriter(Declaration, Writer):
                     allowed_destination=zenoh.Locality.REMOTE,
                 )
         patient = self._patient_publisher or publisher
-        self._patient.put(lambda: self._send_patiently(patient, payload, extra))
+        send = partial(self._send_patiently, patient, payload, extra)
+        self._patient.put(self._unless_expired(extra, send))
+
+    def _unless_expired(self, extra: bytes, send: Callable[[], None]) -> Callable[[], None]:
+        """Return `send`, or with a lifespan what does nothing if the message expires before it.
+
+        Only readers of aionode look at the age of what arrives.
+        """
+        fields = attachment.unpack_fields(extra)
+        if not self._lifespan_ns or fields is None:
+            return send
+        expires_ns = fields[1] + self._lifespan_ns
+
+        def send_if_fresh() -> None:
+            if self.state.now_ns() < expires_ns:
+                send()
+
+        return send_if_fresh
 
     def _send_patiently(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
@@ -407,17 +432,20 @@ class ZenohWriter(Declaration, Writer):
             if session is None or self._transient:
                 publisher.put(payload, attachment=extra)
             else:
-                waits = self._reliable and self.state.is_preparing_shared_memory()
                 session.put(
                     self._key,
                     payload,
                     attachment=extra,
-                    congestion_control=BLOCK if waits else DROP,
+                    congestion_control=DROP,
                     priority=BULK_PRIORITY,
                     allowed_destination=zenoh.Locality.REMOTE,
                 )
         except zenoh.ZError as error:
             logger.debug("%s: not sent: %s", self._key, reason(error))
+
+    def assert_liveliness(self) -> None:
+        """Tell the subscriptions of other contexts."""
+        self.state.assertions.send(self.gid)
 
     def has_room(self) -> bool:
         """Return whether one more message can wait to be sent."""
@@ -490,6 +518,10 @@ class ZenohWriter(Declaration, Writer):
             return True
         return again
 
+    def probe(self) -> bool:
+        """Ask readers that have everything for an answer; return whether to call again."""
+        return self._history is not None and self._history.probe()
+
     def heartbeat(self, reader: ReaderProxy, first: int, last: int) -> None:
         """Send a reader a HEARTBEAT."""
         self._send_submessage(
@@ -537,6 +569,11 @@ class ZenohWriter(Declaration, Writer):
         """How many messages are known to have been dropped on the way."""
         return self._dropped
 
+    @property
+    def filtered(self) -> int:
+        """How many messages were not sent, as no reader wants them."""
+        return self._filtered
+
     def route_of(self, reader: EndpointInfo) -> str | None:
         """Return ``zenoh`` for subscriptions of other contexts."""
         return "zenoh" if reader.node.participant != self.state.participant else None
@@ -558,11 +595,3 @@ class ZenohWriter(Declaration, Writer):
             updates.remove(self._update)
             if not updates:
                 del self.state.on_reader[self.endpoint.name]
-
-
-def withdraw(publisher: zenoh.Publisher | ext.AdvancedPublisher) -> None:
-    """Undeclare a publisher, unless its session has been closed already."""
-    try:
-        publisher.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
-    except zenoh.ZError as error:
-        logger.debug("%s: not undeclared: %s", publisher.key_expr, error)

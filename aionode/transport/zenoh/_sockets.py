@@ -1,9 +1,13 @@
-"""Cutting connections whose peer has stopped reading, so that a session can be closed.
+"""What Zenoh's sockets do while a peer has stopped reading.
 
-Zenoh waits in `close`, and in blocking sends, until such a peer reads on or the connection is lost;
-shutting the socket down loses it at once. Closing the socket would then wait for ten more seconds
-(SO_LINGER), unless that is switched off first (zenoh 1.10). On Linux only: elsewhere closing takes
-as long as Zenoh waits.
+Zenoh sets SO_LINGER on each of them: closing one whose peer has not taken everything waits for up
+to ten seconds, and with it the thread of Zenoh that closes it, which may be the only one that sends
+or connects for this process. That is switched off soon after a connection was made.
+
+In `close`, and in blocking sends, Zenoh waits until such a peer reads on or the connection is lost;
+shutting the socket down loses it at once (zenoh 1.10).
+
+On Linux only: elsewhere all of this takes as long as Zenoh waits.
 """
 
 from __future__ import annotations
@@ -13,18 +17,21 @@ import logging
 import socket
 import struct
 import sys
+import threading
 from contextlib import ExitStack, contextmanager, suppress
 from os import dup, fstat
 from pathlib import Path
 from stat import S_ISSOCK
 from typing import TYPE_CHECKING, Final
 
+import zenoh
+
+from aionode.transport.zenoh._handlers import direct
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    import zenoh
-
-__all__ = ["cut_stuck"]
+__all__ = ["LingerSwitch", "cut_stuck"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
@@ -33,7 +40,14 @@ DESCRIPTORS: Final = Path("/proc/self/fd")
 STUCK_S: Final = 0.1
 """A peer that reads not one byte for so long, while some wait, is not waited for."""
 
-NO_LINGER: Final = struct.pack("ii", 1, 0)
+RESET: Final = struct.pack("ii", 1, 0)
+"""SO_LINGER for a connection that is cut: what was not taken is dropped."""
+
+NO_LINGER: Final = struct.pack("ii", 0, 0)
+"""SO_LINGER for all others: closing returns at once, and the system goes on sending."""
+
+SETTLE_S: Final = 0.5
+"""How long after a new connection its socket is looked for; several are made at once."""
 
 
 @contextmanager
@@ -60,7 +74,7 @@ def waiting_bytes(session: zenoh.Session) -> dict[str, int]:
         import termios
     except ImportError:  # Windows
         return {}
-    peers = {str(state.dst).partition("/")[2].partition("?")[0] for state in session.info.links()}
+    peers = {address_of(link) for link in session.info.links()}
     with connections() as found:
         waiting = {
             peer: int.from_bytes(fcntl.ioctl(one, termios.TIOCOUTQ, bytes(4)), sys.byteorder)
@@ -70,13 +84,68 @@ def waiting_bytes(session: zenoh.Session) -> dict[str, int]:
     return {peer: size for peer, size in waiting.items() if size}
 
 
+def address_of(link: zenoh.Link) -> str:
+    """Return the address of the peer, such as ``127.0.0.1:7447``."""
+    return str(link.dst).partition("/")[2].partition("?")[0]
+
+
+def switch_linger_off(peers: set[str]) -> None:
+    """Let the connections to some peers be closed without waiting for them."""
+    with connections() as found:
+        for peer, one in found:
+            if peer in peers:
+                with suppress(OSError):  # it is lost already
+                    one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
+
+
+class LingerSwitch:
+    """Switches SO_LINGER off for each connection of a session.
+
+    Args:
+        session: The session; its loop is the one that runs.
+    """
+
+    def __init__(self, session: zenoh.Session) -> None:
+        self._loop = asyncio.get_running_loop()
+        self._timer: asyncio.TimerHandle | None = None
+        self._new: set[str] = set()
+        self._closed = False
+        self._listener = session.info.declare_link_events_listener(
+            direct(self._on_event), history=True
+        )
+
+    def close(self) -> None:
+        """Stop watching."""
+        self._closed = True
+        self._listener.undeclare()
+        if self._timer is not None:
+            self._timer.cancel()
+
+    def _on_event(self, event: zenoh.LinkEvent) -> None:
+        """Handle a connection that was made or lost; in a thread of Zenoh."""
+        if event.kind == zenoh.SampleKind.PUT and sys.platform.startswith("linux"):
+            with suppress(RuntimeError):  # the loop was closed meanwhile
+                self._loop.call_soon_threadsafe(self._add, address_of(event.link))
+
+    def _add(self, peer: str) -> None:
+        self._new.add(peer)
+        if self._timer is None and not self._closed:
+            self._timer = self._loop.call_later(SETTLE_S, self._switch)
+
+    def _switch(self) -> None:
+        self._timer = None
+        new, self._new = self._new, set()
+        # Looking through all descriptors of a large process takes some milliseconds.
+        threading.Thread(target=switch_linger_off, args=(new,), name="aionode-zenoh").start()
+
+
 def cut(peers: set[str]) -> None:
     """Cut the connections to some peers."""
     with connections() as found:
         for peer, one in found:
             if peer in peers:
                 with suppress(OSError):  # it is lost already
-                    one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
+                    one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, RESET)
                     one.shutdown(socket.SHUT_RDWR)
 
 

@@ -15,15 +15,24 @@ from aionode.transport.zenoh._recovery import Recovery
 from aionode.transport.zenoh._services import ZenohRequester, ZenohServer
 from aionode.transport.zenoh._session import ConnectionWatcher, close_session, open_session
 from aionode.transport.zenoh._session_state import SessionState
-from aionode.transport.zenoh._sockets import cut_stuck
+from aionode.transport.zenoh._sockets import LingerSwitch, cut_stuck
 from aionode.transport.zenoh._subscription import ZenohReader
 
 if TYPE_CHECKING:
     from collections import Counter
 
+    from aionode.clock import TimeBase
     from aionode.graph import EndpointInfo, Graph, NodeInfo
     from aionode.transport._zenoh_config import Network
-    from aionode.transport.base import LinkStatus, Reader, Registration, Requester, Serve, Writer
+    from aionode.transport.base import (
+        LinkStatus,
+        Reader,
+        ReaderRegistration,
+        Registration,
+        Requester,
+        Serve,
+        Writer,
+    )
 
 __all__ = ["ZenohTransport"]
 
@@ -37,20 +46,24 @@ class ZenohTransport(Transport):
     Args:
         participant: Id of the context and of its Zenoh session: hexadecimal, no leading zeros.
         network: Domain, discovery and peers.
+        time_base: The time of the context; by default that of the machine.
 
     Attributes:
         peer_directory: The other contexts, for links beside this transport.
     """
 
-    def __init__(self, participant: str, network: Network) -> None:
+    def __init__(
+        self, participant: str, network: Network, time_base: TimeBase | None = None
+    ) -> None:
         self.network = network
-        self._state = SessionState(participant, network.domain_id)
+        self._state = SessionState(participant, network.domain_id, time_base)
         self._watcher = Watcher(self._state)
         self.peer_directory = ZenohPeerDirectory(self._state)
         # Done when the tokens of all connected peers are in the graph.
         self._answered: asyncio.Future[None] | None = None
         self._missing = 0  # how many peers that accept connections were not connected in time
         self._recovery = Recovery(self._state, network, self._watcher.check)
+        self._linger_switch: LingerSwitch | None = None
 
     def __repr__(self) -> str:
         state = "closed" if self._state.session is None else "open"
@@ -82,6 +95,7 @@ class ZenohTransport(Transport):
         self._state.connect(session, graph)
         links = ConnectionWatcher(session, self._state.queue)
         try:
+            self._linger_switch = LingerSwitch(session)
             self._watcher.start(session)
             self.peer_directory.start(session)
             self._recovery.start(session)
@@ -95,6 +109,7 @@ class ZenohTransport(Transport):
                 async with asyncio.timeout(KNOWN_S):
                     await asyncio.shield(self._answered)
             self._watcher.note_domains()
+            self._state.graph_is_known()
         finally:
             links.close()
 
@@ -115,6 +130,9 @@ class ZenohTransport(Transport):
         state = self._state
         self._answered = None
         await state.flush()
+        if self._linger_switch is not None:
+            self._linger_switch.close()
+            self._linger_switch = None
         self._recovery.stop()
         self.peer_directory.stop()
         self._watcher.stop()
@@ -134,7 +152,7 @@ class ZenohTransport(Transport):
 
     def create_reader(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
-    ) -> Registration:
+    ) -> ReaderRegistration:
         """Declare a subscription."""
         return ZenohReader(self._state, endpoint, msg_type, reader)
 

@@ -20,7 +20,7 @@ from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.node import Node
 from aionode.testing import FaultyTransport, local_context, settle
 from aionode.transport.local import LocalTransport
-from tests.support.actions import Goal, Worker
+from tests.support.actions import Goal, Worker, calls_of
 from tests.support.peers import isolated_environment
 
 Client = ActionClient[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
@@ -69,12 +69,6 @@ async def ends(
 def beside(work: Any) -> asyncio.Task[Any]:
     """Do something beside the test."""
     return asyncio.ensure_future(work)  # noqa: TID251  # owned by the test
-
-
-async def until(condition: Callable[[], Any]) -> None:
-    """Wait until `condition()` is true, for states that set no event."""
-    while not condition():  # noqa: ASYNC110  # as said
-        await asyncio.sleep(0.001)  # noqa: TID251  # as said
 
 
 async def expect_canceled(goal: Goal) -> None:
@@ -272,9 +266,11 @@ class Doorkeeper:
 
 
 async def test_a_goal_that_is_cancelled_while_the_server_thinks_is_never_executed(
-    ends: Ends,
+    ends: Ends, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The server refuses it then, as its client has gone."""
+    noted = calls_of(monkeypatch, ends.server, "_note_early_cancel")
+    answered = calls_of(monkeypatch, ends.client, "_on_cancel_answered")
     door = Doorkeeper()
     ends.server.register_goal_callback(door)
     with anyio.move_on_after(5) as scope:
@@ -282,18 +278,21 @@ async def test_a_goal_that_is_cancelled_while_the_server_thinks_is_never_execute
             tasks.start_soon(ends.client.call, Fibonacci.Goal())
             await door.asked.get()
             scope.cancel()
-    await until(lambda: ends.server._early_cancels)
+    await noted.get()
     door.may_answer.set()
 
-    await until(lambda: not ends.client._cancel_requests)
+    await answered.get()
+    assert not ends.client._cancel_requests
     assert ends.worker.begun.empty()
     assert not ends.server._goals
 
 
 async def test_a_goal_that_is_cancelled_in_the_queue_of_the_server_is_never_executed(
-    ends: Ends,
+    ends: Ends, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Behind another one about which the server thinks."""
+    noted = calls_of(monkeypatch, ends.server, "_note_early_cancel")
+    answered = calls_of(monkeypatch, ends.client, "_on_cancel_answered")
     door = Doorkeeper()
     ends.server.register_goal_callback(door)
     first = beside(ends.client.send_goal(Fibonacci.Goal(order=1)))
@@ -302,11 +301,12 @@ async def test_a_goal_that_is_cancelled_in_the_queue_of_the_server_is_never_exec
     await checkpoint()  # lets it be sent
     second.cancel()
     await asyncio.wait([second])
-    await until(lambda: ends.server._early_cancels)
+    await noted.get()
     door.may_answer.set()
 
     await first
-    await until(lambda: not ends.client._cancel_requests)
+    await answered.get()
+    assert not ends.client._cancel_requests
     assert (await ends.worker.begun.get()).request.order == 1
     assert ends.worker.begun.empty()
     assert door.asked.empty()
@@ -317,6 +317,7 @@ async def test_a_goal_that_another_server_accepts_after_its_cancellation_is_canc
 ) -> None:
     """One that is not of aionode says that it does not know the goal, and accepts it later."""
     monkeypatch.setattr(ends.server, "_note_early_cancel", lambda _goal_id: None)
+    accepted = calls_of(monkeypatch, ends.server, "_accept")
     door = Doorkeeper()
     ends.server.register_goal_callback(door)
     task = beside(ends.client.call(Fibonacci.Goal()))
@@ -324,9 +325,8 @@ async def test_a_goal_that_another_server_accepts_after_its_cancellation_is_canc
     task.cancel()
     await asyncio.wait([task])
     door.may_answer.set()
-    await until(lambda: ends.server._goals)
 
-    await expect_canceled(*ends.server._goals.values())
+    await expect_canceled(await accepted.get())
 
 
 async def test_a_goal_without_a_server_leaves_nothing_behind(ends: Ends) -> None:
@@ -392,7 +392,9 @@ async def test_a_node_does_not_end_before_a_lost_request_was_sent_again(
     await settle()
     transport.drop = 1.0
     task.cancel()
-    await until(lambda: ends.asking.count_clients("/fibonacci/_action/get_result") == 1)
+    await ends.asking.graph.until(
+        lambda: ends.asking.count_clients("/fibonacci/_action/get_result") == 1
+    )
     transport.drop = 0.0
     await asyncio.wait([task])
 
@@ -401,15 +403,16 @@ async def test_a_node_does_not_end_before_a_lost_request_was_sent_again(
 
 async def test_a_server_that_has_gone_does_not_hold_up_the_end_of_a_node(ends: Ends) -> None:
     """It cannot answer, and there is nothing to stop."""
-    sent = await ends.client.send_goal(Fibonacci.Goal())
-    await ends.worker.begun.get()
-    ends.server.destroy()
-    await until(lambda: not ends.client.server_is_ready())
+    async with Node("program", context=ends.asking.context) as node:
+        client: Client = node.create_action_client(Fibonacci, "fibonacci")
+        await client.wait_for_server()
+        sent = await client.send_goal(Fibonacci.Goal())
+        await ends.worker.begun.get()
+        ends.server.destroy()
+        await node.graph.until(lambda: not client.server_is_ready())
 
-    with pytest.raises(ServiceUnavailableError):
-        await sent.cancel()
-    began_s = asyncio.get_running_loop().time()
-    ends.asking.destroy_node()
-    await until(lambda: not ends.asking._entities)
+        with pytest.raises(ServiceUnavailableError):
+            await sent.cancel()
+        began_s = asyncio.get_running_loop().time()
 
     assert asyncio.get_running_loop().time() - began_s < 0.9

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack
 from typing import Any, NamedTuple
 
@@ -34,7 +34,7 @@ from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from aionode.testing import local_context
-from tests.support.actions import Goal, PlainClient, Worker, uuid_of
+from tests.support.actions import Goal, PlainClient, Worker, calls_of, uuid_of
 from tests.support.peers import isolated_environment
 
 Client = ActionClient[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
@@ -101,12 +101,6 @@ async def cancelled(waiting: asyncio.Task[Any]) -> None:
         await waiting
 
 
-async def until(condition: Callable[[], Any]) -> None:
-    """Wait until `condition()` is true, for states that set no event."""
-    while not condition():  # noqa: ASYNC110  # as said
-        await asyncio.sleep(0.001)  # noqa: TID251  # as said
-
-
 def beside(work: Any) -> asyncio.Task[Any]:
     """Do something beside the test."""
     return asyncio.ensure_future(work)  # noqa: TID251  # owned by the test
@@ -157,10 +151,12 @@ async def test_a_result_can_be_awaited_often(ends: Ends) -> None:
     assert outcomes == [await sent.result()] * 3
 
 
-async def test_the_status_follows_the_server(ends: Ends) -> None:
+async def test_the_status_follows_the_server(ends: Ends, monkeypatch: pytest.MonkeyPatch) -> None:
     """The handle shows what the status topic tells."""
+    updated = calls_of(monkeypatch, ClientGoalHandle, "_update_status")
     sent, _ = await begin(ends)
-    await until(lambda: sent.status is GoalStatus.EXECUTING)
+    while sent.status is not GoalStatus.EXECUTING:
+        await updated.get()
 
     ends.worker.may_end.set()
     await sent.result()
@@ -255,10 +251,10 @@ async def test_feedback_of_other_goals_is_not_heard(ends: Ends) -> None:
 @pytest.mark.parametrize("kind", ["sync", "async"])
 async def test_a_feedback_callback_gets_messages_as_in_rclpy(ends: Ends, kind: str) -> None:
     """The feedback is the field `feedback`; the goal's id is there, too."""
-    heard: list[Any] = []
+    heard = asyncio.Queue[Any]()
 
     async def later(message: Any) -> None:
-        heard.append(message)
+        heard.put_nowait(message)
 
     async def execute(goal: Goal) -> Fibonacci.Result:
         goal.publish_feedback(Fibonacci.Feedback(sequence=[1]))
@@ -269,15 +265,15 @@ async def test_a_feedback_callback_gets_messages_as_in_rclpy(ends: Ends, kind: s
     ends.server.register_execute_callback(execute)
     calling = beside(
         ends.client.call(
-            Fibonacci.Goal(), feedback_callback=heard.append if kind == "sync" else later
+            Fibonacci.Goal(), feedback_callback=heard.put_nowait if kind == "sync" else later
         )
     )
-    await until(lambda: heard)
+    message = await heard.get()
     ends.worker.may_end.set()
     await calling
 
-    assert list(heard[0].feedback.sequence) == [1]
-    assert len(heard[0].goal_id.uuid) == 16
+    assert list(message.feedback.sequence) == [1]
+    assert len(message.goal_id.uuid) == 16
 
 
 async def test_a_goal_with_a_feedback_callback_cannot_be_iterated_over(ends: Ends) -> None:
@@ -672,7 +668,7 @@ async def test_a_destroyed_client_cancels_its_waits_and_what_they_wait_for(ends:
             await each
     await goal._outcome()
     await called._outcome()
-    await until(lambda: len(ends.asking._entities) == before - 12)
+    await ends.asking.graph.until(lambda: len(ends.asking._entities) == before - 12)
     assert ends.requests == [goal, called]
     with pytest.raises(EntityDestroyedError):
         await ends.client.send_goal(Fibonacci.Goal())

@@ -184,6 +184,30 @@ async def test_a_subscription_that_was_frozen_does_not_give_its_publisher_up() -
         assert proxy.next == 4
 
 
+async def test_an_idle_keep_all_publisher_hears_of_its_readers(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Else it could not tell one that was frozen from one that has ended."""
+    monkeypatch.setattr("aionode.transport.zenoh._acknowledgements.PROBE_S", 0.01)
+    monkeypatch.setattr("aionode.transport._reliability.UNHEARD_NS", 0)
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        publisher = a.create_publisher(Int32, "n", KEEP_ALL)
+        b.create_subscription(Int32, "n", None, KEEP_ALL)
+        await publisher.wait_for_subscribers()
+        writer: Any = writer_of(publisher)
+        while not writer._history.readers:
+            await checkpoint()
+        (reader,) = writer._history.readers.values()
+        for _ in range(3):
+            heard_ns = reader.heard_ns
+            while reader.heard_ns == heard_ns:
+                await checkpoint()
+
+
 async def test_what_is_published_while_a_frozen_reader_is_away_is_sent_on_its_return() -> None:
     """Its lease has ended, and Zenoh sees no subscriber: the publisher still writes for it."""
     async with (

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import os
+import threading
 from collections.abc import AsyncIterator, Iterator
 from contextlib import ExitStack, asynccontextmanager, closing, contextmanager
+from typing import Any
 
 import pytest
 import zenoh  # noqa: TID251  # plays the other participants, without aionode
@@ -250,7 +252,7 @@ async def test_post_without_a_connection_is_given_up() -> None:
         pass
     transport.peer_directory.retransmit("b2", b"late")
 
-    assert transport._state.bulk._worker is None
+    assert not transport._state.peer_senders.send_threads()
 
 
 async def test_nothing_is_declared_without_a_beacon() -> None:
@@ -266,7 +268,7 @@ async def test_nothing_is_declared_without_a_beacon() -> None:
 
             # That it acknowledges messages has nothing to do with links.
             assert keys == [f"@aionode/{DOMAIN_ID}/a1/reliable/1"]
-        assert (peer_directory._declared, told.told) == ([], [])
+        assert (peer_directory._declared, peer_directory._connected, told.told) == ([], {}, [])
 
 
 async def test_closing_leaves_nothing_behind() -> None:
@@ -301,3 +303,53 @@ async def test_it_opens_again() -> None:
             await heard.until(True)
             await transport.close()
         assert not transport.peer_directory.has_unannounced_peers
+
+
+class Stuck:
+    """A session with a peer that hangs: whatever is sent there waits.
+
+    Attributes:
+        entered: Set once something waits.
+        gate: Lets it go on.
+    """
+
+    def __init__(self) -> None:
+        self.entered = threading.Event()
+        self.gate = threading.Event()
+
+    def put(self, *_: object, **__: object) -> None:
+        """Hang."""
+        self.entered.set()
+        self.gate.wait()
+
+    def liveliness(self) -> Stuck:
+        """Return what declares tokens."""
+        return self
+
+    def declare_token(self, _: str) -> Stuck:
+        """Hang."""
+        self.put()
+        return self
+
+    def undeclare(self) -> None:
+        """Nothing waits for that."""
+
+
+@pytest.mark.parametrize("what", ["retransmit", "announce_link"])
+async def test_a_stuck_peer_holds_up_no_large_message_to_others(what: str) -> None:
+    """Both waited in the thread that sends all large messages."""
+    stuck = Stuck()
+    done = asyncio.Event()
+    async with context("a1") as transport:
+        peer_directory: Any = transport.peer_directory
+        session, peer_directory._session = peer_directory._session, stuck
+        if what == "retransmit":
+            peer_directory.retransmit("b2", b"late")
+        else:
+            peer_directory.announce_link("b2", True)
+        await asyncio.to_thread(stuck.entered.wait)
+        queue: Any = transport._state.queue(lambda _: done.set())
+        transport._state.bulk.submit(lambda: queue.put(None))
+        await done.wait()
+        peer_directory._session = session
+        stuck.gate.set()

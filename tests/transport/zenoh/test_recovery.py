@@ -24,6 +24,8 @@ from aionode.transport.zenoh._recovery import (
 from aionode.transport.zenoh._transport import ZenohTransport
 from tests.support.peers import DOMAIN_ID, Collector, ros_router, ros_session
 
+pytestmark = pytest.mark.one_loop
+
 LIMIT_S = 5.0
 
 

@@ -27,6 +27,8 @@ from aionode.transport.zenoh._session import (
 )
 from tests.support.peers import free_ports, quiet_node, ros_router, ros_session
 
+pytestmark = pytest.mark.one_loop
+
 
 def test_only_ports_that_accept_a_connection_answer() -> None:
     """Who listens is dialled, and a free port is taken."""

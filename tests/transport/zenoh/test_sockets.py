@@ -1,0 +1,57 @@
+"""What Zenoh's sockets do while a peer has stopped reading."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import struct
+import sys
+from typing import Any
+
+import pytest
+
+from aionode._concurrency import checkpoint
+from aionode.context import Context
+from aionode.transport.zenoh import _sockets
+from tests.support.peers import two_contexts
+
+pytestmark = pytest.mark.skipif(
+    not sys.platform.startswith("linux"), reason="only Linux lists the sockets of a process"
+)
+
+
+def lingers(context: Context) -> list[bool]:
+    """Return for each connection of a context whether closing it waits for the peer."""
+    transport: Any = context.transports[1]
+    peers = {_sockets.address_of(link) for link in transport._state.session.info.links()}
+    with _sockets.connections() as found:
+        options = [
+            one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8)
+            for peer, one in found
+            if peer in peers
+        ]
+    return [bool(struct.unpack("ii", option)[0]) for option in options]
+
+
+async def test_no_connection_waits_for_its_peer_when_it_is_closed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Zenoh's one thread that connects stood still for ten seconds when a stuck peer was lost."""
+    monkeypatch.setattr(_sockets, "SETTLE_S", 0.0)
+    async with two_contexts() as both:
+        for context in both:
+            async with asyncio.timeout(20):
+                while not (found := lingers(context)) or any(found):
+                    await checkpoint()
+
+
+async def test_a_closed_context_looks_for_sockets_no_more() -> None:
+    """A timer that is left would hold the closed session."""
+    async with two_contexts() as both:
+        transports: list[Any] = [context.transports[1] for context in both]
+        switches = [transport._linger_switch for transport in transports]
+        while not all(switch._timer for switch in switches):
+            await checkpoint()
+
+    assert all(switch._timer.cancelled() for switch in switches)
+    assert [transport._linger_switch for transport in transports] == [None, None]
