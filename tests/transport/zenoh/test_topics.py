@@ -24,7 +24,7 @@ from aionode.interfaces.sensor_msgs.msg import Image
 from aionode.interfaces.std_msgs.msg import Int32, String, UInt8MultiArray
 from aionode.message import from_builtins
 from aionode.node import Node
-from aionode.qos import DurabilityPolicy, QoSProfile
+from aionode.qos import QoSProfile
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
 from aionode.wire._key_expression import buffer_key, data_key
@@ -547,11 +547,9 @@ async def test_without_a_hash_every_definition_of_a_type_is_heard() -> None:
 
 async def test_subscriptions_start_no_threads() -> None:
     """Zenoh would start one for each subscriber, unless it may call in its own thread."""
-    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     async with quiet_node("many") as node:
         before = threading.active_count()
         for number in range(20):
             node.create_subscription(String, f"t{number}", None, 10)
             node.create_subscription(Image, f"i{number}", None, 10)
-            node.create_subscription(String, f"l{number}", None, latched)
         assert threading.active_count() == before
