@@ -22,6 +22,7 @@ from aionode.transport.zenoh._subscription import ZenohReader
 if TYPE_CHECKING:
     from collections import Counter
 
+    from aionode.clock import TimeBase
     from aionode.graph import EndpointInfo, Graph, NodeInfo
     from aionode.transport._zenoh_config import Network
     from aionode.transport.base import (
@@ -46,14 +47,17 @@ class ZenohTransport(Transport):
     Args:
         participant: Id of the context and of its Zenoh session: hexadecimal, no leading zeros.
         network: Domain, discovery and peers.
+        time_base: The time of the context; by default that of the machine.
 
     Attributes:
         peer_directory: The other contexts, for links beside this transport.
     """
 
-    def __init__(self, participant: str, network: Network) -> None:
+    def __init__(
+        self, participant: str, network: Network, time_base: TimeBase | None = None
+    ) -> None:
         self.network = network
-        self._state = SessionState(participant, network.domain_id)
+        self._state = SessionState(participant, network.domain_id, time_base)
         self._watcher = Watcher(self._state)
         self.peer_directory = ZenohPeerDirectory(self._state)
         # Done when the tokens of all connected peers are in the graph.
@@ -113,6 +117,7 @@ class ZenohTransport(Transport):
                 async with asyncio.timeout(KNOWN_S):
                     await asyncio.shield(self._answered)
             self._watcher.note_domains()
+            self._state.graph_is_known()
         finally:
             links.close()
 
