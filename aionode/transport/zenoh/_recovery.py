@@ -10,6 +10,10 @@ its introducer (a router, or the peer at a configured endpoint) sees. A second s
 some milliseconds, queries them. If the introducer sees a participant that this session does not, or
 to which it has lost the connection, or does not see this session, the connection to the introducer
 is cut, and Zenoh makes it anew at once.
+
+A process that returns may still read what came over its old connection when the new one is made.
+Zenoh then takes the new one for another link of the old connection, and declares nothing on it
+(zenoh 1.10): the connection to a participant whose tokens do not come with it is cut too.
 """
 
 from __future__ import annotations
@@ -20,6 +24,7 @@ import os
 import secrets
 import socket
 import threading
+from collections import Counter
 from contextlib import closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -31,6 +36,8 @@ from aionode.errors import ConfigurationError
 from aionode.transport._zenoh_config import introducers, look_settings
 from aionode.transport.zenoh._handlers import direct, translated
 from aionode.transport.zenoh._session import load_config
+from aionode.transport.zenoh._sockets import address_of
+from aionode.transport.zenoh._sockets import cut as cut_peers
 from aionode.wire._liveliness import PREFIX as ROS_PREFIX
 
 if TYPE_CHECKING:
@@ -48,6 +55,9 @@ LOOK_IDS: Final = "a10de10c"
 
 FIRST_S: Final = 0.5
 """The first look is so long after a connection was lost or made; Zenoh needs milliseconds."""
+
+DECLARED_S: Final = 1.0
+"""How long after a participant has returned its tokens may take; they take some milliseconds."""
 
 AGAIN_S: Final = 3.0
 """The interval of further looks: a process that was frozen returns without a sign."""
@@ -111,6 +121,8 @@ class Recovery:
         self._lost: set[str] = set()
         # How often the connection was cut for each missing participant.
         self._attempts: dict[str, int] = {}
+        # How often the connection to each participant was cut that declared nothing.
+        self._cuts: Counter[str] = Counter()
 
     def start(self, session: zenoh.Session) -> None:
         """Start watching the connections of a session."""
@@ -136,6 +148,7 @@ class Recovery:
         self._looking = False
         self._until_s = 0.0
         self._attempts.clear()
+        self._cuts.clear()
         self._lost.clear()
 
     def _take_change(self, event: zenoh.TransportEvent) -> None:
@@ -150,10 +163,26 @@ class Recovery:
             self._until_s = now_s + WATCH_S
             self._lost.add(zid)
         else:
+            if zid in self._lost:
+                asyncio.get_running_loop().call_later(DECLARED_S, self._check_returned, zid)
             self._lost.discard(zid)
             if now_s >= self._until_s:
                 return
         self._look_in(FIRST_S)
+
+    def _check_returned(self, zid: str) -> None:
+        """Cut the connection to a participant that has returned, but has not declared anything."""
+        session, acknowledgements = self._session, self._state.acknowledgements
+        if (
+            session is not None
+            and zid in acknowledgements.participants - acknowledgements.present - self._lost
+            and self._cuts[zid] < ATTEMPTS
+        ):
+            self._cuts[zid] += 1
+            logger.info("process %s is connected, but declares nothing: connected anew", zid)
+            threading.Thread(
+                target=cut_participant, args=(session, zid), name="aionode-zenoh"
+            ).start()
 
     def _look_in(self, delay_s: float) -> None:
         """Look in a while; processes that saw the same end do not all look at once."""
@@ -261,6 +290,12 @@ def addresses_of(endpoint: str) -> Iterator[tuple[str, int]]:
         with suppress(OSError):
             for *_, found in socket.getaddrinfo(*address, type=socket.SOCK_STREAM):
                 yield str(found[0]), int(found[1])
+
+
+def cut_participant(session: zenoh.Session, zid: str) -> None:
+    """Cut the connections to a participant."""
+    with suppress(zenoh.ZError):  # the session was closed meanwhile
+        cut_peers({address_of(link) for link in session.info.links() if str(link.zid) == zid})
 
 
 def cut(connection: Connection) -> None:
