@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from aionode.endpoints.client import Client
     from aionode.endpoints.publisher import Publisher
     from aionode.endpoints.service import Service
+    from aionode.endpoints.service_introspection import ServiceIntrospectionState
     from aionode.endpoints.subscription import MessageInfo, Subscription
     from aionode.endpoints.timer import Rate, Timer, TimerInfo
     from aionode.node import Node
@@ -82,6 +83,7 @@ __all__ = [
     "ReliabilityPolicy",
     "ServerGoalHandle",
     "Service",
+    "ServiceIntrospectionState",
     "Subscription",
     "Supervisor",
     "Time",
@@ -118,6 +120,7 @@ _EXPORTS = {
     "ReliabilityPolicy": "aionode.qos",
     "ServerGoalHandle": "aionode.action",
     "Service": "aionode.endpoints.service",
+    "ServiceIntrospectionState": "aionode.endpoints.service_introspection",
     "Subscription": "aionode.endpoints.subscription",
     "Supervisor": "aionode.supervisor",
     "Time": "aionode.clock",

@@ -13,8 +13,11 @@ import weakref
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self
 
 from aionode._concurrency import to_the_end
+from aionode._distribution import NO_TYPE_HASH, choose_distribution
 from aionode.arguments import Arguments, Usage
 from aionode.clock import MachineTime
+from aionode.endpoints._core.duplicate_report import DuplicateReport
+from aionode.endpoints._core.loop_affinity import LoopAffinity
 from aionode.endpoints._core.mismatch_report import MismatchReport
 from aionode.errors import ConfigurationError, EntityDestroyedError, ForkedProcessError, brief
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
@@ -87,8 +90,12 @@ class Context:
         link: Whether to reach other processes of this user on this host over a Unix socket served
             by the event loop, where the platform supports it; by default ``AIONODE_LINK`` (``on``
             or ``off``), or on.
+        ros_distro: The distribution of the ROS 2 nodes that it talks to, such as ``"humble"``; by
+            default ``ROS_DISTRO``, or ``"jazzy"``. Nodes of Humble and of newer distributions never
+            hear each other, so a context talks to one or the other.
 
     Attributes:
+        ros_distro: The distribution of ROS 2 that it belongs to.
         network: Domain, discovery and peers, from the arguments and the environment.
         graph: The nodes and endpoints known now.
         time_base: Where the time comes from.
@@ -118,11 +125,14 @@ class Context:
         static_peers: Sequence[str] | None = None,
         config: str | Path | Mapping[str, Any] | None = None,
         link: bool | None = None,
+        ros_distro: str | None = None,
     ) -> None:
+        self.ros_distro = choose_distribution(os.environ, ros_distro)
         # Zenoh writes ids without leading zeros, and all peers must see the same text.
         self.participant = secrets.token_hex(16).lstrip("0") or "1"
         self.graph = Graph()
         MismatchReport(self.graph, self.participant)
+        DuplicateReport(self.graph, self.participant)
         self.time_base: TimeBase = clock if clock is not None else MachineTime()
         self.network = network_from(
             os.environ,
@@ -139,6 +149,7 @@ class Context:
         self._shut_down = False  # set by `shutdown`, and never reset
         self._open = False  # whether the transports are open
         self._loop: asyncio.AbstractEventLoop | None = None  # in which it was opened last
+        self._affinity = LoopAffinity()  # the same while it is in use, for calls of other threads
         self._loop_guard = threading.Lock()  # held to check and set `_loop` and `_users`
         self._transition = asyncio.Lock()  # held while the transports open or close
         self._closed = asyncio.Event()  # set when the last user has released the context
@@ -270,6 +281,7 @@ class Context:
         with self._loop_guard:  # event loops may run in different threads
             self._bind_to_loop()
             self._users += 1  # before opening, so that another loop sees it in use
+            self._affinity.attach()
         try:
             async with self._transition:
                 if not self._open and not self._shut_down:
@@ -278,6 +290,8 @@ class Context:
                     self._closed.clear()
         except BaseException:
             self._users -= 1
+            if not self._users:
+                self._affinity.detach()
             raise
 
     def _bind_to_loop(self) -> None:
@@ -324,14 +338,14 @@ class Context:
                 self._open = False
                 await self._close_transports()
         if self._users == 0:
+            self._affinity.detach()
             self._closed.set()
 
     async def _close_transports(self) -> None:
         for transport in reversed(self._transports):
             await transport.close()
-        for node in self.graph.nodes():
-            if node.participant != self.participant:
-                self.graph.remove_participant(node.participant)
+        for participant in {node.participant for node in self.graph.nodes()} - {self.participant}:
+            self.graph.remove_participant(participant)
 
     def _refuse_if_shut_down(self) -> None:
         if self._shut_down:
@@ -349,6 +363,7 @@ class Context:
         Nothing in it may be closed or garbage-collected, as both would affect what the parent uses.
         """
         self._inherited = True
+        self._affinity.detach()
         for node in self._nodes:
             node._abandon()
         for transport in self._transports:
@@ -408,7 +423,7 @@ class Context:
             endpoint_id=self._new_id(),
             name=name,
             type_name=type_name(ros_type),
-            type_hash=type_hash(ros_type),
+            type_hash=NO_TYPE_HASH if self.ros_distro == "humble" else type_hash(ros_type),
             qos=qos,
             gid=b"",
         )

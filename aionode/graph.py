@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeVar
 
 from aionode import names, qos
+from aionode._distribution import distribution_mismatch
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["TOPIC_KINDS", "EndpointInfo", "EndpointKind", "Graph", "Mismatch", "NodeInfo"]
 
 K = TypeVar("K")
+V = TypeVar("V")
 
 
 class EndpointKind(enum.Enum):
@@ -74,12 +76,13 @@ class Mismatch(NamedTuple):
     """Why two opposite endpoints of one name do not communicate.
 
     Attributes:
-        aspect: What differs: the name of the type, its definition, or the QoS.
+        aspect: What differs: the name of the type, its definition, the distribution of ROS 2, or
+            the QoS.
         reason: Both values, in words.
         policy: The last incompatible policy, if the QoS differs.
     """
 
-    aspect: Literal["type", "definition", "qos"]
+    aspect: Literal["type", "definition", "distribution", "qos"]
     reason: str
     policy: qos.QoSPolicyKind = qos.QoSPolicyKind.INVALID
 
@@ -96,7 +99,7 @@ class EndpointInfo:
         endpoint_id: Number of the endpoint, unique in its context.
         name: Full name of its topic or service.
         type_name: ROS name of its type, such as ``std_msgs/msg/String``.
-        type_hash: RIHS01 hash of the type, as text.
+        type_hash: RIHS01 hash of the type, as text; ``TypeHashNotSupported`` in ROS 2 Humble.
         qos: Its QoS.
         gid: 16 bytes that identify it.
     """
@@ -122,13 +125,9 @@ class EndpointInfo:
         A difference in QoS matters within one context, and between contexts over DDS; rmw_zenoh
         delivers between contexts whatever the QoS is.
         """
-        if self.type_name != other.type_name:
-            return Mismatch("type", f"type: {self.type_name} here, {other.type_name} there")
-        if self.type_hash != other.type_hash:
-            hashes = f"{self.type_hash} here, {other.type_hash} there"
-            return Mismatch("definition", f"definition of {self.type_name}: {hashes}")
-        if self.kind not in TOPIC_KINDS:
-            return None  # services neither offer nor request QoS
+        different = self._compare_types(other)
+        if different is not None or self.kind not in TOPIC_KINDS:
+            return different  # services neither offer nor request QoS
         is_publisher = self.kind is EndpointKind.PUBLISHER
         publisher, subscription = (self, other) if is_publisher else (other, self)
         reason = qos.mismatch(publisher.qos, subscription.qos)
@@ -137,17 +136,25 @@ class EndpointInfo:
         last = qos.incompatibilities(publisher.qos, subscription.qos)[-1]
         return Mismatch("qos", reason, last.kind)
 
+    def _compare_types(self, other: EndpointInfo) -> Mismatch | None:
+        if self.type_name != other.type_name:
+            return Mismatch("type", f"type: {self.type_name} here, {other.type_name} there")
+        if self.type_hash != other.type_hash:
+            reason = distribution_mismatch(self.type_hash, other.type_hash)
+            if reason is not None:
+                return Mismatch("distribution", reason)
+            hashes = f"{self.type_hash} here, {other.type_hash} there"
+            return Mismatch("definition", f"definition of {self.type_name}: {hashes}")
+        return None
+
     def mismatch(self, other: EndpointInfo) -> str | None:
         """Return why this endpoint and its opposite `other` do not communicate; None if they do.
 
         Between contexts only the types count: rmw_zenoh delivers whatever the QoS is.
         """
-        found = self.compare(other)
-        if found is None or (
-            found.aspect == "qos" and self.node.participant != other.node.participant
-        ):
-            return None
-        return found.reason
+        in_one_context = self.node.participant == other.node.participant
+        found = self.compare(other) if in_one_context else self._compare_types(other)
+        return None if found is None else found.reason
 
     def matches(self, other: EndpointInfo) -> bool:
         """Whether this endpoint communicates with its opposite `other`."""
@@ -171,7 +178,9 @@ class Graph:
         self._by_name: dict[tuple[EndpointKind, str], dict[EndpointInfo, None]] = defaultdict(dict)
         self._by_node: dict[NodeInfo, dict[EndpointInfo, None]] = defaultdict(dict)
         self._waiters: dict[asyncio.Future[None], None] = {}  # of `changed`, until the next change
+        self._nodes_by_name: dict[str, dict[NodeInfo, None]] = defaultdict(dict)
         self._listeners: list[Callable[[EndpointInfo], None]] = []
+        self._node_listeners: list[Callable[[NodeInfo], None]] = []
 
     def __repr__(self) -> str:
         return f"<Graph: {len(self._nodes)} nodes, {len(self._endpoints)} endpoints>"
@@ -182,12 +191,16 @@ class Graph:
         """Add `node`; adding it again has no effect."""
         if node not in self._nodes:
             self._nodes[node] = None
+            self._nodes_by_name[node.fully_qualified_name][node] = None
+            for listener in self._node_listeners:
+                listener(node)
             self._wake()
 
     def remove_node(self, node: NodeInfo) -> None:
         """Remove `node`, if it is known."""
         if node in self._nodes:
             del self._nodes[node]
+            _take_out(self._nodes_by_name, node.fully_qualified_name, node)
             self._wake()
 
     def add_endpoint(self, endpoint: EndpointInfo) -> None:
@@ -222,6 +235,10 @@ class Graph:
         """Call `listener` with each endpoint added from now on."""
         self._listeners.append(listener)
 
+    def on_node(self, listener: Callable[[NodeInfo], None]) -> None:
+        """Call `listener` with each node added from now on."""
+        self._node_listeners.append(listener)
+
     def changed(self) -> asyncio.Future[None]:
         """Return a future that is done at the next change: a node or endpoint added or removed.
 
@@ -252,6 +269,10 @@ class Graph:
     def nodes(self) -> list[NodeInfo]:
         """Return every node, in the order in which they were added."""
         return list(self._nodes)
+
+    def nodes_named(self, fully_qualified_name: str) -> list[NodeInfo]:
+        """Return the nodes of this name; more than one is a mistake that ROS 2 allows."""
+        return list(self._nodes_by_name.get(fully_qualified_name, ()))
 
     def endpoints(
         self, *kinds: EndpointKind, name: str | None = None, node: NodeInfo | None = None
@@ -284,9 +305,9 @@ class Graph:
         return (n for n in self._nodes if n.fully_qualified_name == fully_qualified_name)
 
 
-def _take_out(index: dict[K, dict[EndpointInfo, None]], key: K, endpoint: EndpointInfo) -> None:
-    """Remove `endpoint` from its group, and the group if it is then empty."""
-    del index[key][endpoint]
+def _take_out(index: dict[K, dict[V, None]], key: K, member: V) -> None:
+    """Remove `member` from its group, and the group if it is then empty."""
+    del index[key][member]
     if not index[key]:
         del index[key]
 

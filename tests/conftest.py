@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 import uvloop
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
 from aionode.node import Node
 
@@ -19,8 +19,13 @@ if TYPE_CHECKING:
 
     from aionode.context import Context
 
+# How long an example takes depends on what else runs, such as the other workers.
+settings.register_profile(
+    "tests", deadline=None, suppress_health_check=[HealthCheck.too_slow], print_blob=True
+)
+settings.load_profile("tests")
 # For `make fuzz`. Tests that set a number of examples of their own take it as a part of this one.
-settings.register_profile("fuzz", max_examples=2000, deadline=None)
+settings.register_profile("fuzz", settings.get_profile("tests"), max_examples=2000)
 
 
 def debugging_loop() -> asyncio.AbstractEventLoop:
@@ -31,16 +36,16 @@ def debugging_loop() -> asyncio.AbstractEventLoop:
     return loop
 
 
-LONGEST = (
+PROCESSES = (
     "tests/processes/",
     "tests/faults/",
     "tests/cli/test_terminal.py",
+    "tests/cli/test_ending.py",
     "tests/test_examples.py",
     "tests/test_web_robot.py",
-    "tests/cli/test_ending.py",
-    "tests/wire/cdr/test_properties.py",
+    "tests/typing/",
 )
-"""Files and folders that several workers begin with, so that none of them is left at the end."""
+"""Files and folders whose tests start processes. They take long, so several workers begin here."""
 
 
 @pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads its options
@@ -59,21 +64,17 @@ def pytest_xdist_auto_num_workers() -> int:
 
 @pytest.hookimpl(tryfirst=True)  # before tests are deselected by their marks
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Bound async tests, leave out what one loop can show, and begin with the longest files."""
+    """Bound async tests, mark those of processes, and leave out what one loop can show."""
     for item in items:
+        if item.nodeid.startswith(PROCESSES):
+            item.add_marker("processes")
         if isinstance(item, pytest.Function) and inspect.iscoroutinefunction(item.obj):
             marker = item.get_closest_marker("timeout")
             item.obj = bounded(item.obj, marker.args[0] if marker and marker.args else 60.0)
             if item.get_closest_marker("one_loop") and "uvloop" in item.name:
                 item.add_marker("stress")
     if hasattr(config, "workerinput"):  # of pytest-xdist
-        items.sort(key=rank)
-
-
-def rank(item: pytest.Item) -> int:
-    """Return the place of a test's file among `LONGEST`, or the number behind all of them."""
-    found = (place for place, prefix in enumerate(LONGEST) if item.nodeid.startswith(prefix))
-    return next(found, len(LONGEST))
+        items.sort(key=lambda item: not item.nodeid.startswith(PROCESSES))
 
 
 def bounded(test: Callable[..., Awaitable[None]], limit_s: float) -> Callable[..., Awaitable[None]]:

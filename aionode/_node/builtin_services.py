@@ -153,6 +153,8 @@ def serve_parameters(node: NodeEndpoints, store: ParameterStore) -> None:
 
 def serve_type_descriptions(node: NodeEndpoints) -> None:
     """Serve the descriptions of the types that the node uses."""
+    if node.context.ros_distro == "humble":
+        return  # Humble has neither the service nor its type
     name = "start_type_description_service"
     descriptor = ParameterDescriptor(
         description="If enabled, start the ~/get_type_description service.", read_only=True

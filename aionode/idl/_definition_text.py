@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import re
+import textwrap
 from collections.abc import Iterator
+from typing import Literal, TypeAlias
 
 from aionode.idl._definition import HALVES, split_type_name
+from aionode.idl._folder import read
+from aionode.idl._installed import installed_file
 from aionode.message import (
     ActionType,
     Field,
@@ -13,43 +17,111 @@ from aionode.message import (
     Message,
     ServiceType,
     constants,
+    documentation,
     fields,
     type_name,
 )
 
 __all__ = ["definition_text"]
 
+WIDTH = 96
+"""The longest line of a comment, in characters."""
+
 CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]")
 
 
-def definition_text(cls: type[Message | ServiceType | ActionType], *, nested: bool = False) -> str:
+Comments: TypeAlias = Literal["none", "outer", "all"]
+"""Which comments to show: none, those of the type itself, or those of nested types as well."""
+
+
+def definition_text(
+    cls: type[Message | ServiceType | ActionType],
+    *,
+    nested: bool = False,
+    comments: Comments = "none",
+) -> str:
     """Return the text of a ``.msg``, ``.srv`` or ``.action`` file that defines `cls`.
 
     Args:
         cls: A message, service or action class.
         nested: Show the fields of nested messages below each field, indented by tabs, as
             ``ros2 interface show`` does. Such text is for reading only and cannot be parsed.
+        comments: Which comments to show: those of the file of the sourced ROS 2 that defines the
+            type, or else what the class says of its fields.
 
     Raises:
         TypeError: `cls` is not such a class, or has no ROS name.
     """
     package, kind, _ = split_type_name(type_name(cls))
     messages = [cls] if issubclass(cls, Message) else [getattr(cls, half) for half in HALVES[kind]]
-    parts = ("".join(f"{line}\n" for line in lines(m, package, nested=nested)) for m in messages)
-    return "---\n".join(parts)
+    parts = source_parts(cls) if comments != "none" else None
+    if parts is None:
+        found = [lines(message, package, nested=nested, comments=comments) for message in messages]
+    else:
+        found = [
+            source_lines(part, message, nested=nested, comments=comments)
+            for part, message in zip(parts, messages, strict=True)
+        ]
+    return "---\n".join("".join(f"{line}\n" for line in part) for part in found)
 
 
-def lines(cls: type[Message], package: str, *, nested: bool) -> Iterator[str]:
+def lines(
+    cls: type[Message], package: str, *, nested: bool, comments: Comments = "none"
+) -> Iterator[str]:
     """Yield the lines of one message, constants first."""
+    described = {} if comments == "none" else documentation(cls)[1]
     for constant in constants(cls):
         yield f"{constant.type} {constant.name}={literal(constant.type, constant.value)}"
     for field in fields(cls):
+        for line in textwrap.wrap(described.get(field.name, ""), WIDTH):
+            yield f"# {line}"
         default = "" if field.default is None else f" {default_text(field)}"
         yield f"{type_text(field.type, package)} {field.name}{default}"
-        if nested and field.type.nested is not None:
-            inside = split_type_name(type_name(field.type.nested))[0]
-            for line in lines(field.type.nested, inside, nested=True):
-                yield f"\t{line}"
+        if nested:
+            yield from nested_lines(field, comments)
+
+
+def nested_lines(field: Field, comments: Comments) -> Iterator[str]:
+    """Yield the fields of the message in a field, indented."""
+    cls = field.type.nested
+    if cls is None:
+        return
+    inner: Comments = "all" if comments == "all" else "none"
+    parts = source_parts(cls) if inner == "all" else None
+    if parts is not None:
+        found = source_lines(parts[0], cls, nested=True, comments=inner)
+    else:
+        package = split_type_name(type_name(cls))[0]
+        found = lines(cls, package, nested=True, comments=inner)
+    for line in found:
+        yield f"\t{line}"
+
+
+def source_parts(cls: type[Message | ServiceType | ActionType]) -> list[list[str]] | None:
+    """Return the lines of the installed file that defines a class, in its parts; None without."""
+    file = installed_file(type_name(cls))
+    if file is None:
+        return None
+    parts: list[list[str]] = [[]]
+    for line in read(file).splitlines():
+        if line.strip() == "---":
+            parts.append([])
+        else:
+            parts[-1].append(line)
+    return parts
+
+
+def source_lines(
+    part: list[str], cls: type[Message], *, nested: bool, comments: Comments
+) -> Iterator[str]:
+    """Yield the lines of a file, and after each field those of its nested message."""
+    by_name = {field.name: field for field in fields(cls)}
+    for line in part:
+        yield line
+        words = line.partition("#")[0].split()
+        field = by_name.get(words[1]) if len(words) > 1 else None
+        if nested and field is not None:
+            yield from nested_lines(field, comments)
 
 
 def type_text(type_: FieldType, package: str) -> str:

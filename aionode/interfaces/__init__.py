@@ -3,15 +3,23 @@
 ``std_msgs/msg/String`` is `aionode.interfaces.std_msgs.msg.String`. The modules of the packages are
 generated from ROS 2 Jazzy's definitions; this one finds a class by its name. Nothing is imported
 before it is asked for.
+
+Where a ROS 2 is sourced (``AMENT_PREFIX_PATH``), its packages can be imported here as well, and
+types that it defines differently are its own. ``ROS_DISTRO`` alone brings the known differences.
 """
 
 from __future__ import annotations
 
 import difflib
+import os
 import sys
+from collections.abc import Sequence
 from functools import cache
 from importlib import import_module
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from aionode.errors import InterfaceNotFoundError
@@ -88,13 +96,22 @@ def interface_names(package: str | None = None) -> tuple[str, ...]:
 
     This imports their modules.
     """
-    packages = shipped_packages() | loaded_packages() if package is None else {package}
+    packages = known_packages() if package is None else {package}
     return tuple(
         f"{one}/{kind}/{name}"
         for one in sorted(packages)
         for kind in KINDS
         for name in sorted(types_of(one, kind))
     )
+
+
+def known_packages() -> frozenset[str]:
+    """Return the names of all packages: shipped, loaded, or of the ROS 2 that is sourced."""
+    if not is_sourced():
+        return shipped_packages() | loaded_packages()
+    installed = import_module("aionode.idl._installed")  # by name: it is made of this package
+    names: frozenset[str] = shipped_packages() | loaded_packages() | installed.packages()
+    return names
 
 
 def loaded_packages() -> frozenset[str]:
@@ -128,7 +145,7 @@ def types_of(package: str, kind: str) -> dict[str, type[Any]]:
 
 def not_found(name: str, parts: list[str]) -> InterfaceNotFoundError:
     """Return the error for a name that is not there, with names that are close."""
-    packages = shipped_packages() | loaded_packages()
+    packages = known_packages()
     if len(parts) == 1:
         everything = interface_names()
         near = tuple(one for one in everything if one.endswith(f"/{name}"))
@@ -140,3 +157,79 @@ def not_found(name: str, parts: list[str]) -> InterfaceNotFoundError:
         near = interface_names(parts[0])
     wanted = name if len(parts) == 3 else f"{parts[0]}/msg/{parts[-1]}"
     return InterfaceNotFoundError(name, tuple(difflib.get_close_matches(wanted, near, 3, CLOSE)))
+
+
+# Definitions of the ROS 2 that is sourced
+
+FIXED = frozenset(
+    {
+        "action_msgs",
+        "builtin_interfaces",
+        "rcl_interfaces",
+        "rosgraph_msgs",
+        "service_msgs",
+        "type_description_interfaces",
+        "unique_identifier_msgs",
+    }
+)
+"""Packages that every node needs, whose definitions are the same in all distributions."""
+
+
+def is_sourced() -> bool:
+    """Whether definitions besides the shipped ones are to be looked for."""
+    return bool(os.environ.get("AMENT_PREFIX_PATH") or os.environ.get("ROS_DISTRO"))
+
+
+class InstalledFinder(MetaPathFinder):
+    """Finds ``aionode.interfaces.<package>.<kind>`` where a ROS 2 is sourced."""
+
+    def find_spec(
+        self,
+        fullname: str,
+        path: Sequence[str] | None,
+        target: ModuleType | None = None,
+    ) -> ModuleSpec | None:
+        """Return how to import an installed package, or None if the shipped one is all there is."""
+        package, _, kind = fullname.removeprefix(f"{__name__}.").partition(".")
+        if not fullname.startswith(f"{__name__}.") or package in FIXED or not is_sourced():
+            return None
+        shipped = PathFinder.find_spec(fullname, path, target)
+        # By name, since `aionode.idl` is made of this package.
+        installed = import_module("aionode.idl._installed")
+        if not kind:
+            if shipped is not None or not installed.has_package(package):
+                return shipped
+            return ModuleSpec(fullname, InstalledPackage(), is_package=True)
+        if kind not in KINDS or not installed.has_types(package, kind):
+            return shipped
+        loader = None if shipped is None else shipped.loader
+        return ModuleSpec(fullname, InstalledTypes(installed, package, kind, loader))
+
+
+class InstalledPackage(Loader):
+    """An empty package, for modules of installed types."""
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Leave the package empty."""
+
+
+class InstalledTypes(Loader):
+    """Executes the shipped module, if there is one, and adds the installed types that differ."""
+
+    def __init__(self, installed: Any, package: str, kind: str, shipped: Loader | None) -> None:
+        self._installed = installed
+        self._package = package
+        self._kind = kind
+        self._shipped = shipped
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Define the types in `module`."""
+        if self._shipped is not None:
+            self._shipped.exec_module(module)
+        found = self._installed.replaced_types(self._package, self._kind, vars(module))
+        vars(module).update(found)
+        names = {*getattr(module, "__all__", ()), *found}
+        module.__all__ = sorted(names)  # type: ignore[attr-defined]  # as in a written module
+
+
+sys.meta_path.insert(0, InstalledFinder())

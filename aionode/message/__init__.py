@@ -42,7 +42,7 @@ from aionode.message._field_types import (
     wstring,
 )
 from aionode.message._message import DEFAULT, Message, constants, fields, type_name
-from aionode.message._schema import json_schema
+from aionode.message._schema import documentation, json_schema
 from aionode.message._service_types import (
     ActionClass,
     ActionType,
@@ -77,6 +77,7 @@ __all__ = [
     "check",
     "checker",
     "constants",
+    "documentation",
     "fields",
     "fit",
     "fit_element",

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.errors import ServiceError
 from aionode.message import snapshotter
-from aionode.qos import DurabilityPolicy, HistoryPolicy, ReliabilityPolicy
+from aionode.qos import DurabilityPolicy, depth_of, keeps_all
 from aionode.transport.base import Registration, Request, Requester, SampleInfo, Transport, Writer
 
 if TYPE_CHECKING:
@@ -21,9 +21,6 @@ if TYPE_CHECKING:
     from aionode.transport.base import Call, Reader, ReplyTo, Serve
 
 __all__ = ["LocalTransport"]
-
-KEPT_FOR_LATE_READERS = 10_000
-"""How many messages a transient local publisher keeps that keeps all."""
 
 
 class LocalTransport(Transport):
@@ -47,7 +44,7 @@ class LocalTransport(Transport):
         """Connect a publisher with the subscriptions of its topic."""
         topic = self._topic(endpoint.name)
         writer = LocalWriter(endpoint, msg_type, topic)
-        topic.writers.append(writer)
+        topic.writers[writer] = None
         for reader in topic.readers:
             writer.meet(reader)
         return writer
@@ -58,7 +55,7 @@ class LocalTransport(Transport):
         """Connect a subscription with the publishers of its topic; late ones get the history."""
         topic = self._topic(endpoint.name)
         local_reader = LocalReader(endpoint, msg_type, reader, topic)
-        topic.readers.append(local_reader)
+        topic.readers[local_reader] = None
         for writer in topic.writers:
             writer.meet(local_reader)
         return local_reader
@@ -106,21 +103,24 @@ class _Topic:
     __slots__ = ("_forget", "readers", "writers")
 
     def __init__(self, forget: Callable[[], object]) -> None:
-        self.writers: list[LocalWriter] = []
-        self.readers: list[LocalReader] = []
+        self.writers: dict[LocalWriter, None] = {}  # ordered sets
+        self.readers: dict[LocalReader, None] = {}
         self._forget = forget
 
     def leave(self, member: LocalWriter | LocalReader) -> None:
         """Remove one of either side; twice is the same as once."""
-        side: list[Any] = self.writers if isinstance(member, LocalWriter) else self.readers
+        side: dict[Any, None] = self.writers if isinstance(member, LocalWriter) else self.readers
         if member in side:
-            side.remove(member)
+            del side[member]
             if not self.writers and not self.readers:
                 self._forget()
 
 
 class LocalReader(Registration):
-    """A subscription as its publishers in the same context see it."""
+    """A subscription as its publishers in the same context see it.
+
+    Its content filter is applied where a message is delivered, which is still within `publish`.
+    """
 
     def __init__(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader, topic: _Topic
@@ -129,10 +129,7 @@ class LocalReader(Registration):
         self.msg_type = msg_type
         self.reader = reader
         self._topic = topic
-        qos = endpoint.qos
-        self.bounded = (
-            qos.history is HistoryPolicy.KEEP_ALL and qos.reliability is ReliabilityPolicy.RELIABLE
-        )
+        self.bounded = keeps_all(endpoint.qos)
 
     def delivery_from(self, msg_type: type[Any]) -> Callable[[Any, SampleInfo], None]:
         """Return what takes messages of `msg_type` to the reader, in the form that it wants."""
@@ -166,8 +163,7 @@ class LocalWriter(Writer):
         self._history: deque[tuple[Any, SampleInfo]] | None = None
         qos = endpoint.qos
         if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL:
-            keeps_all = qos.history is HistoryPolicy.KEEP_ALL
-            self._history = deque(maxlen=KEPT_FOR_LATE_READERS if keeps_all else qos.depth or None)
+            self._history = deque(maxlen=depth_of(qos))
         self._update()
 
     def meet(self, reader: LocalReader) -> None:
@@ -177,10 +173,7 @@ class LocalWriter(Writer):
         deliver = reader.delivery_from(self._msg_type)
         wanted = reader.endpoint.qos
         if self._history and wanted.durability is DurabilityPolicy.TRANSIENT_LOCAL:
-            missed = list(self._history)
-            if wanted.history is not HistoryPolicy.KEEP_ALL and wanted.depth:
-                missed = missed[-wanted.depth :]
-            for msg, sample_info in missed:
+            for msg, sample_info in list(self._history)[-depth_of(wanted) :]:
                 deliver(msg, sample_info)
         self._matched[reader] = deliver
         self._update()

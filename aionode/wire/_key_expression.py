@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 __all__ = [
     "BUFFER_SUFFIX",
-    "HUMBLE_HASH",
     "DataKey",
     "buffer_key",
     "data_key",
@@ -22,9 +21,6 @@ __all__ = [
     "parse_data_key",
     "ros_type",
 ]
-
-HUMBLE_HASH = "TypeHashNotSupported"
-"""Written by ROS 2 Humble nodes in place of a type hash."""
 
 BUFFER_SUFFIX = "_buf_cpu"
 """Last chunk of the second key of topics with byte sequences, since ROS 2 Lyrical."""

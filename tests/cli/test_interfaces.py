@@ -21,10 +21,38 @@ def test_show_prints_a_service(screen: Any) -> None:
 
 def test_show_indents_what_is_inside(screen: Any) -> None:
     """With tabs, as ros2."""
-    show("geometry_msgs/msg/Twist", output=screen.output)
+    show("geometry_msgs/msg/Twist", output=screen.output, comments="none")
 
     vector = "\tfloat64 x\n\tfloat64 y\n\tfloat64 z\n"
     assert screen.text == f"Vector3 linear\n{vector}Vector3 angular\n{vector}"
+
+
+def test_show_says_what_fields_mean(screen: Any) -> None:
+    """Units above all; nested types only on request."""
+    show("geometry_msgs/msg/Twist", output=screen.output)
+
+    assert screen.text.startswith(
+        "# In m/s; x is forward, y to the left, z up.\nVector3 linear\n\t"
+    )
+    assert screen.text.count("#") == 2
+
+
+def test_show_prints_the_comments_of_the_installed_file(
+    screen: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The file of the sourced ROS 2 is what its other tools show."""
+    folder = tmp_path / "share" / "geometry_msgs" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "Vector3.msg").write_text("float64 x  # first\nfloat64 y\nfloat64 z\n")
+    text = "# A twist.\n\nVector3  linear\nVector3  angular # at last\n"
+    (folder / "Twist.msg").write_text(text)
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+
+    show("geometry_msgs/msg/Twist", output=screen.output, comments="all")
+
+    vector = "\tfloat64 x  # first\n\tfloat64 y\n\tfloat64 z\n"
+    expected = f"# A twist.\n\nVector3  linear\n{vector}Vector3  angular # at last\n{vector}"
+    assert screen.text == expected
 
 
 def test_proto_prints_what_can_be_filled_in(screen: Any) -> None:

@@ -191,17 +191,17 @@ def test_a_package_that_was_not_loaded_is_an_attribute_error(workspace: Path) ->
 
 def test_a_definition_can_be_given_as_text() -> None:
     """From a recording or a web page."""
-    words = define("tutorial/msg/Words", "string text\ngeometry_msgs/Point[2] ends\n")
+    words = define("as_text/msg/Words", "string text\ngeometry_msgs/Point[2] ends\n")
     service = define(
-        "tutorial/srv/Say", "tutorial/Words w\n---\n", types={"tutorial/msg/Words": words}
+        "as_text/srv/Say", "as_text/Words w\n---\n", types={"as_text/msg/Words": words}
     )
 
     assert words().ends == [Point(), Point()]
     assert issubclass(words, Message)
     assert issubclass(service, ServiceType)
-    assert type_name(service.Event) == "tutorial/srv/Say_Event"
+    assert type_name(service.Event) == "as_text/srv/Say_Event"
     assert definition_text(service) == "Words w\n---\n"
     with pytest.raises(InterfaceNotFoundError):
-        get_interface("tutorial/msg/Words")
+        get_interface("as_text/msg/Words")
     with pytest.raises(TypeError, match="not a valid ROS type name"):
         define("Words", "string text")

@@ -211,11 +211,11 @@ def complete_interfaces(kind: str = "") -> Completer:
     """Return the completer for type names of a `kind`: ``msg``, ``srv``, ``action``, "" for all."""
 
     def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
-        from aionode.interfaces import interface_names, shipped_packages
+        from aionode.interfaces import interface_names, known_packages
 
         package, slash, _ = incomplete.partition("/")
         if not slash:
-            return [f"{name}/" for name in sorted(shipped_packages()) if name.startswith(package)]
+            return [f"{name}/" for name in sorted(known_packages()) if name.startswith(package)]
         found: Any = interface_names(package)
         return [name for name in found if name.startswith(incomplete) and f"/{kind}" in name]
 

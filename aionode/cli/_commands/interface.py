@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
@@ -71,11 +71,11 @@ def packages_command(output: Output, kinds: tuple[str, ...]) -> None:
 
 @interface.command("show")
 @click.argument("type_name", metavar="TYPE", shell_complete=complete_interfaces())
-@click.option("--all-comments", is_flag=True, hidden=True, expose_value=False)
-@click.option("--no-comments", is_flag=True, hidden=True, expose_value=False)
+@click.option("--all-comments", is_flag=True, help="Print the comments of nested types as well.")
+@click.option("--no-comments", is_flag=True, help="Print no comments.")
 @json_option
 @interfaces_option
-def show_command(type_name: str, json: bool) -> None:
+def show_command(type_name: str, all_comments: bool, no_comments: bool, json: bool) -> None:
     """Print the definition of a type; if TYPE is -, its name is read from standard input."""
     if type_name == "-":
         if sys.stdin.isatty():
@@ -85,7 +85,8 @@ def show_command(type_name: str, json: bool) -> None:
         type_name = sys.stdin.readline().strip()
         if not type_name:
             raise CommandError("The passed value is empty: no type name came from the pipe")
-    show(type_name, output=Output(json=json))
+    comments: Literal["none", "all", "outer"] = "all" if all_comments else "outer"
+    show(type_name, output=Output(json=json), comments="none" if no_comments else comments)
 
 
 @interface.command("proto")

@@ -7,7 +7,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from aionode.graph import EndpointKind
+from aionode.graph import TOPIC_KINDS, EndpointKind
 from aionode.names import is_hidden
 
 if TYPE_CHECKING:
@@ -43,7 +43,12 @@ class Finding:
 
 def diagnose(nodes: Sequence[NodeInfo], endpoints: Sequence[EndpointInfo]) -> list[Finding]:
     """Return all findings, problems first."""
-    found = [*same_names(nodes), *mismatches(endpoints), *diagnose_names(endpoints)]
+    found = [
+        *same_names(nodes),
+        *same_servers(endpoints),
+        *mismatches(endpoints),
+        *diagnose_names(endpoints),
+    ]
     unique = list(dict.fromkeys(found))
     return sorted(unique, key=lambda finding: finding.severity != "problem")
 
@@ -60,13 +65,31 @@ def same_names(nodes: Sequence[NodeInfo]) -> Iterator[Finding]:
             )
 
 
+def same_servers(endpoints: Iterable[EndpointInfo]) -> Iterator[Finding]:
+    """Yield a finding for each service and action that has servers in several nodes."""
+    servers: dict[str, dict[str, None]] = {}
+    for endpoint in endpoints:
+        if endpoint.kind is EndpointKind.SERVER:
+            node = endpoint.node.fully_qualified_name
+            servers.setdefault(endpoint.name, {})[node] = None
+    for name, nodes in servers.items():
+        action = name.removesuffix("/_action/send_goal")
+        if len(nodes) > 1 and (action != name or not is_hidden(name)):
+            yield Finding(
+                "hint",
+                f"{'service' if action == name else 'action'} {action}",
+                f"it has {len(nodes)} servers, of {', '.join(nodes)}: each request goes to all of "
+                "them, and the first response is taken",
+                f"stop one of them, or rename it: --ros-args -r {action}:=…",
+            )
+
+
 # Pairs that should communicate
 
 
 def subject_of(endpoint: EndpointInfo) -> str:
     """Return the topic or service of an endpoint, such as ``topic /chatter``."""
-    is_topic = endpoint.kind in {EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION}
-    return f"{'topic' if is_topic else 'service'} {endpoint.name}"
+    return f"{'topic' if endpoint.kind in TOPIC_KINDS else 'service'} {endpoint.name}"
 
 
 def described(endpoint: EndpointInfo) -> str:
@@ -99,6 +122,14 @@ def mismatch(offering: EndpointInfo, requesting: EndpointInfo) -> Iterator[Findi
             f"{pair} do not communicate: their types are {offering.type_name} and "
             f"{requesting.type_name}",
             "use one type on both sides, or different names",
+        )
+        return
+    if found.aspect == "distribution":
+        yield Finding(
+            "problem",
+            subject_of(offering),
+            f"{pair} do not communicate: one is of ROS 2 Humble, the other of a newer distribution",
+            "use one distribution",
         )
         return
     if found.aspect == "definition":

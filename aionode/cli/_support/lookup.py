@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 from typing import TYPE_CHECKING, Any
 
+from aionode._distribution import NO_TYPE_HASH
 from aionode.errors import CommandError, InterfaceNotFoundError
 from aionode.graph import TOPIC_KINDS, EndpointKind
 from aionode.names import is_hidden
@@ -161,7 +162,7 @@ async def type_of(node: Node, users: list[EndpointInfo]) -> Any:
     except InterfaceNotFoundError:
         known = None
     hashes = {user.type_hash for user in users}
-    if known is not None and type_hash(known) in hashes:
+    if known is not None and hashes & {type_hash(known), NO_TYPE_HASH}:
         return known
     from aionode.cli._support.type_discovery import fetch_type
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from aionode._distribution import other_distribution
 from aionode.cli._support.deadline import Deadline
 from aionode.cli._support.error_text import one_line, status_of
 from aionode.cli._support.output import Output
@@ -137,6 +138,12 @@ async def wait_until_known(node: Node, output: Output) -> None:
             "WARNING: a reachable peer has not answered (frozen, overloaded or far away?): "
             "this may be incomplete"
         )
+    participant = node.context.participant
+    others = [one for one in node.graph.endpoints() if one.node.participant != participant]
+    hashes = {endpoint.type_hash for endpoint in others}
+    hint = other_distribution(node.context.ros_distro, hashes)
+    if hint is not None:
+        output.warn(f"WARNING: {hint}")
 
 
 def run_until_stopped(

@@ -6,6 +6,7 @@ import asyncio
 import os
 from typing import TYPE_CHECKING, Any
 
+from aionode._distribution import other_distribution
 from aionode.cli._support import lookup
 from aionode.cli._support.diagnosis import Finding, diagnose
 from aionode.cli._support.routes import link_findings, pairs_of, query_links
@@ -75,6 +76,10 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
         lines += [f"  {pair.text()}" for pair in pairs]
     output.item("\n".join(lines), record)
     found = diagnose(nodes, endpoints)
+    hint = other_distribution(node.context.ros_distro, {one.type_hash for one in endpoints})
+    if hint is not None:
+        problem, remedy = hint.split(": ")
+        found.insert(0, Finding("problem", "ROS_DISTRO", problem, remedy))
     found += link_findings(pairs)
     found += network_findings(
         network, os.environ, has_router=has_router, domains=domains, alone=not nodes

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 from aionode.cli._support.output import Output
 
@@ -48,9 +48,9 @@ def packages(*, output: Output, kinds: tuple[str, ...] = tuple(KINDS)) -> None:
 
 def all_packages() -> list[str]:
     """Return the names of all packages."""
-    from aionode.interfaces import loaded_packages, shipped_packages
+    from aionode.interfaces import known_packages
 
-    return sorted(shipped_packages() | loaded_packages())
+    return sorted(known_packages())
 
 
 def of_kinds(names: tuple[str, ...], kinds: tuple[str, ...]) -> list[str]:
@@ -58,8 +58,20 @@ def of_kinds(names: tuple[str, ...], kinds: tuple[str, ...]) -> list[str]:
     return [name for name in names if name.split("/")[1] in kinds]
 
 
-def show(type_name: str, *, output: Output) -> None:
-    """Print the definition of a type, with the definitions of nested types indented."""
+def show(
+    type_name: str,
+    *,
+    output: Output,
+    comments: Literal["none", "outer", "all"] = "outer",
+) -> None:
+    """Print the definition of a type, with the definitions of nested types indented.
+
+    Args:
+        type_name: The type.
+        output: Where to print.
+        comments: Whether to print what fields mean: never, for the type itself, or for nested ones
+            as well. The comments are those of the sourced ROS 2, or else aionode's own.
+    """
     from aionode.idl import definition_text
     from aionode.interfaces import get_interface
 
@@ -67,7 +79,7 @@ def show(type_name: str, *, output: Output) -> None:
     if output.json:
         output.item("", {"name": cls.__ros_type__, "definition": definition_text(cls)})
     else:
-        output.raw(definition_text(cls, nested=True))
+        output.raw(definition_text(cls, nested=True, comments=comments))
 
 
 def proto(type_name: str, *, output: Output, quotes: bool = True) -> None:

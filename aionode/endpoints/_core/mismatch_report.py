@@ -52,6 +52,11 @@ def mismatch_text(own: EndpointInfo, other: EndpointInfo) -> str | None:
             f"{where}: the {peer} has type {other.type_name}, this {own.kind.value} "
             f"{own.type_name}. They will not hear each other; use one type, or another name"
         )
+    if found.aspect == "distribution":
+        return (
+            f"{where}: the {peer} is of another distribution of ROS 2, and they will not hear each "
+            f"other; {found.reason}"
+        )
     if found.aspect == "definition":
         return (
             f"{where}: the {peer} has another definition of {other.type_name} "

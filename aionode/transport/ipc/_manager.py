@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import asyncio
 import logging
+from collections import defaultdict
+from itertools import chain
 from typing import TYPE_CHECKING, Final
 
 from aionode.clock import MachineTime
 from aionode.errors import FrameError, TransportError
 from aionode.graph import EndpointKind
 from aionode.transport.ipc._connection import Connection
+from aionode.transport.ipc._endpoint_table import EndpointTable
 from aionode.transport.ipc._protocol import (
     VERSION,
     Cancel,
@@ -34,13 +37,14 @@ from aionode.transport.ipc._subscription import IpcReader
 
 if TYPE_CHECKING:
     import socket
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from aionode.graph import EndpointInfo, Graph
     from aionode.transport.ipc._listener import Advertisement, Listener
     from aionode.transport.ipc._protocol import Control, Frame
     from aionode.transport.ipc._registry import PeerDirectory
     from aionode.transport.ipc._send_queue import IpcSendQueue
+    from aionode.transport.ipc._subscription import RemotePublisher
     from aionode.wire.cdr import Data
 
 __all__ = ["LinkManager"]
@@ -86,10 +90,11 @@ class LinkManager:
         peer_directory: What is known about other contexts.
 
     Attributes:
+        content_filters: What subscriptions of other contexts want.
         pool: Shared memory for large payloads.
         now_ns: Returns the system time, in nanoseconds since 1970.
-        writers: The publishers that may use links, by gid.
-        readers: The subscriptions, by gid.
+        writers: The publishers that may use links.
+        readers: The subscriptions.
         servers: The servers, by gid.
         requesters: The clients, by gid.
     """
@@ -99,11 +104,13 @@ class LinkManager:
         self.pool = BufferPool()
         self.now_ns = MachineTime().system_ns
         # Endpoints: added when they are created, removed when they are closed.
-        self.writers: dict[bytes, IpcWriter] = {}
-        self.readers: dict[bytes, IpcReader] = {}
+        self.writers: EndpointTable[IpcWriter] = EndpointTable()
+        self.readers: EndpointTable[IpcReader] = EndpointTable()
         self.servers: dict[bytes, IpcServer] = {}
         self.requesters: dict[bytes, IpcRequester] = {}
         self._peer_directory = peer_directory
+        self.content_filters = peer_directory.content_filters
+        self.content_filters.on_change.append(self._refilter)
         self._hello = Hello(participant, VERSION, domain_id)
         self._domain_id = domain_id
         self._graph: Graph | None = None
@@ -127,6 +134,10 @@ class LinkManager:
         self._timers: set[asyncio.TimerHandle] = set()  # of `later`, until they have run
         self._link_changes = 0
         self._malformed = 0  # retransmitted batches that could not be read
+
+    def _refilter(self) -> None:
+        for writer in self.writers.values():
+            writer.update_filters()
 
     # Lifetime
 
@@ -226,21 +237,10 @@ class LinkManager:
         while len(self._ending) > MAX_ENDING:
             self._ending.pop(next(iter(self._ending))).drop()
 
-    def add(self, endpoint: IpcWriter | IpcReader | IpcServer | IpcRequester) -> None:
-        """Let an endpoint of this context use links."""
-        if isinstance(endpoint, IpcWriter):
-            self.writers[endpoint.endpoint.gid] = endpoint
-        elif isinstance(endpoint, IpcReader):
-            self.readers[endpoint.gid] = endpoint
-        elif isinstance(endpoint, IpcServer):
-            self.servers[endpoint.endpoint.gid] = endpoint
-        else:
-            self.requesters[endpoint.endpoint.gid] = endpoint
-
     def remove(self, gid: bytes) -> None:
         """Forget an endpoint of this context, which was closed."""
-        self.writers.pop(gid, None)
-        self.readers.pop(gid, None)
+        self.writers.remove(gid)
+        self.readers.remove(gid)
         self.servers.pop(gid, None)
         self.requesters.pop(gid, None)
 
@@ -277,25 +277,39 @@ class LinkManager:
         """Take a new endpoint, of this context or another."""
         if self._graph is None:
             return
-        participant = endpoint.node.participant
-        if participant != self.participant:
+        readers = self.readers.named(endpoint.name)
+        if endpoint.node.participant != self.participant:
             if endpoint.kind is EndpointKind.SUBSCRIPTION:
-                for writer in list(self.writers.values()):
-                    if writer.endpoint.name == endpoint.name:
-                        writer.update()
-            self._consider(participant, endpoint)
+                for writer in self.writers.named(endpoint.name):
+                    writer.update()
+            self._consider(endpoint.node.participant, endpoint, readers)
             return
-        theirs = self.remote(endpoint.kind.opposite, endpoint.name)
-        for one in {each.node.participant: each for each in theirs}.values():
-            self._consider(one.node.participant, one)
+        new = [reader for reader in readers if reader.endpoint is endpoint]
+        for theirs in self.remote(endpoint.kind.opposite, endpoint.name):
+            self._consider(theirs.node.participant, theirs, new)
 
-    def _consider(self, participant: str, endpoint: EndpointInfo | None = None) -> None:
-        """Use the link to a context for what is new there, or dial it if it has a match."""
+    def _consider(
+        self,
+        participant: str,
+        endpoint: EndpointInfo | None = None,
+        readers: Sequence[IpcReader] = (),
+    ) -> None:
+        """Use the link to a context, or dial it if it has a match.
+
+        Args:
+            participant: The context.
+            endpoint: Which endpoint there is of interest; None for all.
+            readers: Which subscriptions here may hear it.
+        """
         if participant not in self._near:
             return
         connection = self._links.get(participant)
         if connection is not None:
-            self._open_publishers(connection, endpoint)
+            if endpoint is None:
+                self._open_publishers(connection)
+            elif endpoint.kind is EndpointKind.PUBLISHER:
+                for reader in readers:
+                    reader.open(endpoint, connection)
         elif (
             self.participant < participant
             and participant not in self._backoff
@@ -321,13 +335,9 @@ class LinkManager:
                     return True
         return False
 
-    def _open_publishers(
-        self, connection: Connection, endpoint: EndpointInfo | None = None
-    ) -> None:
+    def _open_publishers(self, connection: Connection) -> None:
         """Ask for what the publishers at the other end have for our subscriptions."""
-        for reader in list(self.readers.values()):
-            if endpoint is not None and reader.endpoint.name != endpoint.name:
-                continue
+        for reader in self.readers.values():
             for publisher in self.remote(EndpointKind.PUBLISHER, reader.endpoint.name):
                 if publisher.node.participant == connection.participant:
                     reader.open(publisher, connection)
@@ -529,9 +539,7 @@ class LinkManager:
 
     def _retransmit_unacked(self, connection: Connection) -> None:
         """Send what is not confirmed to the process that it is for, and to no other."""
-        unacked = [
-            data for writer in list(self.writers.values()) for data in writer.broken(connection)
-        ]
+        unacked = [data for writer in self.writers.values() for data in writer.broken(connection)]
         for key in [key for key in self._ending if key[0] is connection]:
             unacked += self._ending.pop(key).unacked()
         unacked.append(RetransmitDone().pack())
@@ -560,15 +568,23 @@ class LinkManager:
                 )
             return
         self._read_until_eof(sender)
+        heard = self._heard_from(sender)
         for frame in frames:
-            for reader in list(self.readers.values()):
-                for remote_publisher in list(reader.remote_publishers.values()):
-                    if remote_publisher.participant != sender:
-                        continue
-                    if frame.kind == Kind.RETRANSMIT_DONE:
-                        remote_publisher.retransmit_done()
-                    elif frame.kind == Kind.DATA and remote_publisher.publisher == frame.gid:
-                        remote_publisher.from_retransmit(frame.payload, frame)
+            if frame.kind == Kind.RETRANSMIT_DONE:
+                for remote_publisher in chain.from_iterable(heard.values()):
+                    remote_publisher.retransmit_done()
+            elif frame.kind == Kind.DATA:
+                for remote_publisher in heard.get(frame.gid, ()):
+                    remote_publisher.from_retransmit(frame.payload, frame)
+
+    def _heard_from(self, participant: str) -> dict[bytes, list[RemotePublisher]]:
+        """Return what subscriptions keep about the publishers of a context, by their gids."""
+        heard: dict[bytes, list[RemotePublisher]] = defaultdict(list)
+        for reader in self.readers.values():
+            for remote_publisher in reader.remote_publishers.values():
+                if remote_publisher.participant == participant:
+                    heard[remote_publisher.publisher].append(remote_publisher)
+        return heard
 
 
 async def flush(connection: Connection) -> None:

@@ -17,7 +17,14 @@ from aionode.transport.ipc._subscription import IpcReader, may_be_large
 
 if TYPE_CHECKING:
     from aionode.graph import EndpointInfo, Graph, NodeInfo
-    from aionode.transport.base import LinkStatus, Reader, Registration, Requester, Serve, Writer
+    from aionode.transport.base import (
+        LinkStatus,
+        Reader,
+        Registration,
+        Requester,
+        Serve,
+        Writer,
+    )
     from aionode.transport.ipc._registry import PeerDirectory
 
 __all__ = ["IpcTransport"]
@@ -116,7 +123,7 @@ class IpcTransport(Transport):
         if not can_link(endpoint):
             return zenoh
         writer = IpcWriter(self.manager, endpoint, msg_type, zenoh)
-        self.manager.add(writer)
+        self.manager.writers.add(endpoint.gid, writer)
         return writer
 
     def create_reader(
@@ -128,19 +135,19 @@ class IpcTransport(Transport):
             import numpy  # noqa: F401, ICN001
         ipc_reader = IpcReader(self.manager, msg_type, reader)
         ipc_reader.attach(self.zenoh.create_reader(endpoint, msg_type, ipc_reader))
-        self.manager.add(ipc_reader)
+        self.manager.readers.add(ipc_reader.gid, ipc_reader)
         return ipc_reader
 
     def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Registration:
         """Announce a server."""
         zenoh = self.zenoh.create_server(endpoint, srv_type, serve)
         server = IpcServer(self.manager, endpoint, srv_type, serve, zenoh)
-        self.manager.add(server)
+        self.manager.servers[endpoint.gid] = server
         return server
 
     def create_requester(self, endpoint: EndpointInfo, srv_type: Any) -> Requester:
         """Announce a client."""
         zenoh = self.zenoh.create_requester(endpoint, srv_type)
         requester = IpcRequester(self.manager, endpoint, srv_type, zenoh)
-        self.manager.add(requester)
+        self.manager.requesters[endpoint.gid] = requester
         return requester

@@ -62,8 +62,9 @@ def translated(what: str) -> Iterator[None]:
 def direct(
     callback: Callable[[T], None], drop: Callable[[], None] | None = None
 ) -> zenoh.handlers.Callback[T]:
-    """Return a handler that runs in Zenoh's network thread, for infrequent samples.
+    """Return a handler that runs in Zenoh's network thread.
 
-    It saves a thread for each entity and each call, and costs latency where samples are frequent.
+    Zenoh's other kind starts a thread for each subscriber and call. `callback` must only hand over:
+    while it waits for Python, nothing else arrives.
     """
     return zenoh.handlers.Callback(callback, drop, indirect=False)

@@ -14,7 +14,7 @@ from zenoh import ext
 from aionode.clock import perf_ns
 from aionode.errors import TransportError
 from aionode.graph import EndpointKind
-from aionode.qos import HistoryPolicy, depth_of
+from aionode.qos import depth_of, keeps_all
 from aionode.transport._reliability import WriterHistory
 from aionode.transport._send_thread import SendQueue, SendThread
 from aionode.transport.base import Writer
@@ -77,6 +77,8 @@ class ZenohWriter(Declaration, Writer):
         self._encode: Callable[[Any], bytes] | None = None
         self._publisher: zenoh.Publisher | ext.AdvancedPublisher | None = None
         self._matching: zenoh.MatchingListener[None] | None = None
+        # Whether Zenoh has subscribers, those without a token included; its listener tells.
+        self._is_matching = False
         self._matching_changed = state.queue(self._update_with, limit=1)
         # Whether a small message may be put at once, see `_update_route`.
         self._is_direct = True
@@ -90,7 +92,7 @@ class ZenohWriter(Declaration, Writer):
         # Messages for late readers that were published before the session is open.
         self._early: deque[tuple[bytes, bytes]] = deque(maxlen=self._depth)
         self.active = self._transient
-        self.bounded = qos.history is HistoryPolicy.KEEP_ALL and self._reliable
+        self.bounded = keeps_all(qos)
         # A transient local publisher has none: there Zenoh sends lost messages again.
         self._history: WriterHistory | None = None
         if self._reliable and not self._transient:
@@ -101,6 +103,9 @@ class ZenohWriter(Declaration, Writer):
         # Large messages, and small ones after them to keep the order.
         self._large = self._send_queue(state.bulk, keep_all=False)
         self._bulk_only = self._transient and not self.bounded and has_buffers(msg_type)
+        # Whether any reader wants a message; None if one wants all, or may be there unseen.
+        self._wants: Callable[[Any], bool] | None = None
+        self._filtered = 0
         # Messages for readers that do not acknowledge, once it was needed; from then on it is used
         # for all messages, to keep the order.
         self._patient: SendQueue | None = None
@@ -161,6 +166,8 @@ class ZenohWriter(Declaration, Writer):
             self._matching = self._publisher.declare_matching_listener(
                 direct(self._matching_changed.put)
             )
+            # Here only: Zenoh looks through all subscribers of all topics for an answer.
+            self._is_matching = bool(self._publisher.matching_status.matching)  # type: ignore[attr-defined]  # no bool, as the stub says
         self._update()
 
     def undeclare_data(self) -> None:
@@ -228,33 +235,48 @@ class ZenohWriter(Declaration, Writer):
 
     # Readers
 
-    def _update_with(self, _: zenoh.MatchingStatus) -> None:
+    def _update_with(self, status: zenoh.MatchingStatus) -> None:
+        self._is_matching = status.matching
         self._update()
 
     def _update(self) -> None:
-        """Update `active` and the history from the matching readers."""
-        publisher, history, graph = self._publisher, self._history, self.state.graph
+        """Update `active`, the filter and the history from the matching readers."""
+        history, graph = self._history, self.state.graph
         if self._transient:
             if self._encode is None:
                 self._encode = cdr.encoder(self._msg_type)
             return
-        self.active = isinstance(publisher, zenoh.Publisher) and bool(
-            publisher.matching_status.matching  # type: ignore[attr-defined]  # no bool, as the stub says
-        )
-        if history is not None and graph is not None and publisher is not None:
-            acknowledging, others = self._matched(graph)
-            self._update_readers(history, acknowledging)
-            # The token of a reader can arrive before Zenoh has a route to it; what is lost until
-            # then is sent again, and so is what is published while a reader is away. A subscriber
-            # without a token may match too; beside readers that acknowledge, none is known.
-            self.active = self.active or bool(history.readers)
-            history.has_other_readers = others or not history.readers
-            self._update_route()
+        self.active = False
+        self._wants = None
+        if graph is not None and self._publisher is not None:
+            readers = self._matched(graph)
+            self._wants = self._filter_of(readers)
+            # The token of a reader can arrive before Zenoh has told of a match, or has a route to
+            # it; what is lost until then is sent again.
+            self.active = self._is_matching or bool(readers)
+            if history is not None:
+                self._update_readers(history, readers)
         if self.active and self._encode is None:
             self._encode = cdr.encoder(self._msg_type)
 
-    def _update_readers(self, history: WriterHistory, acknowledging: dict[bytes, str]) -> None:
+    def _matched(self, graph: Graph) -> list[EndpointInfo]:
+        """Return the matched readers of other contexts."""
+        return [
+            reader
+            for reader in graph.endpoints(EndpointKind.SUBSCRIPTION, name=self.endpoint.name)
+            if reader.node.participant != self.state.participant and self.endpoint.matches(reader)
+        ]
+
+    def _filter_of(self, readers: list[EndpointInfo]) -> Callable[[Any], bool] | None:
+        """Return whether any reader wants a message; None if all messages have to be sent."""
+        filters = self.state.content_filters
+        if not filters or self.state.has_unannounced_peers:
+            return None
+        return filters.wanted_by([reader.gid for reader in readers], self._msg_type)
+
+    def _update_readers(self, history: WriterHistory, readers: list[EndpointInfo]) -> None:
         """Add new and returned readers to the history, and remove those that have vanished."""
+        acknowledging, others = self._acknowledging(readers)
         for gid, known in list(history.readers.items()):
             if gid not in acknowledging and not known.away_until_ns:
                 history.remove(gid)
@@ -266,16 +288,19 @@ class ZenohWriter(Declaration, Writer):
         if self.bounded and history.readers:
             self.state.acknowledgements.probe(self)
         self._progress()
+        # What is published while a reader is away is sent again. A subscriber without a token may
+        # match too; beside readers that acknowledge, none is known.
+        self.active = self.active or bool(history.readers)
+        history.has_other_readers = others or not history.readers
+        self._update_route()
 
-    def _matched(self, graph: Graph) -> tuple[dict[bytes, str], bool]:
+    def _acknowledging(self, readers: list[EndpointInfo]) -> tuple[dict[bytes, str], bool]:
         """Return the acknowledging readers, and whether others must not lose messages."""
         able = self.state.acknowledgements.participants
         acknowledging: dict[bytes, str] = {}
         others = False
-        for reader in graph.endpoints(EndpointKind.SUBSCRIPTION, name=self.endpoint.name):
+        for reader in readers:
             participant = reader.node.participant
-            if participant == self.state.participant or not self.endpoint.matches(reader):
-                continue
             if participant not in able:
                 others = True
             elif is_reliable(reader.qos):
@@ -288,7 +313,10 @@ class ZenohWriter(Declaration, Writer):
     # Messages
 
     def write(self, msg: Any, sample_info: SampleInfo) -> None:
-        """Send `msg`."""
+        """Send `msg`, unless no reader wants it: the history takes a jump of its numbers."""
+        if self._wants is not None and not self._wants(msg):
+            self._filtered += 1
+            return
         encode = self._encode
         if encode is None:
             encode = self._encode = cdr.encoder(self._msg_type)
@@ -528,6 +556,11 @@ class ZenohWriter(Declaration, Writer):
     def dropped(self) -> int:
         """How many messages are known to have been dropped on the way."""
         return self._dropped
+
+    @property
+    def filtered(self) -> int:
+        """How many messages were not sent, as no reader wants them."""
+        return self._filtered
 
     def route_of(self, reader: EndpointInfo) -> str | None:
         """Return ``zenoh`` for subscriptions of other contexts."""

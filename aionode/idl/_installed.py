@@ -1,0 +1,159 @@
+"""Interfaces of the ROS 2 that is sourced: the definitions under AMENT_PREFIX_PATH.
+
+They are read when a package is first imported, and not before. A package that aionode does not ship
+comes from there as a whole. Of a shipped one, the types that are defined differently there do, so
+that their type hashes are those of the nodes of that system. Without a sourced ROS 2, ROS_DISTRO
+names the distribution whose differences, which are few, are known here.
+
+`aionode.interfaces` calls this module while it imports a package.
+"""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from aionode.errors import IdlError
+from aionode.idl._build import Builder
+from aionode.idl._definition import HALVES, InterfaceText, split_type_name
+from aionode.idl._folder import PACKAGE_NAME, TYPE_NAME, read
+from aionode.idl._parser import parse
+
+__all__ = [
+    "has_package",
+    "has_types",
+    "installed_file",
+    "installed_text",
+    "packages",
+    "replaced_types",
+]
+
+DIFFERENCES: dict[str, dict[str, str]] = {
+    "humble": {
+        "sensor_msgs/msg/Range": """\
+uint8 ULTRASOUND=0
+uint8 INFRARED=1
+std_msgs/Header header
+uint8 radiation_type
+float32 field_of_view
+float32 min_range
+float32 max_range
+float32 range
+""",
+        "rosbag2_interfaces/msg/ReadSplitEvent": "string closed_file\nstring opened_file\n",
+        "rosbag2_interfaces/msg/WriteSplitEvent": "string closed_file\nstring opened_file\n",
+    },
+    "lyrical": {
+        "lifecycle_msgs/msg/TransitionEvent": """\
+builtin_interfaces/Time stamp
+Transition transition
+State start_state
+State goal_state
+""",
+    },
+}
+"""Definitions of the types that are shipped, where other distributions have other fields."""
+
+
+def installed_file(typename: str) -> Path | None:
+    """Return the file with the definition of a type in the sourced ROS 2, if it has one."""
+    package, kind, name = split_type_name(typename)
+    for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
+        file = Path(prefix, "share", package, kind, f"{name}.{kind}")
+        if prefix and file.is_file():
+            return file
+    return None
+
+
+def installed_text(typename: str) -> str | None:
+    """Return the definition of a type in the sourced ROS 2, or in the one that ROS_DISTRO names."""
+    file = installed_file(typename)
+    if file is not None:
+        return read(file)
+    return DIFFERENCES.get(os.environ.get("ROS_DISTRO", ""), {}).get(typename)
+
+
+def installed_names(package: str, kind: str) -> Iterator[str]:
+    """Yield the ROS names of the types of one kind in a package of the sourced ROS 2."""
+    found = {
+        file.stem
+        for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
+        if prefix
+        for file in Path(prefix, "share", package, kind).glob(f"*.{kind}")
+        if TYPE_NAME.fullmatch(file.stem)
+    }
+    found.update(
+        typename.rpartition("/")[2]
+        for typename in DIFFERENCES.get(os.environ.get("ROS_DISTRO", ""), {})
+        if typename.startswith(f"{package}/{kind}/")
+    )
+    return (f"{package}/{kind}/{name}" for name in sorted(found))
+
+
+class InstalledTexts(Mapping[str, InterfaceText]):
+    """The definitions of one package, each parsed when it is first asked for."""
+
+    def __init__(self, package: str, kind: str) -> None:
+        self._names = dict.fromkeys(installed_names(package, kind))
+        self._parsed: dict[str, InterfaceText] = {}
+
+    def __getitem__(self, typename: str) -> InterfaceText:
+        if typename not in self._names:
+            raise KeyError(typename)
+        if typename not in self._parsed:
+            text = installed_text(typename)
+            assert text is not None  # noqa: S101  # it is one of the names
+            self._parsed[typename] = parse(typename, text, str(installed_file(typename) or ""))
+        return self._parsed[typename]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
+def packages() -> frozenset[str]:
+    """Return the names of the packages with interfaces of the sourced ROS 2."""
+    return frozenset(
+        folder.parent.name
+        for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
+        if prefix
+        for kind in HALVES
+        for folder in Path(prefix, "share").glob(f"*/{kind}")
+        if PACKAGE_NAME.fullmatch(folder.parent.name) and any(folder.glob(f"*.{kind}"))
+    )
+
+
+def has_package(package: str) -> bool:
+    """Whether the sourced ROS 2 has a package with interfaces."""
+    return any(has_types(package, kind) for kind in HALVES)
+
+
+def has_types(package: str, kind: str) -> bool:
+    """Whether the sourced ROS 2 has types of one kind in a package."""
+    return any(True for _ in installed_names(package, kind))
+
+
+def replaced_types(package: str, kind: str, shipped: Mapping[str, Any]) -> dict[str, type[Any]]:
+    """Return the installed classes that differ from the shipped ones or are not shipped, by name.
+
+    A definition that is not valid is left out with a warning: one broken file must not keep
+    a program from the rest of its package.
+    """
+    builder = Builder(texts := InstalledTexts(package, kind), reuse=True)
+    found: dict[str, type[Any]] = {}
+    for typename in texts:
+        name = split_type_name(typename)[2]
+        try:
+            cls = builder.build(typename)
+        except IdlError as error:
+            text = f"{typename} of the sourced ROS 2 is left out: {error}"
+            warnings.warn(text, RuntimeWarning, stacklevel=2)
+            continue
+        if shipped.get(name) is not cls:
+            found[name] = cls
+    return found
