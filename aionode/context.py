@@ -173,13 +173,17 @@ class Context:
             # Imported on demand: it is large, and a local context does not need it.
             from aionode.transport.zenoh import ZenohTransport
 
-            zenoh = ZenohTransport(self.participant, self.network)
+            zenoh = ZenohTransport(self.participant, self.network, self.time_base)
             if not wants_link(link, os.environ):
                 return (LocalTransport(), zenoh)
             from aionode.transport.ipc import IpcTransport
 
             linked = IpcTransport(
-                self.participant, self.network.domain_id, zenoh, zenoh.peer_directory
+                self.participant,
+                self.network.domain_id,
+                zenoh,
+                zenoh.peer_directory,
+                self.time_base,
             )
             return (LocalTransport(), linked)
         raise ValueError(

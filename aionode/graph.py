@@ -10,13 +10,14 @@ import asyncio
 import enum
 from collections import defaultdict
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias, TypeVar
 
 from aionode import names, qos
 from aionode._distribution import distribution_mismatch
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Set as AbstractSet
 
     from aionode.qos import QoSProfile
 
@@ -24,6 +25,8 @@ __all__ = ["TOPIC_KINDS", "EndpointInfo", "EndpointKind", "Graph", "Mismatch", "
 
 K = TypeVar("K")
 V = TypeVar("V")
+
+Watcher: TypeAlias = "Callable[[EndpointInfo, bool], None]"
 
 
 class EndpointKind(enum.Enum):
@@ -169,6 +172,8 @@ class Graph:
 
     Attributes:
         changes: Incremented by each change: an answer is valid while this stays the same.
+        unreported: Which mismatches of an endpoint of this context are not logged, since its
+            program gets them as events: ``"qos"``, ``"type"`` and ``"definition"``.
     """
 
     def __init__(self) -> None:
@@ -181,6 +186,8 @@ class Graph:
         self._nodes_by_name: dict[str, dict[NodeInfo, None]] = defaultdict(dict)
         self._listeners: list[Callable[[EndpointInfo], None]] = []
         self._node_listeners: list[Callable[[NodeInfo], None]] = []
+        self._watchers: dict[tuple[EndpointKind, str], list[Watcher]] = {}
+        self.unreported: dict[EndpointInfo, AbstractSet[str]] = {}
 
     def __repr__(self) -> str:
         return f"<Graph: {len(self._nodes)} nodes, {len(self._endpoints)} endpoints>"
@@ -213,6 +220,7 @@ class Graph:
         self.changes += 1  # before listeners query the graph
         for listener in self._listeners:
             listener(endpoint)
+        self._tell_watchers(endpoint, present=True)
         self._wake()
 
     def remove_endpoint(self, endpoint: EndpointInfo) -> None:
@@ -222,6 +230,8 @@ class Graph:
         del self._endpoints[endpoint]
         _take_out(self._by_name, (endpoint.kind, endpoint.name), endpoint)
         _take_out(self._by_node, endpoint.node, endpoint)
+        self.unreported.pop(endpoint, None)
+        self._tell_watchers(endpoint, present=False)
         self._wake()
 
     def remove_participant(self, participant: str) -> None:
@@ -238,6 +248,27 @@ class Graph:
     def on_node(self, listener: Callable[[NodeInfo], None]) -> None:
         """Call `listener` with each node added from now on."""
         self._node_listeners.append(listener)
+
+    def watch(self, kind: EndpointKind, name: str, watcher: Watcher) -> Callable[[], None]:
+        """Call `watcher` with each endpoint of `kind` and `name` that is known, appears or goes.
+
+        Its second argument says whether the endpoint is present. Returns a function that ends this.
+        """
+        watchers = self._watchers.setdefault((kind, name), [])
+        watchers.append(watcher)
+        for endpoint in self.endpoints(kind, name=name):
+            watcher(endpoint, True)
+
+        def unwatch() -> None:
+            watchers.remove(watcher)
+            if not watchers and self._watchers.get((kind, name)) is watchers:
+                del self._watchers[kind, name]
+
+        return unwatch
+
+    def _tell_watchers(self, endpoint: EndpointInfo, *, present: bool) -> None:
+        for watcher in tuple(self._watchers.get((endpoint.kind, endpoint.name), ())):
+            watcher(endpoint, present)
 
     def changed(self) -> asyncio.Future[None]:
         """Return a future that is done at the next change: a node or endpoint added or removed.

@@ -17,6 +17,7 @@ import httpx
 import pytest
 import uvicorn
 
+from aionode.examples.quality_of_service.incompatible_qos import POLICIES
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
 from examples.fastapi_app import make_app
@@ -31,7 +32,7 @@ ENDING = ["fibonacci", "overload", "pubsub", "service", "timers"]
 ENDLESS = sorted(
     path.name
     for path in (ROOT / "examples").glob("*.py")
-    if path.name not in {"call_service.py", "fastapi_app.py"}
+    if path.name not in {"call_service.py", "fastapi_app.py", "lifecycle_manager.py"}
 )
 STAMP = r"\[INFO\] \[\d+\.\d{9}\]"
 
@@ -153,6 +154,119 @@ def test_a_managed_node_fails_is_canceled_and_goes_up_and_down() -> None:
     assert "up:         the talker is active [3]" in text
     assert text.count("heard:") == 3
     assert "down:       the talker is unconfigured [1]" in text
+    assert program.process.returncode == 0
+
+
+def test_the_lifecycle_demo_of_ros_in_three_programs(domain: int) -> None:
+    """Talker, listener and manager: what is said while active, and each transition."""
+    with (
+        running("examples/lifecycle_talker.py", domain=domain) as talker,
+        running("examples/lifecycle_listener.py", domain=domain) as listener,
+    ):
+        listener.wait_until_running()
+        talker.wait_until_running()
+        manager = ("examples/lifecycle_manager.py", "--ros-args", "-p", "pause:=0.25")
+        with running(*manager, domain=domain) as program:
+            managed = program.rest()
+        status, said = talker.end_with(signal.SIGINT)
+        heard = listener.end_with(signal.SIGINT)[1]
+
+    assert program.process.returncode == status == 0
+    states = re.findall(r"has current state (\w+)\.", managed)
+    assert states == [
+        *("inactive", "active", "inactive", "active", "inactive", "unconfigured"),
+        *("inactive", "active", "finalized"),
+    ]
+    assert "As expected: /lc_talker: cannot activate" in managed
+    published = re.findall(r"Publishing: \[(.*)\]", said)
+    assert re.findall(r"data_callback: (.*)", heard) == published
+    assert len(published) >= 3
+    assert "Lifecycle publisher is inactive" in said
+    assert "on_shutdown() is called from state active." in said
+    goals = re.findall(r"Transition from state \w+ to (\w+)", heard)
+    assert len(goals) == 18
+    assert goals[:4] == ["configuring", "inactive", "activating", "active"]
+    assert goals[-2:] == ["shuttingdown", "finalized"]
+
+
+def test_a_pause_misses_the_deadline_at_both_ends() -> None:
+    """In the pause and not before."""
+    with running("-m", "aionode.examples.quality_of_service.deadline") as program:
+        text = program.rest()
+
+    before, _, after = text.partition("deadline missed")
+    assert "I heard: Talker says 2" in before
+    assert "Offered deadline missed 2 times" in after
+    assert "Requested deadline missed 2 times" in after
+    assert program.process.returncode == 0
+
+
+def test_a_late_subscription_gets_what_is_still_valid() -> None:
+    """The newest messages, and no older ones."""
+    with running("-m", "aionode.examples.quality_of_service.lifespan") as program:
+        text = program.rest()
+
+    heard = [int(number) for number in re.findall(r"I heard: Talker says (\d)", text)]
+    assert heard == list(range(heard[0], 8))
+    assert f"{len(heard)} were valid, {8 - len(heard)} had expired" in text
+    assert 0 < len(heard) < 8
+    assert program.process.returncode == 0
+
+
+def test_liveliness_is_lost_regained_and_ends() -> None:
+    """By topic; both ends learn of it."""
+    with running("-m", "aionode.examples.quality_of_service.liveliness") as program:
+        text = program.rest()
+
+    assert re.findall(r"listener: (.*)", text) == [
+        "alive 1 (+1), not alive 0 (+0)",
+        "alive 0 (-1), not alive 1 (+1)",
+        "alive 1 (+1), not alive 0 (-1)",
+        "alive 0 (-1), not alive 0 (+0)",
+    ]
+    assert "talker:   liveliness lost, 1 times so far" in text
+    assert program.process.returncode == 0
+
+
+def test_automatic_liveliness_lasts_until_the_end() -> None:
+    """The event loop asserts it."""
+    name = "aionode.examples.quality_of_service.liveliness"
+    with running("-m", name, "1500", "--policy", "automatic") as program:
+        text = program.rest()
+
+    assert re.findall(r"listener: (.*)", text) == [
+        "alive 1 (+1), not alive 0 (+0)",
+        "alive 0 (-1), not alive 0 (+0)",
+    ]
+    assert "lost" not in text
+
+
+@pytest.mark.parametrize("policy", POLICIES)
+def test_an_incompatible_policy_is_named_at_both_ends(policy: str) -> None:
+    """And no message is heard."""
+    with running("-m", "aionode.examples.quality_of_service.incompatible_qos", policy) as program:
+        text = program.rest()
+
+    named = policy.removesuffix("_policy").removesuffix("_lease_duration").upper()
+    assert f"A publisher offers less than is requested: {named}" in text
+    assert f"A subscription requests more than is offered: {named}" in text
+    assert "I heard" not in text
+    assert program.process.returncode == 0
+
+
+def test_lost_messages_are_all_told(domain: int) -> None:
+    """What was published is received or lost."""
+    name = "aionode.examples.quality_of_service.message_lost"
+    with running("-m", name, domain=domain) as program:
+        text = program.rest()
+
+    told = [int(count) for count in re.findall(r"lost: +(\d+) messages", text)]
+    published, received, lost = (
+        int(re.search(rf"^{word}: +(\d+)$", text, re.MULTILINE)[1])  # type: ignore[index]  # is there
+        for word in ("published", "received", "lost")
+    )
+    assert sum(told) == lost > 0
+    assert received + lost == published
     assert program.process.returncode == 0
 
 

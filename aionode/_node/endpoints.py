@@ -10,7 +10,6 @@ from aionode._node.parameters import NodeParameters
 from aionode.clock import Clock
 from aionode.endpoints._core.graph_entry import GraphEntry
 from aionode.endpoints._core.loop_affinity import in_loop_thread
-from aionode.endpoints._core.unenforced_qos import policies_without_effect
 from aionode.endpoints.client import Client
 from aionode.endpoints.publisher import Publisher
 from aionode.endpoints.service import Service
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from aionode.content_filter import ContentFilterOptions
     from aionode.endpoints._core.callback_runner import OnError
     from aionode.endpoints._core.entity import Entity
+    from aionode.endpoints.events import PublisherEventCallbacks, SubscriptionEventCallbacks
     from aionode.endpoints.service import ServiceCallback
     from aionode.endpoints.subscription import SubscriptionCallback
     from aionode.endpoints.timer import TimerCallback
@@ -38,6 +38,7 @@ __all__ = ["NodeEndpoints"]
 MsgT = TypeVar("MsgT", bound=Message)
 RequestT = TypeVar("RequestT", bound=Message)
 ResponseT = TypeVar("ResponseT", bound=Message)
+TopicT = TypeVar("TopicT", Publisher[Any], Subscription[Any])
 
 
 class NodeEndpoints(NodeParameters):
@@ -75,6 +76,7 @@ class NodeEndpoints(NodeParameters):
         topic: str,
         qos_profile: QoSProfile | int,
         *,
+        event_callbacks: PublisherEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
     ) -> Publisher[MsgT]:
         """Return a publisher of `msg_type`.
@@ -83,10 +85,11 @@ class NodeEndpoints(NodeParameters):
             msg_type: A message class.
             topic: Name of the topic; relative names are prefixed with the node's namespace.
             qos_profile: A profile, or a depth: the number of messages to keep.
+            event_callbacks: Called with its events; without them, see `Publisher.events`.
             qos_overriding_options: Which policies parameters may override.
 
         Raises:
-            TypeError: `msg_type` is not a message class, or `qos_profile` has the wrong type.
+            TypeError: `msg_type` is not a message class, or another argument has the wrong type.
             ValueError: `qos_profile` is a negative number.
             InvalidTopicNameException: `topic` is invalid (a ValueError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
@@ -96,12 +99,16 @@ class NodeEndpoints(NodeParameters):
         graph_entry = self._graph_entry(
             EndpointKind.PUBLISHER, topic, msg_type, qos_profile, qos_overriding_options
         )
-        writers = self._register(
-            lambda transport: transport.create_writer(graph_entry.endpoint, msg_type)
+        publisher = Publisher(
+            graph_entry,
+            msg_type,
+            lambda: self._register(
+                lambda transport: transport.create_writer(graph_entry.endpoint, msg_type)
+            ),
+            self.context.time_base,
+            event_callbacks,
         )
-        return self._add_entity(
-            Publisher(graph_entry, msg_type, writers, self.context.time_base), graph_entry
-        )
+        return self._add_with_events(publisher, graph_entry)
 
     @overload
     def create_subscription(
@@ -115,6 +122,7 @@ class NodeEndpoints(NodeParameters):
         raw: Literal[True],
         on_error: OnError = "raise",
         offload: bool = False,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         content_filter_options: ContentFilterOptions | None = None,
     ) -> Subscription[bytes]: ...
@@ -131,6 +139,7 @@ class NodeEndpoints(NodeParameters):
         raw: Literal[False] = False,
         on_error: OnError = "raise",
         offload: bool = False,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         content_filter_options: ContentFilterOptions | None = None,
     ) -> Subscription[MsgT]: ...
@@ -147,6 +156,7 @@ class NodeEndpoints(NodeParameters):
         raw: bool = False,
         on_error: OnError = "raise",
         offload: bool = False,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         content_filter_options: ContentFilterOptions | None = None,
     ) -> Subscription[Any]:
@@ -165,6 +175,7 @@ class NodeEndpoints(NodeParameters):
                 ``"log"`` logs and counts it, a function is called with (exception,
                 CallbackContext).
             offload: Whether to run a sync callback in a thread.
+            event_callbacks: Called with its events; without them, see `Subscription.events`.
             qos_overriding_options: Which policies parameters may override.
             content_filter_options: Which messages to deliver; see `set_content_filter`.
 
@@ -189,6 +200,7 @@ class NodeEndpoints(NodeParameters):
             raw=raw,
             on_error=on_error,
             offload=offload,
+            event_callbacks=event_callbacks,
         )
         if content_filter_options is not None:  # before messages can arrive
             subscription.set_content_filter(
@@ -202,7 +214,7 @@ class NodeEndpoints(NodeParameters):
                 )
             )
         )
-        return self._add_entity(subscription, graph_entry)
+        return self._add_with_events(subscription, graph_entry)
 
     @in_loop_thread
     def create_service(
@@ -406,6 +418,14 @@ class NodeEndpoints(NodeParameters):
         entity.destroy()
         return True
 
+    def _add_with_events(self, endpoint: TopicT, graph_entry: GraphEntry) -> TopicT:
+        """Own a publisher or subscription, and what calls its event callbacks."""
+        self._add_entity(endpoint, graph_entry)
+        handler = endpoint._monitor.handler
+        if handler is not None:
+            self._add_entity(handler)
+        return endpoint
+
     def _graph_entry(
         self,
         kind: EndpointKind,
@@ -425,8 +445,6 @@ class NodeEndpoints(NodeParameters):
                 "publisher" if kind is EndpointKind.PUBLISHER else "subscription"
             )
             profile = declare_qos_overrides(self, full_name, entity, profile, overriding)
-        if self._constructed:
-            self._warn_of_no_effect(kind, full_name, profile)
         others = [e.qos for e in self.graph.endpoints(kind.opposite, name=full_name)]
         if kind is EndpointKind.PUBLISHER:
             profile = qos.best_available_for_publisher(profile, others)
@@ -436,18 +454,6 @@ class NodeEndpoints(NodeParameters):
             kind, self._info, full_name, ros_type, profile.resolved()
         )
         return GraphEntry(endpoint, self.graph, self._callbacks, self._affinity)
-
-    def _warn_of_no_effect(self, kind: EndpointKind, name: str, profile: QoSProfile) -> None:
-        """Log, once for each endpoint, the QoS policies that have no effect."""
-        policies = policies_without_effect(profile, sends=kind is EndpointKind.PUBLISHER)
-        subject = f"{kind.value} of {name}"
-        if policies and subject not in self._warned_about:
-            self._warned_about.add(subject)
-            self._logger.warning(
-                f"{subject}: {', '.join(policies)}: announced to others and compared with theirs, "
-                "but without effect here: no event is raised and no message dropped because of "
-                "it; to detect silence, compare the time of the last message in a timer"
-            )
 
 
 def load_arrays(ros_type: Any) -> None:

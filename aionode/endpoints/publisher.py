@@ -7,6 +7,7 @@ from threading import get_ident
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from aionode.endpoints._core.entity import EndStage, Entity
+from aionode.endpoints._qos.publisher_monitor import PublisherMonitor, SignOfLife
 from aionode.endpoints.stats import PublisherStats
 from aionode.errors import EntityDestroyedError, MessageError, QueueFullError
 from aionode.graph import EndpointKind
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
     from aionode.clock import TimeBase
     from aionode.endpoints._core.graph_entry import GraphEntry
+    from aionode.endpoints.events import EventStream, PublisherEvent, PublisherEventCallbacks
     from aionode.qos import QoSProfile
     from aionode.transport.base import Writer
 
@@ -40,19 +42,24 @@ class Publisher(Entity, Generic[MsgT]):
         self,
         graph_entry: GraphEntry,
         msg_type: type[MsgT],
-        writers: Sequence[Writer],
+        make_writers: Callable[[], Sequence[Writer]],
         time_base: TimeBase,
+        event_callbacks: PublisherEventCallbacks | None = None,
     ) -> None:
         super().__init__(f"publisher of {graph_entry.endpoint.name}", EndStage.LAST)
         self.msg_type = msg_type
         self.qos_profile: QoSProfile = graph_entry.endpoint.qos
-        self.stats = PublisherStats(writers, graph_entry.matched)
         self._graph_entry = graph_entry
-        self._writers = tuple(writers)
         self._gid = graph_entry.endpoint.gid
         self._affinity = graph_entry.affinity
         self._check: Callable[[Any], None] = checker(msg_type)
         self._now_ns = time_base.system_ns
+        # Before anything is announced to others: it refuses callbacks that do not fit.
+        self._monitor = PublisherMonitor(graph_entry, time_base, event_callbacks)
+        writers = self._monitor.writers = self._writers = tuple(make_writers())
+        self.stats = PublisherStats(writers, graph_entry.matched)
+        if self._monitor.needs_signs:
+            self._writers += (SignOfLife(writers, self._check, self._monitor.note_message),)
 
     def __repr__(self) -> str:
         return (
@@ -89,7 +96,7 @@ class Publisher(Entity, Generic[MsgT]):
             EntityDestroyedError: the publisher or its node was destroyed (a RuntimeError).
         """
         thread = self._affinity.thread
-        if thread and thread != get_ident():
+        if thread and thread != get_ident() and self._affinity.is_other_thread():
             self._affinity.wait_for(self.publish, msg)
             return
         if self.destroyed:
@@ -123,6 +130,29 @@ class Publisher(Entity, Generic[MsgT]):
         self._check(msg)  # raises the TypeError; subclasses pass
         return msg
 
+    def assert_liveliness(self) -> None:
+        """Tell the subscriptions that the publisher is alive, without a message.
+
+        With liveliness MANUAL_BY_TOPIC it has to be called, or a message published, at least once
+        in every `liveliness_lease_duration`. It may be called from any thread, as `publish`.
+
+        Raises:
+            EntityDestroyedError: the publisher or its node was destroyed (a RuntimeError).
+        """
+        if self._affinity.is_other_thread():
+            self._affinity.wait_for(self.assert_liveliness)
+            return
+        self._refuse_if_destroyed("assert liveliness")
+        self._monitor.assert_liveliness()
+
+    @property
+    def events(self) -> EventStream[PublisherEvent]:
+        """The events of the publisher: ``async for event in publisher.events``.
+
+        It is the same stream each time; it begins with what has happened so far.
+        """
+        return self._monitor.events()
+
     async def drain(self) -> None:
         """Wait until every reliable KEEP_ALL reader has room and nothing is left to send.
 
@@ -140,8 +170,13 @@ class Publisher(Entity, Generic[MsgT]):
         """Wait until at least `count` subscriptions are matched, without a limit of its own."""
         await self._graph_entry.until(lambda: self.get_subscription_count() >= count)
 
+    def _run(self) -> None:
+        """Begin to watch deadline and liveliness; there is no work for a task."""
+        self._monitor.start()
+
     def _close(self) -> None:
         """Withdraw the publisher."""
+        self._monitor.close()
         self._graph_entry.close()
         for writer in self._writers:
             writer.close()

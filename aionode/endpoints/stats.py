@@ -127,11 +127,13 @@ def _middle_ns(bucket: int) -> int:
 class CallbackStats:
     """What became of the messages, requests or ticks of one entity.
 
-    Everything that arrived is in ``received``, ``dropped`` or ``filtered``, or still queued.
+    Everything that arrived is in ``received``, ``dropped``, ``expired`` or ``filtered``, or still
+    queued.
 
     Attributes:
         received: How many were handed to a callback or a reader.
         dropped: How many a full queue discarded, or were unread when the entity was destroyed.
+        expired: How many were older than their lifespan when they arrived, or when their turn came.
         errors: How many callbacks raised.
         filtered: How many arrived and did not pass the content filter.
         lost: How many are missing in the sequence numbers of publishers in other processes; not
@@ -147,6 +149,7 @@ class CallbackStats:
         "blocking",
         "dropped",
         "errors",
+        "expired",
         "filtered",
         "lost",
         "queue_wait",
@@ -157,6 +160,7 @@ class CallbackStats:
     def __init__(self) -> None:
         self.received = 0
         self.dropped = 0
+        self.expired = 0
         self.errors = 0
         self.filtered = 0
         self.lost = 0
@@ -187,8 +191,8 @@ class CallbackStats:
     def __repr__(self) -> str:
         return (
             f"CallbackStats(received={self.received}, dropped={self.dropped}, "
-            f"errors={self.errors}, lost={self.lost}, queue_wait={self.queue_wait}, "
-            f"run_time={self.run_time}, blocking={self.blocking})"
+            f"expired={self.expired}, errors={self.errors}, lost={self.lost}, "
+            f"queue_wait={self.queue_wait}, run_time={self.run_time}, blocking={self.blocking})"
         )
 
 

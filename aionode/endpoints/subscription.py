@@ -16,11 +16,12 @@ from aionode.endpoints._core.callback_runner import (
 )
 from aionode.endpoints._core.entity import Entity
 from aionode.endpoints._core.message_queue import MessageQueue
+from aionode.endpoints._qos.subscription_monitor import SubscriptionMonitor
 from aionode.endpoints.stats import CallbackStats
 from aionode.errors import DecodeError, EntityDestroyedError
 from aionode.graph import EndpointKind
 from aionode.message import Message
-from aionode.qos import HistoryPolicy, depth_of
+from aionode.qos import HistoryPolicy, depth_of, is_unlimited
 from aionode.transport.base import ReaderRegistration
 
 if TYPE_CHECKING:
@@ -29,6 +30,11 @@ if TYPE_CHECKING:
     from aionode.clock import TimeBase
     from aionode.endpoints._core.callback_runner import OnError
     from aionode.endpoints._core.graph_entry import GraphEntry
+    from aionode.endpoints.events import (
+        EventStream,
+        SubscriptionEvent,
+        SubscriptionEventCallbacks,
+    )
     from aionode.graph import EndpointInfo
     from aionode.qos import QoSProfile
     from aionode.transport.base import Registration, SampleInfo
@@ -84,6 +90,7 @@ class Subscription(Entity, Generic[ItemT]):
         raw: bool,
         on_error: OnError,
         offload: bool,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
     ) -> None:
         endpoint = graph_entry.endpoint
         super().__init__(f"subscription of {endpoint.name}")
@@ -107,6 +114,9 @@ class Subscription(Entity, Generic[ItemT]):
                 callback, self, self.stats, on_error=on_error, offload=offload
             )
         self._reader = _Reader(endpoint, self.stats, time_base, raw=raw, wants_info=wants == 2)
+        self._monitor = SubscriptionMonitor(graph_entry, self._reader, time_base, event_callbacks)
+        self._reader.note_alive = self._monitor.note_alive
+        self._reader.note_filtered = self._monitor.note_filtered
 
     def __repr__(self) -> str:
         return (
@@ -153,6 +163,10 @@ class Subscription(Entity, Generic[ItemT]):
             TypeError: a parameter is not a str.
             EntityDestroyedError: the subscription was destroyed (a RuntimeError).
         """
+        affinity = self._graph_entry.affinity
+        if affinity.is_other_thread():
+            affinity.wait_for(self.set_content_filter, filter_expression, expression_parameters)
+            return
         self._refuse_if_destroyed("set content filter")
         accepts = None
         if filter_expression:
@@ -167,6 +181,16 @@ class Subscription(Entity, Generic[ItemT]):
         """Return the content filter; its expression is empty if there is none."""
         given = self._content_filter
         return ContentFilterOptions(given.filter_expression, list(given.expression_parameters))
+
+    # Events
+
+    @property
+    def events(self) -> EventStream[SubscriptionEvent]:
+        """The events of the subscription: ``async for event in subscription.events``.
+
+        It is the same stream each time; it begins with what has happened so far.
+        """
+        return self._monitor.events()
 
     # Reading without a callback
 
@@ -219,12 +243,16 @@ class Subscription(Entity, Generic[ItemT]):
             self._announce_filter()
 
     def _announce_filter(self) -> None:
+        """Tell publishers of the filter, unless their messages are awaited as signs of life."""
+        if not is_unlimited(self.qos_profile.liveliness_lease_duration):
+            return
         for registration in self._registrations:
             if isinstance(registration, ReaderRegistration):
                 registration.set_content_filter(self._content_filter)
 
     def _run(self) -> Coroutine[Any, Any, None] | None:
         """Return the coroutine that calls the callback; None without a callback."""
+        self._monitor.start()
         if self._runner is None:
             return None
         receive = self._runner.receive
@@ -239,6 +267,7 @@ class Subscription(Entity, Generic[ItemT]):
 
     def _close(self) -> None:
         """Withdraw the subscription; unread messages can still be read, without a callback."""
+        self._monitor.close()
         self._graph_entry.close()
         for registration in self._registrations:
             registration.close()
@@ -269,6 +298,12 @@ class _Reader(MessageQueue[Any]):
         time_base: Where the arrival time in a `MessageInfo` comes from.
         raw: Whether messages come as CDR bytes.
         wants_info: Whether the items are pairs of a message and its `MessageInfo`.
+
+    Attributes:
+        note_alive: Takes the assertion of a publisher that it is alive.
+        note_filtered: Takes the publisher of a message that does not pass the content filter.
+        on_arrival: Called with each message; returns whether to deliver it. None for all.
+        on_lost: Called with the number of messages that are found missing; None for nothing.
     """
 
     __slots__ = (
@@ -278,6 +313,10 @@ class _Reader(MessageQueue[Any]):
         "_now_ns",
         "_reception_sequence",
         "endpoint",
+        "note_alive",
+        "note_filtered",
+        "on_arrival",
+        "on_lost",
         "raw",
         "wants_info",
     )
@@ -299,17 +338,20 @@ class _Reader(MessageQueue[Any]):
         self._now_ns = time_base.system_ns
         self._closed = False
         self._accepts: Callable[[Any], bool] | None = None  # the content filter
+        self.note_alive: Callable[[bytes], None]
+        self.note_filtered: Callable[[bytes], None]
+        self.on_arrival: Callable[[SampleInfo], bool] | None = None
+        self.on_lost: Callable[[int], None] | None = None
         # By gid, for publishers in other processes; the one heard last is last.
         self._last_sequences: dict[bytes, int] = {}
         self._reception_sequence = 0
 
     def deliver(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
         """Take one message from a transport; see `Reader` for `inline_deadline_ns`."""
-        if self._closed:
-            return
         if self._accepts is not None:
             if not self._accepts(msg):
                 self.stats.filtered += 1
+                self.note_filtered(sample_info.gid)
                 return
         elif sample_info.remote:
             # Moved to the end, so that the first has been silent for longest.
@@ -321,6 +363,8 @@ class _Reader(MessageQueue[Any]):
                 self._note_gap(gid, last, sequence)
             elif len(sequences) > REMEMBERED_PUBLISHERS:
                 del sequences[next(iter(sequences))]
+        if self.on_arrival is not None and not self.on_arrival(sample_info):
+            return
         item = (msg, self._info(sample_info)) if self.wants_info else msg
         if not (inline_deadline_ns and self.take_inline(item, inline_deadline_ns)):
             self.put(item)
@@ -345,6 +389,9 @@ class _Reader(MessageQueue[Any]):
     def close(self, *, discard: bool) -> None:
         """Take no more messages, wake all that wait, and drop unread messages if `discard`."""
         self._closed = True
+        self._accepts = None
+        self.on_arrival = refuse
+        self.on_lost = None
         if discard:
             self.discard()
         self.wake()
@@ -352,6 +399,8 @@ class _Reader(MessageQueue[Any]):
     def _note_gap(self, gid: bytes, last: int, sequence: int) -> None:
         if sequence > last:
             self.stats.lost += sequence - last - 1
+            if self.on_lost is not None:
+                self.on_lost(sequence - last - 1)
         else:  # an old one again
             self._last_sequences[gid] = last
 
@@ -364,3 +413,8 @@ class _Reader(MessageQueue[Any]):
             reception_sequence_number=self._reception_sequence,
             publisher_gid=sample_info.gid,
         )
+
+
+def refuse(sample_info: SampleInfo) -> bool:  # noqa: ARG001  # as `on_arrival`
+    """Deliver nothing: the subscription is closed."""
+    return False

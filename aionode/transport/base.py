@@ -88,6 +88,9 @@ class Reader(Protocol):
                 0 means that none may: the caller is itself in a callback or in `publish`.
         """
 
+    def note_alive(self, gid: bytes) -> None:
+        """Take the assertion of a publisher that it is alive. Never raises."""
+
     def reject(self, error: DecodeError) -> None:
         """Count a sample that is no message of this type. Never raises."""
 
@@ -141,6 +144,9 @@ class Writer(Registration):
 
     async def drain(self) -> None:
         """Wait until `has_room`, and what was written has been handed on."""
+
+    def assert_liveliness(self) -> None:
+        """Tell the readers that the publisher is alive, without a message."""
 
     # For statistics; not asked for each message.
 

@@ -200,6 +200,11 @@ class LocalWriter(Writer):
         """Whether every reliable KEEP_ALL reader can take one more message."""
         return all(reader.reader.has_room() for reader in self._matched if reader.bounded)
 
+    def assert_liveliness(self) -> None:
+        """Tell every reader."""
+        for reader in self._matched:
+            reader.reader.note_alive(self.endpoint.gid)
+
     async def drain(self) -> None:
         """Wait until `has_room`."""
         while not self.has_room():

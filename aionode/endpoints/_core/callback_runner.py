@@ -411,9 +411,9 @@ async def _consume_in_order(
     *,
     inline: bool,
 ) -> None:
-    queue = message_queue.items  # `len(message_queue)` is one more call for each item
     while True:
         await (message_queue.wait_inline(handle) if inline else message_queue.wait())
+        queue = message_queue.items  # `len(message_queue)` is one more call for each item
         turn_ends_ns = perf_ns() + SLICE_NS
         while queue:
             rest = handle(*message_queue.pop())

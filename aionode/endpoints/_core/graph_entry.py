@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from collections.abc import Set as AbstractSet
 
     from aionode.endpoints._core.callback_runner import Callbacks
     from aionode.endpoints._core.loop_affinity import LoopAffinity
@@ -34,9 +35,26 @@ class GraphEntry:
         # What `until` waits for: changes of the graph, each until it is done.
         self._waits: set[asyncio.Future[None]] = set()
         self._closed = False
+        self._unwatch: list[Callable[[], None]] = []
+        self._unreported: AbstractSet[str] = frozenset()
+
+    def leave_unreported(self, aspects: AbstractSet[str]) -> None:
+        """Have no warning logged for these mismatches, as a `Mismatch` calls them."""
+        self._unreported = aspects
+
+    def watch(self, watcher: Callable[[EndpointInfo, bool], None]) -> None:
+        """Call `watcher` with each opposite endpoint of its name, and whether it is present.
+
+        Until the entry is closed; what is known already comes at once.
+        """
+        if not self._closed:
+            opposite = self.endpoint.kind.opposite
+            self._unwatch.append(self._graph.watch(opposite, self.endpoint.name, watcher))
 
     def open(self) -> None:
         """Add the endpoint to the graph. Called once it is announced to the transports."""
+        if self._unreported:
+            self._graph.unreported[self.endpoint] = self._unreported
         self._graph.add_endpoint(self.endpoint)
 
     def close(self) -> None:
@@ -44,6 +62,9 @@ class GraphEntry:
         self._closed = True
         for wait in list(self._waits):  # first, since the change below wakes them
             wait.cancel(f"{self.endpoint.kind.value} of {self.endpoint.name}: destroyed")
+        for unwatch in self._unwatch:
+            unwatch()
+        self._unwatch.clear()
         self._graph.remove_endpoint(self.endpoint)
 
     def matched(self) -> list[EndpointInfo]:

@@ -36,7 +36,8 @@ class MessageQueue(InlineCall, Generic[T]):
         depth: How many items it holds at most.
         keep_all: Whether it refuses the newest item when full.
         stats: Where dropped items are counted.
-        items: What is queued, with the `perf_ns` of its arrival. Read only.
+        items: What is queued, with the `perf_ns` of its arrival. Read only, but for a subscription
+            that drops messages when they expire: it puts a deque there that does.
     """
 
     __slots__ = (
@@ -124,6 +125,10 @@ class MessageQueue(InlineCall, Generic[T]):
         self.stats.dropped += len(unread)
         self.items.clear()
         return unread
+
+    def wake_writers(self) -> None:
+        """Wake what waits for room: some items were dropped."""
+        _wake(self._writers)
 
     def wake(self) -> None:
         """Wake all readers and writers: the entity is being destroyed."""

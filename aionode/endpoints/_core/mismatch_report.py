@@ -32,6 +32,9 @@ class MismatchReport:
             own, other = (known, new) if self._is_own(known) else (new, known)
             if not self._is_own(own):
                 continue
+            found = own.compare(other)
+            if found is not None and found.aspect in self._graph.unreported.get(own, ()):
+                continue
             text = mismatch_text(own, other)
             if text is not None:
                 get_logger(logger_name(own.node.namespace, own.node.name)).warning(text)

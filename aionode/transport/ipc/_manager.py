@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections import defaultdict
 from itertools import chain
 from typing import TYPE_CHECKING, Final
 
@@ -33,7 +32,7 @@ from aionode.transport.ipc._protocol import (
 from aionode.transport.ipc._publisher import IpcWriter
 from aionode.transport.ipc._service import REPLY, IpcRequester, IpcServer, server_of
 from aionode.transport.ipc._shared_memory import BufferPool
-from aionode.transport.ipc._subscription import IpcReader
+from aionode.transport.ipc._subscription import IpcReader, heard_from
 
 if TYPE_CHECKING:
     import socket
@@ -44,7 +43,6 @@ if TYPE_CHECKING:
     from aionode.transport.ipc._protocol import Control, Frame
     from aionode.transport.ipc._registry import PeerDirectory
     from aionode.transport.ipc._send_queue import IpcSendQueue
-    from aionode.transport.ipc._subscription import RemotePublisher
     from aionode.wire.cdr import Data
 
 __all__ = ["LinkManager"]
@@ -81,8 +79,7 @@ RETRANSMIT_BYTES: Final = 1 << 20
 class LinkManager:
     """The links of one context: the `LinkRegistry` of its endpoints, and the owner of connections.
 
-    Of two contexts the one with the smaller id dials, as soon as they have matching endpoints;
-    both see the same graph, so both know which.
+    Of two contexts with matching endpoints, the one with the smaller id dials; both know which.
 
     Args:
         participant: Id of the context.
@@ -92,7 +89,7 @@ class LinkManager:
     Attributes:
         content_filters: What subscriptions of other contexts want.
         pool: Shared memory for large payloads.
-        now_ns: Returns the system time, in nanoseconds since 1970.
+        now_ns: Returns the time of the context, in nanoseconds since 1970.
         writers: The publishers that may use links.
         readers: The subscriptions.
         servers: The servers, by gid.
@@ -110,7 +107,6 @@ class LinkManager:
         self.requesters: dict[bytes, IpcRequester] = {}
         self._peer_directory = peer_directory
         self.content_filters = peer_directory.content_filters
-        self.content_filters.on_change.append(self._refilter)
         self._hello = Hello(participant, VERSION, domain_id)
         self._domain_id = domain_id
         self._graph: Graph | None = None
@@ -134,10 +130,6 @@ class LinkManager:
         self._timers: set[asyncio.TimerHandle] = set()  # of `later`, until they have run
         self._link_changes = 0
         self._malformed = 0  # retransmitted batches that could not be read
-
-    def _refilter(self) -> None:
-        for writer in self.writers.values():
-            writer.update_filters()
 
     # Lifetime
 
@@ -568,7 +560,7 @@ class LinkManager:
                 )
             return
         self._read_until_eof(sender)
-        heard = self._heard_from(sender)
+        heard = heard_from(self.readers.values(), sender)
         for frame in frames:
             if frame.kind == Kind.RETRANSMIT_DONE:
                 for remote_publisher in chain.from_iterable(heard.values()):
@@ -576,15 +568,6 @@ class LinkManager:
             elif frame.kind == Kind.DATA:
                 for remote_publisher in heard.get(frame.gid, ()):
                     remote_publisher.from_retransmit(frame.payload, frame)
-
-    def _heard_from(self, participant: str) -> dict[bytes, list[RemotePublisher]]:
-        """Return what subscriptions keep about the publishers of a context, by their gids."""
-        heard: dict[bytes, list[RemotePublisher]] = defaultdict(list)
-        for reader in self.readers.values():
-            for remote_publisher in reader.remote_publishers.values():
-                if remote_publisher.participant == participant:
-                    heard[remote_publisher.publisher].append(remote_publisher)
-        return heard
 
 
 async def flush(connection: Connection) -> None:

@@ -159,6 +159,10 @@ class IpcWriter(Writer):
         if buffer is not None:
             pool.release(buffer)
 
+    def assert_liveliness(self) -> None:
+        """Tell the subscriptions of other contexts: over Zenoh, which reaches all of them."""
+        self._zenoh.assert_liveliness()
+
     def has_room(self) -> bool:
         """Whether one more message could be sent without dropping any."""
         return all(send_queue.has_room() for send_queue in self._send_queues.values()) and (

@@ -16,6 +16,7 @@ from aionode.transport.ipc._service import IpcRequester, IpcServer
 from aionode.transport.ipc._subscription import IpcReader, may_be_large
 
 if TYPE_CHECKING:
+    from aionode.clock import TimeBase
     from aionode.graph import EndpointInfo, Graph, NodeInfo
     from aionode.transport.base import (
         LinkStatus,
@@ -40,14 +41,23 @@ class IpcTransport(Transport):
         domain_id: The ROS domain.
         zenoh: The other transport.
         peer_directory: What the other transport knows about other contexts.
+        time_base: The time of the context; by default that of the machine.
     """
 
     def __init__(
-        self, participant: str, domain_id: int, zenoh: Transport, peer_directory: PeerDirectory
+        self,
+        participant: str,
+        domain_id: int,
+        zenoh: Transport,
+        peer_directory: PeerDirectory,
+        time_base: TimeBase | None = None,
     ) -> None:
         self.zenoh = zenoh
         self.manager = LinkManager(participant, domain_id, peer_directory)
+        if time_base is not None:
+            self.manager.now_ns = time_base.system_ns
         self._peer_directory = peer_directory
+        peer_directory.content_filters.on_change.append(self._refilter)
         self._graph: Graph | None = None
 
     def __repr__(self) -> str:
@@ -57,6 +67,10 @@ class IpcTransport(Transport):
     def other_domains(self) -> frozenset[int]:
         """Other domains whose nodes can be reached; they do not hear nodes of this domain."""
         return frozenset(getattr(self.zenoh, "other_domains", ()))
+
+    def _refilter(self) -> None:
+        for writer in self.manager.writers.values():
+            writer.update_filters()
 
     async def open(self, graph: Graph) -> None:
         """Connect; without a folder for sockets, or descriptors, over the other transport only."""

@@ -14,7 +14,7 @@ from zenoh import ext
 from aionode.clock import perf_ns
 from aionode.errors import TransportError
 from aionode.graph import EndpointKind
-from aionode.qos import depth_of, keeps_all
+from aionode.qos import depth_of, is_unlimited, keeps_all
 from aionode.transport._reliability import WriterHistory
 from aionode.transport._send_thread import SendQueue, SendThread
 from aionode.transport.base import Writer
@@ -25,9 +25,11 @@ from aionode.transport.zenoh._delivery import (
     FLUSH_NS,
     GIVEN_UP_NS,
     STILL_NS,
+    acknowledging,
     has_buffers,
     is_reliable,
     is_transient,
+    withdraw,
 )
 from aionode.transport.zenoh._handlers import (
     BULK_PRIORITY,
@@ -89,6 +91,8 @@ class ZenohWriter(Declaration, Writer):
         self._transient = is_transient(qos)
         self._depth = depth_of(qos)
         self._reliable = is_reliable(qos)
+        lifespan = qos.lifespan
+        self._lifespan_ns = 0 if is_unlimited(lifespan) else lifespan.nanoseconds
         # Messages for late readers that were published before the session is open.
         self._early: deque[tuple[bytes, bytes]] = deque(maxlen=self._depth)
         self.active = self._transient
@@ -240,7 +244,7 @@ class ZenohWriter(Declaration, Writer):
         self._update()
 
     def _update(self) -> None:
-        """Update `active`, the filter and the history from the matching readers."""
+        """Update `active`, the history and the filter from the matching readers."""
         history, graph = self._history, self.state.graph
         if self._transient:
             if self._encode is None:
@@ -250,12 +254,12 @@ class ZenohWriter(Declaration, Writer):
         self._wants = None
         if graph is not None and self._publisher is not None:
             readers = self._matched(graph)
-            self._wants = self._filter_of(readers)
             # The token of a reader can arrive before Zenoh has told of a match, or has a route to
             # it; what is lost until then is sent again.
             self.active = self._is_matching or bool(readers)
             if history is not None:
                 self._update_readers(history, readers)
+            self._wants = self._filter_of(readers)
         if self.active and self._encode is None:
             self._encode = cdr.encoder(self._msg_type)
 
@@ -272,16 +276,20 @@ class ZenohWriter(Declaration, Writer):
         filters = self.state.content_filters
         if not filters or self.state.has_unannounced_peers:
             return None
-        return filters.wanted_by([reader.gid for reader in readers], self._msg_type)
+        gids = {reader.gid for reader in readers}
+        if self._history is not None:
+            gids.update(self._history.readers)  # also those that are away, and may return
+        return filters.wanted_by(gids, self._msg_type)
 
     def _update_readers(self, history: WriterHistory, readers: list[EndpointInfo]) -> None:
         """Add new and returned readers to the history, and remove those that have vanished."""
-        acknowledging, others = self._acknowledging(readers)
+        able = self.state.acknowledgements.participants
+        found, others = acknowledging(readers, able)
         for gid, known in list(history.readers.items()):
-            if gid not in acknowledging and not known.away_until_ns:
+            if gid not in found and not known.away_until_ns:
                 history.remove(gid)
         if not self._closed:
-            for gid, participant in acknowledging.items():
+            for gid, participant in found.items():
                 reader = history.readers.get(gid)
                 if reader is None or reader.away_until_ns:
                     history.add(gid, participant)
@@ -293,22 +301,6 @@ class ZenohWriter(Declaration, Writer):
         self.active = self.active or bool(history.readers)
         history.has_other_readers = others or not history.readers
         self._update_route()
-
-    def _acknowledging(self, readers: list[EndpointInfo]) -> tuple[dict[bytes, str], bool]:
-        """Return the acknowledging readers, and whether others must not lose messages."""
-        able = self.state.acknowledgements.participants
-        acknowledging: dict[bytes, str] = {}
-        others = False
-        for reader in readers:
-            participant = reader.node.participant
-            if participant not in able:
-                others = True
-            elif is_reliable(reader.qos):
-                if is_transient(reader.qos):
-                    others = True
-                else:
-                    acknowledging[reader.gid] = participant
-        return acknowledging, others
 
     # Messages
 
@@ -364,7 +356,9 @@ class ZenohWriter(Declaration, Writer):
             self._put_patiently(publisher, payload, extra)
         elif size >= BULK_BYTES or self._bulk_only or self._is_large_used:
             self._is_large_used = True
-            self._large.put(lambda: self._send(publisher, payload, extra))
+            self._large.put(
+                self._unless_expired(extra, partial(self._send, publisher, payload, extra))
+            )
         else:
             try:
                 publisher.put(payload, attachment=extra)
@@ -401,7 +395,24 @@ class ZenohWriter(Declaration, Writer):
                     allowed_destination=zenoh.Locality.REMOTE,
                 )
         patient = self._patient_publisher or publisher
-        self._patient.put(lambda: self._send_patiently(patient, payload, extra))
+        send = partial(self._send_patiently, patient, payload, extra)
+        self._patient.put(self._unless_expired(extra, send))
+
+    def _unless_expired(self, extra: bytes, send: Callable[[], None]) -> Callable[[], None]:
+        """Return `send`, or with a lifespan what does nothing if the message expires before it.
+
+        Only readers of aionode look at the age of what arrives.
+        """
+        fields = attachment.unpack_fields(extra)
+        if not self._lifespan_ns or fields is None:
+            return send
+        expires_ns = fields[1] + self._lifespan_ns
+
+        def send_if_fresh() -> None:
+            if self.state.now_ns() < expires_ns:
+                send()
+
+        return send_if_fresh
 
     def _send_patiently(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
@@ -434,6 +445,10 @@ class ZenohWriter(Declaration, Writer):
                 )
         except zenoh.ZError as error:
             logger.debug("%s: not sent: %s", self._key, reason(error))
+
+    def assert_liveliness(self) -> None:
+        """Tell the subscriptions of other contexts."""
+        self.state.assertions.send(self.gid)
 
     def has_room(self) -> bool:
         """Return whether one more message can wait to be sent."""
@@ -583,11 +598,3 @@ class ZenohWriter(Declaration, Writer):
             updates.remove(self._update)
             if not updates:
                 del self.state.on_reader[self.endpoint.name]
-
-
-def withdraw(publisher: zenoh.Publisher | ext.AdvancedPublisher) -> None:
-    """Undeclare a publisher, unless its session has been closed already."""
-    try:
-        publisher.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
-    except zenoh.ZError as error:
-        logger.debug("%s: not undeclared: %s", publisher.key_expr, error)

@@ -18,6 +18,7 @@ from aionode.transport._loop_waker import LoopWaker, ThreadsafeQueue
 from aionode.transport._send_thread import SendThread
 from aionode.transport.base import Registration
 from aionode.transport.zenoh._acknowledgements import Acknowledgements
+from aionode.transport.zenoh._assertions import Assertions
 from aionode.transport.zenoh._cancellations import Cancellations
 from aionode.transport.zenoh._handlers import translated
 from aionode.transport.zenoh._peer_senders import PeerSenders
@@ -25,6 +26,7 @@ from aionode.transport.zenoh._sockets import look
 from aionode.wire._liveliness import gid_of
 
 if TYPE_CHECKING:
+    from aionode.clock import TimeBase
     from aionode.graph import Graph
 
 __all__ = ["FLUSH_S", "Declaration", "SessionState"]
@@ -69,13 +71,14 @@ class SessionState:
         malformed: How many malformed samples came on each key.
         own_gids: The gids of this context's publishers, lingering ones included.
         cancellations: The requests that clients have given up.
-        now_ns: The system clock, in nanoseconds since 1970.
+        assertions: The liveliness that publishers assert.
+        now_ns: Returns the time of the context, in nanoseconds since 1970.
         content_filters: What subscriptions of other contexts want.
         has_unannounced_peers: Whether there may be subscriptions that nothing announces.
         on_reader: Called when a remote subscription appears or vanishes, by topic.
     """
 
-    def __init__(self, participant: str, domain_id: int) -> None:
+    def __init__(self, participant: str, domain_id: int, time_base: TimeBase | None = None) -> None:
         self.participant = participant
         self.domain_id = domain_id
         self.session: zenoh.Session | None = None
@@ -92,13 +95,15 @@ class SessionState:
         self.malformed: Counter[str] = Counter()
         self.own_gids: set[bytes] = set()
         self.cancellations = Cancellations(participant, domain_id, self.waker, self.note_malformed)
-        self.now_ns = MachineTime().system_ns
+        self.assertions = Assertions(participant, domain_id, self.waker, self.note_malformed)
+        self.now_ns = (MachineTime() if time_base is None else time_base).system_ns
         self.on_reader: dict[str, list[Callable[[], None]]] = {}
         self.content_filters = ContentFilters()
         self.content_filters.on_change.append(self._readers_changed)
         self.has_unannounced_peers = True  # until the other sessions are known
         self._lingered: asyncio.Future[None] | None = None
         self._declarations: dict[Declaration, None] = {}
+        self._graph_is_known = False
 
     def queue(self, handle: Callable[[T], None], limit: int | None = None) -> ThreadsafeQueue[T]:
         """Return a queue from Zenoh's threads to `handle`, which is called on the event loop."""
@@ -107,7 +112,7 @@ class SessionState:
     def add(self, declaration: Declaration) -> None:
         """Declare `declaration` now, or as soon as the session is open."""
         self._declarations[declaration] = None
-        if self.session is not None:
+        if self.session is not None and (self._graph_is_known or not declaration.needs_graph):
             declaration.declare(self.session)
 
     def remove(self, declaration: Declaration) -> None:
@@ -115,13 +120,22 @@ class SessionState:
         self._declarations.pop(declaration, None)
 
     def connect(self, session: zenoh.Session, graph: Graph) -> None:
-        """Declare everything in `session`."""
+        """Declare everything in `session` that does not need to know its peers."""
         self.session = session
         self.graph = graph
         self.acknowledgements.start(session)
         self.cancellations.start(session)
+        self.assertions.start(session)
         for declaration in list(self._declarations):
-            declaration.declare(session)
+            if not declaration.needs_graph:
+                declaration.declare(session)
+
+    def graph_is_known(self) -> None:
+        """Declare what needs the graph: by now, it has the endpoints of all connected peers."""
+        self._graph_is_known = True
+        for declaration in list(self._declarations):
+            if declaration.needs_graph and self.session is not None:
+                declaration.declare(self.session)
 
     def _look(self, participant: str) -> tuple[bool, int] | None:
         """Return the state of the connection to a participant, as `look`; called in a thread."""
@@ -162,6 +176,7 @@ class SessionState:
     def disconnect(self) -> zenoh.Session | None:
         """Undeclare everything, the newest first; return the session, which the caller closes."""
         session, self.session = self.session, None
+        self._graph_is_known = False
         if session is not None:
             for declaration in reversed(self._declarations):
                 declaration.undeclare()
@@ -169,6 +184,7 @@ class SessionState:
                 publisher.finish()
         self.peer_senders.clear()
         self.cancellations.stop()
+        self.assertions.stop()
         self.acknowledgements.stop()
         self.graph = None
         return session
@@ -223,7 +239,12 @@ class Declaration(Registration):
     Args:
         state: The state of the session.
         token: Its liveliness token; an empty one hides it from other contexts.
+
+    Attributes:
+        needs_graph: Whether it is declared only when the endpoints of connected peers are known.
     """
+
+    needs_graph = False
 
     def __init__(self, state: SessionState, token: str) -> None:
         self.state = state

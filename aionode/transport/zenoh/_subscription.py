@@ -12,7 +12,7 @@ from zenoh import ext
 from aionode.clock import perf_ns
 from aionode.errors import DecodeError
 from aionode.graph import EndpointKind
-from aionode.qos import depth_of, keeps_all
+from aionode.qos import depth_of, is_unlimited, keeps_all
 from aionode.transport._content_filters import filter_token, text_of_filter
 from aionode.transport._reliability import NEVER, OVERHEAD_BYTES
 from aionode.transport._writer_proxy import WriterProxy
@@ -85,6 +85,8 @@ class ZenohReader(Declaration, ReaderRegistration):
         self.endpoint = endpoint
         self._key = data_key(state.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
         self._transient = transient
+        # The history comes at once, and how long a message is valid is in its publisher's token.
+        self.needs_graph = transient
         self._reader = reader
         self._deliver = reader.deliver
         self._waker = state.waker
@@ -112,6 +114,9 @@ class ZenohReader(Declaration, ReaderRegistration):
         self._filter_text = ""  # of the content filter, if it is announced
         self._filter_token: zenoh.LivelinessToken | None = None
         self._subscribers: list[zenoh.Subscriber[None] | ext.AdvancedSubscriber[None]] = []
+        self._has_lease = not is_unlimited(endpoint.qos.liveliness_lease_duration)
+        if self._has_lease:
+            state.assertions.listen(reader.note_alive)
         self._acknowledges = reliable and not transient and visible
         if self._acknowledges:
             state.acknowledgements.readers[self.gid] = self
@@ -174,6 +179,8 @@ class ZenohReader(Declaration, ReaderRegistration):
     def close(self) -> None:
         """Undeclare the subscription for good."""
         self.state.acknowledgements.readers.pop(self.gid, None)
+        if self._has_lease:
+            self.state.assertions.unlisten(self._reader.note_alive)
         super().close()
 
     def _take(self, sample: zenoh.Sample) -> None:

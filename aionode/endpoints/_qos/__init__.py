@@ -1,0 +1,1 @@
+"""Deadline, lifespan and liveliness kept, and the events of publishers and subscriptions."""

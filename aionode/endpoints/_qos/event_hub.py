@@ -1,0 +1,171 @@
+"""Where the events of one endpoint go: to its callbacks, and to its stream."""
+
+from __future__ import annotations
+
+import dataclasses
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from aionode.endpoints._core.callback_runner import accepts, consume
+from aionode.endpoints._core.entity import Entity
+from aionode.endpoints._core.message_queue import MessageQueue
+from aionode.endpoints.events import EVENTS_KEPT, EventStream
+from aionode.endpoints.stats import CallbackStats
+from aionode.errors import brief
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Coroutine, Mapping
+
+    from aionode.endpoints._core.callback_runner import Callbacks
+    from aionode.endpoints._core.graph_entry import GraphEntry
+    from aionode.endpoints.events import PublisherEventCallbacks, SubscriptionEventCallbacks
+
+__all__ = ["EventHandler", "EventHub"]
+
+
+class EventHandler(Entity):
+    """Calls the event callbacks of one endpoint, one at a time.
+
+    Args:
+        subject: The endpoint, for errors and reports.
+        event_callbacks: The functions, by the name of their event.
+        callbacks: How the node runs callbacks.
+
+    Raises:
+        CallbackSignatureError: a function takes another number of arguments (a TypeError).
+    """
+
+    def __init__(
+        self,
+        subject: str,
+        event_callbacks: Mapping[str, Callable[[Any], object]],
+        callbacks: Callbacks,
+    ) -> None:
+        super().__init__(f"events of the {subject}")
+        self._stats = CallbackStats()
+        self._queue: MessageQueue[tuple[str, Any]] = MessageQueue(EVENTS_KEPT, self._stats)
+        for name, callback in event_callbacks.items():
+            accepts(callback, 1, subject=f"{subject}, event callback {name}", wanted="(event)")
+        self._runners = {
+            name: callbacks.make_runner(
+                callback, self, self._stats, on_error="raise", offload=False
+            )
+            for name, callback in event_callbacks.items()
+        }
+
+    def calls(self, name: str) -> bool:
+        """Return whether a callback was given for the events called `name`."""
+        return name in self._runners
+
+    def put(self, name: str, event: object) -> None:
+        """Have the callback called, if there is one for this event."""
+        if name in self._runners and not self.destroyed:
+            self._queue.put((name, event))
+
+    def _run(self) -> Coroutine[Any, Any, None]:
+        return consume(self._queue, self._handle, concurrent=False)
+
+    def _handle(self, entered_ns: int, item: tuple[str, Any]) -> Coroutine[Any, Any, None] | None:
+        name, event = item
+        return self._runners[name].receive(entered_ns, event)
+
+    def _close(self) -> None:
+        self._queue.discard()
+        self._queue.wake()
+
+
+class EventHub:
+    """Hands the events of one endpoint on, and remembers the newest of each kind.
+
+    Args:
+        graph_entry: The endpoint.
+        event_callbacks: What the program gave for its events.
+        wanted: The class of that.
+
+    Attributes:
+        handler: Calls the callbacks; None without any.
+
+    Raises:
+        TypeError: `event_callbacks` is of another class, or a function in it takes other arguments.
+    """
+
+    def __init__(
+        self,
+        graph_entry: GraphEntry,
+        event_callbacks: PublisherEventCallbacks | SubscriptionEventCallbacks | None,
+        wanted: type[PublisherEventCallbacks | SubscriptionEventCallbacks],
+    ) -> None:
+        self.handler: EventHandler | None = None
+        self._stream: EventStream[Any] | None = None
+        self._newest: dict[str, Any] = {}
+        self._ended = False
+        if event_callbacks is None:
+            return
+        endpoint = graph_entry.endpoint
+        subject = f"{endpoint.kind.value} of {endpoint.name}"
+        if not isinstance(event_callbacks, wanted):
+            raise TypeError(
+                f"{subject}: event_callbacks is {brief(event_callbacks)}; give a "
+                f"{wanted.__name__}, such as {wanted.__name__}(matched=print)"
+            )
+        given = {
+            name: callback
+            for name, callback in vars(event_callbacks).items()
+            if callback is not None and name != "use_default_callbacks"
+        }
+        if given:
+            self.handler = EventHandler(subject, given, graph_entry.callbacks)
+        silent = not event_callbacks.use_default_callbacks
+        handled = {"qos"} if silent or "incompatible_qos" in given else set()
+        if silent or "incompatible_type" in given:
+            handled.update(("type", "definition"))
+        graph_entry.leave_unreported(handled)
+
+    def calls(self, name: str) -> bool:
+        """Return whether a callback was given for the events called `name`."""
+        return self.handler is not None and self.handler.calls(name)
+
+    @property
+    def has_listeners(self) -> bool:
+        """Whether the program gets events in either form."""
+        return self.handler is not None or self._stream is not None
+
+    def emitter(self, name: str) -> Callable[[Any], None]:
+        """Return the function that takes the events called `name`."""
+        return partial(self.emit, name)
+
+    def emit(self, name: str, event: Any) -> None:
+        """Hand an event on; it replaces the newest of its name."""
+        self._newest[name] = event
+        if self.handler is not None:
+            self.handler.put(name, event)
+        if self._stream is not None:
+            self._stream._put(event)
+
+    def stream(self) -> EventStream[Any]:
+        """Return the stream; a new one begins with what has happened so far."""
+        if self._stream is None:
+            self._stream = EventStream()
+            for event in self._newest.values():
+                self._stream._put(since_creation(event))
+            if self._ended:
+                self._stream._end()
+        return self._stream
+
+    def close(self) -> None:
+        """End the callbacks and the stream."""
+        self._ended = True
+        if self.handler is not None:
+            self.handler.destroy()
+        if self._stream is not None:
+            self._stream._end()
+
+
+def since_creation(event: Any) -> Any:
+    """Return an event with each change replaced by the count that it is a change of."""
+    changes = {
+        field.name: getattr(event, field.name.removesuffix("_change"))
+        for field in dataclasses.fields(event)
+        if field.name.endswith("_change")
+    }
+    return dataclasses.replace(event, **changes)

@@ -1,0 +1,246 @@
+"""What a subscription has requested: deadline, lifespan, and liveliness of its publishers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+from aionode.endpoints._qos.event_hub import EventHub
+from aionode.endpoints._qos.lifespan import NEVER_NS, ExpiringItems
+from aionode.endpoints._qos.liveliness import PublisherLiveliness
+from aionode.endpoints._qos.matching import Matching
+from aionode.endpoints._qos.silence import SilenceAlarm
+from aionode.endpoints.events import (
+    QoSMessageLostInfo,
+    QoSRequestedDeadlineMissedInfo,
+    SubscriptionEventCallbacks,
+)
+from aionode.qos import is_unlimited
+
+if TYPE_CHECKING:
+    from collections import deque
+    from collections.abc import Callable
+
+    from aionode.clock import Duration, TimeBase
+    from aionode.clock._time_base import Alarm
+    from aionode.endpoints._core.graph_entry import GraphEntry
+    from aionode.endpoints._qos.event_hub import EventHandler
+    from aionode.endpoints.events import EventStream
+    from aionode.endpoints.stats import CallbackStats
+    from aionode.graph import EndpointInfo
+    from aionode.transport.base import SampleInfo
+
+__all__ = ["MonitoredReader", "SubscriptionMonitor"]
+
+REMEMBERED_LIFESPANS = 1024
+"""Of how many publishers a subscription remembers the lifespan."""
+
+
+class MonitoredReader(Protocol):
+    """The queue of a subscription, as its monitor uses it."""
+
+    stats: CallbackStats
+    items: deque[tuple[int, Any]]
+    keep_all: bool
+    on_arrival: Callable[[SampleInfo], bool] | None
+    on_lost: Callable[[int], None] | None
+
+    def wake_writers(self) -> None:
+        """Wake what waits for room."""
+
+
+class SubscriptionMonitor:
+    """Watches the publishers and messages of one subscription, and tells of its events.
+
+    It puts itself into the way of messages only if a policy needs that: the subscription's own
+    deadline, lease or lifespan, or the lifespan of a publisher.
+
+    Args:
+        graph_entry: The subscription.
+        reader: Its queue.
+        time_base: The time.
+        event_callbacks: What the program gave for its events.
+
+    Raises:
+        TypeError: `event_callbacks` is of another class, or a function in it takes other arguments.
+    """
+
+    def __init__(
+        self,
+        graph_entry: GraphEntry,
+        reader: MonitoredReader,
+        time_base: TimeBase,
+        event_callbacks: SubscriptionEventCallbacks | None,
+    ) -> None:
+        self._graph_entry = graph_entry
+        self._endpoint = graph_entry.endpoint
+        self._reader = reader
+        self._time_base = time_base
+        self._now_ns = time_base.system_ns
+        self._hub = EventHub(graph_entry, event_callbacks, SubscriptionEventCallbacks)
+        self._runs = False
+        self._missed = 0
+        qos = self._endpoint.qos
+        self._deadline: SilenceAlarm | None = None
+        if not is_unlimited(qos.deadline):
+            self._deadline = SilenceAlarm(
+                time_base, qos.deadline.nanoseconds, self._on_deadline_missed
+            )
+        self._liveliness: PublisherLiveliness | None = None
+        if not is_unlimited(qos.liveliness_lease_duration) or self._hub.calls("liveliness"):
+            self._watch_liveliness()
+        self._own_lifespan_ns = lifespan_ns(qos.lifespan)
+        # By gid, of publishers that limit it. They stay when the publisher has gone, as its
+        # messages may still be on their way; the one known for longest is first.
+        self._lifespans_ns: dict[bytes, int] = {}
+        self._items: ExpiringItems | None = None
+        self._purge: Alarm | None = None
+        if self._own_lifespan_ns != NEVER_NS:
+            self._expire()
+        self._matching: Matching | None = None
+        if self._hub.has_listeners:
+            self._watch_matches()
+        graph_entry.watch(self._note_publisher)
+        if self._deadline is not None or not is_unlimited(qos.liveliness_lease_duration):
+            reader.on_arrival = self._on_arrival
+
+    @property
+    def handler(self) -> EventHandler | None:
+        """What calls the event callbacks; None without any."""
+        return self._hub.handler
+
+    def events(self) -> EventStream[Any]:
+        """Return the stream of all events."""
+        self._watch_matches()
+        if self._liveliness is None:
+            self._watch_liveliness()
+            for publisher in self._graph_entry.matched():
+                self._note_publisher(publisher, present=True)
+        return self._hub.stream()
+
+    def start(self) -> None:
+        """Begin to watch: the node runs now."""
+        self._runs = True
+        if self._deadline is not None:
+            self._deadline.start()
+        if self._liveliness is not None:
+            self._liveliness.start()
+
+    def close(self) -> None:
+        """Watch nothing more."""
+        self._runs = False
+        if self._deadline is not None:
+            self._deadline.stop()
+        if self._liveliness is not None:
+            self._liveliness.stop()
+        if self._purge is not None:
+            self._purge.cancel()
+        self._hub.close()
+
+    def note_alive(self, gid: bytes) -> None:
+        """Take the assertion of a publisher."""
+        if self._liveliness is not None:
+            self._liveliness.note_assertion(gid)
+
+    def note_filtered(self, gid: bytes) -> None:
+        """Take a message that is not delivered: its publisher is alive all the same."""
+        if self._liveliness is not None:
+            self._liveliness.note_message(gid)
+
+    # Publishers
+
+    def _watch_matches(self) -> None:
+        if self._matching is None:
+            self._matching = Matching(self._endpoint, self._hub.emit)
+            self._graph_entry.watch(self._matching.note)
+            self._reader.on_lost = self._on_lost
+            if self._reader.stats.lost:
+                self._on_lost(self._reader.stats.lost)
+
+    def _watch_liveliness(self) -> None:
+        self._liveliness = PublisherLiveliness(
+            self._time_base, self._endpoint.qos, self._hub.emitter("liveliness")
+        )
+        if self._runs:
+            self._liveliness.start()
+
+    def _note_publisher(self, publisher: EndpointInfo, present: bool) -> None:
+        if not self._endpoint.matches(publisher):
+            return
+        if self._liveliness is not None:
+            (self._liveliness.add if present else self._liveliness.remove)(publisher)
+        limit_ns = lifespan_ns(publisher.qos.lifespan)
+        if present and limit_ns < self._own_lifespan_ns:
+            if len(self._lifespans_ns) >= REMEMBERED_LIFESPANS:
+                del self._lifespans_ns[next(iter(self._lifespans_ns))]
+            self._lifespans_ns[publisher.gid] = limit_ns
+            self._expire()
+
+    # Messages
+
+    def _on_arrival(self, sample_info: SampleInfo) -> bool:
+        """Note a message; return whether it is to be delivered."""
+        if self._liveliness is not None:
+            self._liveliness.note_message(sample_info.gid)
+        if self._items is not None and not self._is_fresh(self._items, sample_info):
+            return False
+        if self._deadline is not None:
+            self._deadline.note()
+        return True
+
+    def _on_lost(self, count: int) -> None:
+        self._hub.emit("message_lost", QoSMessageLostInfo(self._reader.stats.lost, count))
+
+    def _on_deadline_missed(self, periods: int) -> bool:
+        self._missed += periods
+        self._hub.emit("deadline", QoSRequestedDeadlineMissedInfo(self._missed, periods))
+        return True
+
+    # Lifespan
+
+    def _expire(self) -> None:
+        """From now on, drop messages when they expire, also while they are queued."""
+        if self._items is None:
+            reader = self._reader
+            queued = list(reader.items)
+            reader.items.clear()  # the consumer may be about to look into it
+            self._items = reader.items = ExpiringItems(queued, self._now_ns, self._on_expired)
+            reader.on_arrival = self._on_arrival
+
+    def _is_fresh(self, items: ExpiringItems, sample_info: SampleInfo) -> bool:
+        limit_ns = self._lifespans_ns.get(sample_info.gid, self._own_lifespan_ns)
+        if limit_ns == NEVER_NS:
+            items.next_expires_ns = NEVER_NS
+            return True
+        now_ns = self._now_ns()
+        # A stamp of the future is from a clock that is not synchronized with this one. DDS says to
+        # take the time of arrival then, and there is no other without a stamp.
+        arrived_ns = sample_info.arrived_ns or now_ns
+        source_ns = sample_info.source_ns
+        sent_ns = source_ns if 0 < source_ns <= arrived_ns else arrived_ns
+        items.next_expires_ns = sent_ns + limit_ns
+        if items.next_expires_ns <= now_ns:
+            self._reader.stats.expired += 1
+            return False
+        if self._reader.keep_all and self._runs and self._purge is None:
+            self._purge_at(items.next_expires_ns)
+        return True
+
+    def _on_expired(self, count: int) -> None:
+        self._reader.stats.expired += count
+        self._reader.wake_writers()
+
+    def _purge_at(self, expires_ns: int) -> None:
+        """Make room in a KEEP_ALL queue when messages expire: publishers may wait for it."""
+        left_ns = max(0, expires_ns - self._now_ns())
+        self._purge = self._time_base.call_at(self._time_base.steady_ns() + left_ns, self._on_purge)
+
+    def _on_purge(self) -> None:
+        self._purge = None
+        # Asking drops what has expired.
+        if self._items and self._items.earliest_ns != NEVER_NS:
+            self._purge_at(self._items.earliest_ns)
+
+
+def lifespan_ns(lifespan: Duration) -> int:
+    """Return a lifespan in nanoseconds, `NEVER_NS` without a limit."""
+    return NEVER_NS if is_unlimited(lifespan) else lifespan.nanoseconds

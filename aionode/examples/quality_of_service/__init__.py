@@ -1,0 +1,4 @@
+"""ROS 2's demos of quality of service: `deadline`, `lifespan`, `liveliness`, and what does not fit.
+
+Each module is a program: ``python -m aionode.examples.quality_of_service.deadline``.
+"""

@@ -1,0 +1,235 @@
+"""Policies kept towards peers that know nothing of them, as nodes of ROS 2 over rmw_zenoh."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import AsyncExitStack
+from typing import Any
+
+import pytest
+import zenoh  # noqa: TID251  # plays the ROS 2 node, without aionode
+
+from aionode.clock import Duration, Time
+from aionode.context import Context
+from aionode.endpoints.events import (
+    IncompatibleTypeInfo,
+    MatchedInfo,
+    QoSLivelinessChangedInfo,
+    QoSMessageLostInfo,
+    QoSOfferedDeadlineMissedInfo,
+    QoSRequestedDeadlineMissedInfo,
+    QoSRequestedIncompatibleQoSInfo,
+)
+from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
+from aionode.interfaces.std_msgs.msg import Int32, String
+from aionode.message import type_name
+from aionode.node import Node
+from aionode.qos import LivelinessPolicy, QoSPolicyKind, QoSProfile, ReliabilityPolicy
+from aionode.testing import ManualClock
+from aionode.wire import _attachment as attachment
+from aionode.wire import cdr
+from aionode.wire._key_expression import data_key
+from aionode.wire._liveliness import endpoint_token, gid_of
+from aionode.wire.typehash import type_hash
+from tests.endpoints.qos.conftest import next_of, waiting
+from tests.support.links import folder
+from tests.support.peers import DOMAIN_ID, isolated_environment, quiet_node, raw_session
+
+__all__ = ["folder"]  # a fixture
+
+SECOND = Duration(seconds=1)
+PLAIN = QoSProfile(depth=10)
+
+
+class Stranger:
+    """A ROS 2 node that says no more than rmw_zenoh does: tokens, and samples with attachments."""
+
+    def __init__(self, session: zenoh.Session, clock: ManualClock) -> None:
+        self._session = session
+        self._clock = clock
+        self._node = NodeInfo(str(session.info.zid()), 0, "ros", "/")
+        self.gid = b""
+        self._token: Any = None
+        self._key = ""
+        self._sequence = 0
+
+    def announce(self, kind: EndpointKind, profile: QoSProfile, ros_type: Any = Int32) -> None:
+        """Declare the token of an endpoint of the topic."""
+        hashed = type_hash(ros_type)
+        self._key = data_key(DOMAIN_ID, "/n", type_name(ros_type), hashed)
+        token = endpoint_token(
+            DOMAIN_ID,
+            EndpointInfo(kind, self._node, 1, "/n", type_name(ros_type), hashed, profile, b""),
+        )
+        self.gid = gid_of(token)
+        self._token = self._session.liveliness().declare_token(token)
+
+    def withdraw(self) -> None:
+        """Undeclare the token, as the end of the process does."""
+        self._token.undeclare()
+
+    def publish(self, number: int, *, age_s: float = 0, skip: int = 0) -> None:
+        """Send a sample that was stamped so long ago, after so many that are lost."""
+        self._sequence += 1 + skip
+        stamp_ns = self._clock.system_ns() - round(age_s * 1e9)
+        self._session.put(
+            self._key,
+            cdr.encode(Int32(data=number)),
+            attachment=attachment.pack(self._sequence, stamp_ns, self.gid),
+        )
+
+
+@pytest.fixture
+def clock() -> ManualClock:
+    """The time, which tests step."""
+    return ManualClock(Time(seconds=1000))
+
+
+@pytest.fixture
+async def node(clock: ManualClock, monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Node]:
+    """A node of aionode."""
+    for name, value in isolated_environment().items():
+        monkeypatch.setenv(name, value)
+    async with AsyncExitStack() as stack:
+        context = await stack.enter_async_context(Context(clock=clock))
+        yield await stack.enter_async_context(quiet_node("node", context))
+
+
+@pytest.fixture
+async def stranger(node: Node, clock: ManualClock) -> AsyncIterator[Stranger]:
+    """A ROS 2 node."""
+    with raw_session() as session:
+        yield Stranger(session, clock)
+
+
+async def test_a_deadline_is_kept_by_the_samples_that_come(
+    node: Node, stranger: Stranger, clock: ManualClock
+) -> None:
+    """Nothing else is needed of the publisher."""
+    subscription = node.create_subscription(Int32, "n", None, QoSProfile(depth=10, deadline=SECOND))
+    stranger.announce(EndpointKind.PUBLISHER, PLAIN)
+    events = subscription.events
+    await next_of(events, MatchedInfo)
+    for number in range(3):
+        stranger.publish(number)
+        assert (await subscription.receive()).data == number
+        await clock.advance(0.7)
+    assert waiting(events, QoSRequestedDeadlineMissedInfo) == []
+    await clock.advance(0.3)
+    assert waiting(events, QoSRequestedDeadlineMissedInfo) == [QoSRequestedDeadlineMissedInfo(1, 1)]
+
+
+async def test_a_publisher_keeps_its_deadline_towards_anyone(
+    node: Node, stranger: Stranger, clock: ManualClock
+) -> None:
+    """It is the publisher's own business."""
+    publisher = node.create_publisher(Int32, "n", QoSProfile(depth=10, deadline=SECOND))
+    stranger.announce(EndpointKind.SUBSCRIPTION, PLAIN)
+    assert await next_of(publisher.events, MatchedInfo) == MatchedInfo(1, 1, 1, 1)
+    publisher.publish(Int32())
+    await clock.advance(1)
+    assert waiting(publisher.events, QoSOfferedDeadlineMissedInfo) == [
+        QoSOfferedDeadlineMissedInfo(1, 1)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("offered", "requested"),
+    [
+        (QoSProfile(depth=10, lifespan=SECOND), PLAIN),
+        (PLAIN, QoSProfile(depth=10, lifespan=SECOND)),
+    ],
+    ids=["publisher", "subscription"],
+)
+async def test_an_old_sample_is_not_delivered(
+    node: Node, stranger: Stranger, offered: QoSProfile, requested: QoSProfile
+) -> None:
+    """Its stamp says how old it is, and the token of its publisher how old it may be."""
+    subscription = node.create_subscription(Int32, "n", None, requested)
+    stranger.announce(EndpointKind.PUBLISHER, offered)
+    await next_of(subscription.events, MatchedInfo)
+    stranger.publish(1, age_s=1.5)
+    stranger.publish(2, age_s=0.5)
+    assert (await subscription.receive()).data == 2
+    assert subscription.stats.expired == 1
+
+
+async def test_automatic_liveliness_is_that_of_the_token(node: Node, stranger: Stranger) -> None:
+    """Zenoh withdraws it when the process ends or is not heard any more."""
+    profile = QoSProfile(depth=10, liveliness_lease_duration=SECOND)
+    subscription = node.create_subscription(Int32, "n", None, profile)
+    stranger.announce(EndpointKind.PUBLISHER, profile)
+    assert await next_of(subscription.events, QoSLivelinessChangedInfo) == (
+        QoSLivelinessChangedInfo(1, 0, 1, 0)
+    )
+    stranger.withdraw()
+    assert await next_of(subscription.events, QoSLivelinessChangedInfo) == (
+        QoSLivelinessChangedInfo(0, 0, -1, 0)
+    )
+
+
+async def test_automatic_liveliness_without_assertions_has_no_lease(
+    node: Node, stranger: Stranger, clock: ManualClock
+) -> None:
+    """rmw_zenoh sends none, so their absence means nothing."""
+    profile = QoSProfile(depth=10, liveliness_lease_duration=SECOND)
+    subscription = node.create_subscription(Int32, "n", None, profile)
+    stranger.announce(EndpointKind.PUBLISHER, profile)
+    await next_of(subscription.events, QoSLivelinessChangedInfo)
+    stranger.publish(1)
+    await subscription.receive()
+    await clock.advance(5)
+    assert waiting(subscription.events, QoSLivelinessChangedInfo) == []
+
+
+async def test_manual_liveliness_is_that_of_the_samples(
+    node: Node, stranger: Stranger, clock: ManualClock
+) -> None:
+    """They are all that can be seen: rmw_zenoh keeps `assert_liveliness` to itself."""
+    profile = QoSProfile(
+        depth=10,
+        liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
+        liveliness_lease_duration=SECOND,
+    )
+    subscription = node.create_subscription(Int32, "n", None, profile)
+    stranger.announce(EndpointKind.PUBLISHER, profile)
+    events = subscription.events
+    await next_of(events, MatchedInfo)
+    for number in range(3):
+        stranger.publish(number)
+        await subscription.receive()
+        await clock.advance(0.7)
+    assert waiting(events, QoSLivelinessChangedInfo) == [QoSLivelinessChangedInfo(1, 0, 1, 0)]
+    await clock.advance(0.3)
+    assert waiting(events, QoSLivelinessChangedInfo) == [QoSLivelinessChangedInfo(0, 1, -1, 1)]
+
+
+async def test_missing_numbers_are_lost_messages(node: Node, stranger: Stranger) -> None:
+    """The sequence numbers of the attachments tell."""
+    subscription = node.create_subscription(
+        Int32, "n", None, QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
+    )
+    stranger.announce(EndpointKind.PUBLISHER, PLAIN)
+    await next_of(subscription.events, MatchedInfo)
+    stranger.publish(1)
+    stranger.publish(2, skip=3)
+    assert await next_of(subscription.events, QoSMessageLostInfo) == QoSMessageLostInfo(3, 3)
+
+
+async def test_what_does_not_fit_is_an_event(node: Node, stranger: Stranger) -> None:
+    """The QoS is in its token, although rmw_zenoh delivers all the same."""
+    subscription = node.create_subscription(Int32, "n")
+    stranger.announce(
+        EndpointKind.PUBLISHER, QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    )
+    assert await next_of(subscription.events, QoSRequestedIncompatibleQoSInfo) == (
+        QoSRequestedIncompatibleQoSInfo(1, 1, QoSPolicyKind.RELIABILITY)
+    )
+    assert await next_of(subscription.events, MatchedInfo) == MatchedInfo(1, 1, 1, 1)
+
+
+async def test_another_type_is_an_event(node: Node, stranger: Stranger) -> None:
+    """Its key is another, so nothing is heard."""
+    publisher = node.create_publisher(Int32, "n", 10)
+    stranger.announce(EndpointKind.SUBSCRIPTION, PLAIN, String)
+    assert await next_of(publisher.events, IncompatibleTypeInfo) == IncompatibleTypeInfo(1, 1)
