@@ -309,7 +309,9 @@ class Stage:
 
     def wrong_graphs(self) -> list[str]:
         """Return what processes see of the nodes that is not so."""
-        living = [child for child in self.children.values() if child.runs]
+        living = [
+            child for child in self.children.values() if child.runs and not child.role.control
+        ]
         nodes = sorted(child.role.name for child in living if not child.role.router)
         return [
             f"{child.role.name}: sees {', '.join(child.last.nodes)}"
