@@ -316,7 +316,9 @@ class Stage:
         return [
             f"{child.role.name}: sees {', '.join(child.last.nodes)}"
             for child in living
-            if not (child.role.router or child.role.ros) and child.last.nodes != nodes
+            if not (child.role.router or child.role.ros)
+            and child.role.output != "unread"  # it stands still when the pipe is full
+            and child.last.nodes != nodes
         ]
 
     async def until_working(self, since_s: float, limit_s: float) -> list[str]:
