@@ -318,8 +318,10 @@ class Stage:
         return [
             f"{child.role.name}: sees {', '.join(child.last.nodes)}"
             for child in nodes
+            if not child.role.ros
             # One whose output is not read tells nothing more.
-            if not (child.role.ros or child.role.noisy) and child.last.nodes != names
+            and not (child.role.noisy or child.role.output == "unread")
+            and child.last.nodes != names
         ]
 
     async def until_working(self, since_s: float, limit_s: float) -> list[str]:
