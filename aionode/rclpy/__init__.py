@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from aionode.rclpy._finder import install
+from aionode.rclpy._finder import install, provide
 
-__all__ = ["install"]
+__all__ = ["install", "provide"]
