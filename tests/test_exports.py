@@ -60,6 +60,7 @@ PRESETS = [
     "qos_profile_system_default",
 ]
 WITHIN = {
+    "aionode.rclpy": {"provide"},  # for the distribution aionode-rclpy
     "aionode.endpoints.client": {"Exchange"},  # what a client is made with
     "aionode.transport.ipc": {"Advertisement", "available", "can_link"},  # for Zenoh and contexts
 }
