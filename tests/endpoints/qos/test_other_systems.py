@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack
 from typing import Any
 
 import pytest
 import zenoh  # noqa: TID251  # plays the ROS 2 node, without aionode
+from zenoh import ext  # noqa: TID251  # the same
 
 from aionode.clock import Duration, Time
 from aionode.context import Context
@@ -24,7 +26,13 @@ from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.message import type_name
 from aionode.node import Node
-from aionode.qos import LivelinessPolicy, QoSPolicyKind, QoSProfile, ReliabilityPolicy
+from aionode.qos import (
+    DurabilityPolicy,
+    LivelinessPolicy,
+    QoSPolicyKind,
+    QoSProfile,
+    ReliabilityPolicy,
+)
 from aionode.testing import ManualClock
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
@@ -33,12 +41,33 @@ from aionode.wire._liveliness import endpoint_token, gid_of
 from aionode.wire.typehash import type_hash
 from tests.endpoints.qos.conftest import next_of, waiting
 from tests.support.links import folder
-from tests.support.peers import DOMAIN_ID, isolated_environment, quiet_node, raw_session
+from tests.support.peers import DOMAIN_ID, Collector, isolated_environment, quiet_node, raw_session
 
 __all__ = ["folder"]  # a fixture
 
 SECOND = Duration(seconds=1)
 PLAIN = QoSProfile(depth=10)
+
+
+class Numbers:
+    """The numbers that a subscriber with history has got."""
+
+    def __init__(self, session: zenoh.Session, key: str) -> None:
+        self._collector = Collector()
+        self._subscriber = ext.declare_advanced_subscriber(
+            session,
+            key,
+            self._collector,
+            history=ext.HistoryConfig(detect_late_publishers=True, max_samples=10),
+            recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
+            subscriber_detection=True,
+        )
+
+    async def numbers(self, count: int) -> list[int]:
+        """Wait for so many, and return all."""
+        async with asyncio.timeout(10):
+            samples = await self._collector.have(count)
+        return [cdr.decode(Int32, sample.payload.to_bytes()).data for sample in samples]
 
 
 class Stranger:
@@ -63,6 +92,11 @@ class Stranger:
         )
         self.gid = gid_of(token)
         self._token = self._session.liveliness().declare_token(token)
+
+    def subscribe_late(self) -> Numbers:
+        """Subscribe with history, as rmw_zenoh does for transient local."""
+        key = data_key(DOMAIN_ID, "/n", type_name(Int32), type_hash(Int32))
+        return Numbers(self._session, key)
 
     def withdraw(self) -> None:
         """Undeclare the token, as the end of the process does."""
@@ -152,6 +186,44 @@ async def test_an_old_sample_is_not_delivered(
     stranger.publish(2, age_s=0.5)
     assert (await subscription.receive()).data == 2
     assert subscription.stats.expired == 1
+
+
+KEPT = QoSProfile(depth=5, durability=DurabilityPolicy.TRANSIENT_LOCAL, lifespan=SECOND)
+
+
+@pytest.mark.parametrize("reliability", [ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT])
+async def test_a_late_subscriber_gets_no_history_that_has_expired(
+    node: Node, stranger: Stranger, clock: ManualClock, reliability: ReliabilityPolicy
+) -> None:
+    """Zenoh keeps messages by number, so it is made to forget them when all are too old."""
+    publisher = node.create_publisher(Int32, "n", KEPT.replace(reliability=reliability))
+    for number in range(3):
+        publisher.publish(Int32(data=number))
+    early = stranger.subscribe_late()
+    assert await early.numbers(3) == [0, 1, 2]
+    await clock.advance(1)
+    late = stranger.subscribe_late()
+    for number in range(3, 6):
+        publisher.publish(Int32(data=number))
+        assert await early.numbers(number + 1) == list(range(number + 1))
+    assert min(await late.numbers(1)) >= 3
+
+
+async def test_what_waits_for_a_session_expires(
+    node: Node, stranger: Stranger, clock: ManualClock
+) -> None:
+    """A node may publish long before it runs."""
+    context = Context(clock=clock)
+    talker = quiet_node("talker", context)
+    publisher = talker.create_publisher(Int32, "n", KEPT)
+    publisher.publish(Int32(data=1))
+    await clock.advance(0.6)
+    publisher.publish(Int32(data=2))
+    await clock.advance(0.6)
+    stranger.announce(EndpointKind.SUBSCRIPTION, KEPT)
+    async with talker:
+        await publisher.wait_for_subscribers()
+        assert await stranger.subscribe_late().numbers(1) == [2]
 
 
 async def test_automatic_liveliness_is_that_of_the_token(node: Node, stranger: Stranger) -> None:
