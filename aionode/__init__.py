@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     )
     from aionode.endpoints.publisher import Publisher
     from aionode.endpoints.service import Service
+    from aionode.endpoints.service_introspection import ServiceIntrospectionState
     from aionode.endpoints.subscription import MessageInfo, Subscription
     from aionode.endpoints.timer import Rate, Timer, TimerInfo
     from aionode.node import Node
@@ -105,6 +106,7 @@ __all__ = [
     "ReliabilityPolicy",
     "ServerGoalHandle",
     "Service",
+    "ServiceIntrospectionState",
     "Subscription",
     "SubscriptionEventCallbacks",
     "Supervisor",
@@ -152,6 +154,7 @@ _EXPORTS = {
     "ReliabilityPolicy": "aionode.qos",
     "ServerGoalHandle": "aionode.action",
     "Service": "aionode.endpoints.service",
+    "ServiceIntrospectionState": "aionode.endpoints.service_introspection",
     "Subscription": "aionode.endpoints.subscription",
     "SubscriptionEventCallbacks": "aionode.endpoints.events",
     "Supervisor": "aionode.supervisor",

@@ -346,7 +346,10 @@ class Parser:
         assert found is not None  # noqa: S101  # a name has at least one part
         if found.container != "single" or found.nested is not None:
             self._fail(f"{token.text} is {found}; name a number, a string or a bool in it", token)
-        return Operand(kind_of(found), getter(names), token.text, is_field=True)
+        get = getter(names)
+        if found.kind == "byte" and isinstance(names[-1], str):  # bytes of length 1
+            return Operand("number", lambda msg: get(msg)[0], token.text, is_field=True)
+        return Operand(kind_of(found), get, token.text, is_field=True)
 
     def _element(self, token: Token, found: FieldType | None, part: str) -> FieldType:
         if found is None or found.container == "single":
@@ -411,6 +414,14 @@ def false_without_elements(condition: Callable[[Any], bool]) -> Callable[[Any], 
 
 
 def like_pattern(text: str) -> re.Pattern[str]:
-    """Return a pattern of LIKE as a regular expression."""
-    parts = {"%": ".*", "_": "."}
-    return re.compile("".join(parts.get(char) or re.escape(char) for char in text), re.DOTALL)
+    """Return a pattern of LIKE as a regular expression, which takes linear time for each ``%``.
+
+    What follows a ``%`` is taken where it is found first, and never looked for again further on:
+    an expression may come from another process, and must not keep this one busy.
+    """
+    first, *rest = ("".join("." if c == "_" else re.escape(c) for c in p) for p in text.split("%"))
+    if not rest:
+        return re.compile(first, re.DOTALL)
+    *middle, last = rest
+    found = "".join(f"(?>.*?{part})" for part in middle if part)
+    return re.compile(f"{first}{found}.*{last}", re.DOTALL)

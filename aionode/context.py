@@ -16,6 +16,8 @@ from aionode._concurrency import to_the_end
 from aionode._distribution import NO_TYPE_HASH, choose_distribution
 from aionode.arguments import Arguments, Usage
 from aionode.clock import MachineTime
+from aionode.endpoints._core.duplicate_report import DuplicateReport
+from aionode.endpoints._core.loop_affinity import LoopAffinity
 from aionode.endpoints._core.mismatch_report import MismatchReport
 from aionode.errors import ConfigurationError, EntityDestroyedError, ForkedProcessError, brief
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
@@ -130,6 +132,7 @@ class Context:
         self.participant = secrets.token_hex(16).lstrip("0") or "1"
         self.graph = Graph()
         MismatchReport(self.graph, self.participant)
+        DuplicateReport(self.graph, self.participant)
         self.time_base: TimeBase = clock if clock is not None else MachineTime()
         self.network = network_from(
             os.environ,
@@ -146,6 +149,7 @@ class Context:
         self._shut_down = False  # set by `shutdown`, and never reset
         self._open = False  # whether the transports are open
         self._loop: asyncio.AbstractEventLoop | None = None  # in which it was opened last
+        self._affinity = LoopAffinity()  # the same while it is in use, for calls of other threads
         self._loop_guard = threading.Lock()  # held to check and set `_loop` and `_users`
         self._transition = asyncio.Lock()  # held while the transports open or close
         self._closed = asyncio.Event()  # set when the last user has released the context
@@ -281,6 +285,7 @@ class Context:
         with self._loop_guard:  # event loops may run in different threads
             self._bind_to_loop()
             self._users += 1  # before opening, so that another loop sees it in use
+            self._affinity.attach()
         try:
             async with self._transition:
                 if not self._open and not self._shut_down:
@@ -289,6 +294,8 @@ class Context:
                     self._closed.clear()
         except BaseException:
             self._users -= 1
+            if not self._users:
+                self._affinity.detach()
             raise
 
     def _bind_to_loop(self) -> None:
@@ -335,6 +342,7 @@ class Context:
                 self._open = False
                 await self._close_transports()
         if self._users == 0:
+            self._affinity.detach()
             self._closed.set()
 
     async def _close_transports(self) -> None:
@@ -359,6 +367,7 @@ class Context:
         Nothing in it may be closed or garbage-collected, as both would affect what the parent uses.
         """
         self._inherited = True
+        self._affinity.detach()
         for node in self._nodes:
             node._abandon()
         for transport in self._transports:

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["TOPIC_KINDS", "EndpointInfo", "EndpointKind", "Graph", "Mismatch", "NodeInfo"]
 
 K = TypeVar("K")
+V = TypeVar("V")
 
 Watcher: TypeAlias = "Callable[[EndpointInfo, bool], None]"
 
@@ -182,9 +183,11 @@ class Graph:
         self._by_name: dict[tuple[EndpointKind, str], dict[EndpointInfo, None]] = defaultdict(dict)
         self._by_node: dict[NodeInfo, dict[EndpointInfo, None]] = defaultdict(dict)
         self._waiters: dict[asyncio.Future[None], None] = {}  # of `changed`, until the next change
+        self._nodes_by_name: dict[str, dict[NodeInfo, None]] = defaultdict(dict)
         self._listeners: list[Callable[[EndpointInfo], None]] = []
         self._watchers: dict[tuple[EndpointKind, str], list[Watcher]] = {}
         self.unreported: dict[EndpointInfo, AbstractSet[str]] = {}
+        self._node_listeners: list[Callable[[NodeInfo], None]] = []
 
     def __repr__(self) -> str:
         return f"<Graph: {len(self._nodes)} nodes, {len(self._endpoints)} endpoints>"
@@ -195,12 +198,16 @@ class Graph:
         """Add `node`; adding it again has no effect."""
         if node not in self._nodes:
             self._nodes[node] = None
+            self._nodes_by_name[node.fully_qualified_name][node] = None
+            for listener in self._node_listeners:
+                listener(node)
             self._wake()
 
     def remove_node(self, node: NodeInfo) -> None:
         """Remove `node`, if it is known."""
         if node in self._nodes:
             del self._nodes[node]
+            _take_out(self._nodes_by_name, node.fully_qualified_name, node)
             self._wake()
 
     def add_endpoint(self, endpoint: EndpointInfo) -> None:
@@ -259,6 +266,10 @@ class Graph:
         for watcher in tuple(self._watchers.get((endpoint.kind, endpoint.name), ())):
             watcher(endpoint, present)
 
+    def on_node(self, listener: Callable[[NodeInfo], None]) -> None:
+        """Call `listener` with each node added from now on."""
+        self._node_listeners.append(listener)
+
     def changed(self) -> asyncio.Future[None]:
         """Return a future that is done at the next change: a node or endpoint added or removed.
 
@@ -289,6 +300,10 @@ class Graph:
     def nodes(self) -> list[NodeInfo]:
         """Return every node, in the order in which they were added."""
         return list(self._nodes)
+
+    def nodes_named(self, fully_qualified_name: str) -> list[NodeInfo]:
+        """Return the nodes of this name; more than one is a mistake that ROS 2 allows."""
+        return list(self._nodes_by_name.get(fully_qualified_name, ()))
 
     def endpoints(
         self, *kinds: EndpointKind, name: str | None = None, node: NodeInfo | None = None
@@ -321,9 +336,9 @@ class Graph:
         return (n for n in self._nodes if n.fully_qualified_name == fully_qualified_name)
 
 
-def _take_out(index: dict[K, dict[EndpointInfo, None]], key: K, endpoint: EndpointInfo) -> None:
-    """Remove `endpoint` from its group, and the group if it is then empty."""
-    del index[key][endpoint]
+def _take_out(index: dict[K, dict[V, None]], key: K, member: V) -> None:
+    """Remove `member` from its group, and the group if it is then empty."""
+    del index[key][member]
     if not index[key]:
         del index[key]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial, wraps
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode import names, qos
@@ -26,14 +27,30 @@ __all__ = ["Node"]
 GoalT = TypeVar("GoalT", bound=Message)
 ResultT = TypeVar("ResultT", bound=Message)
 FeedbackT = TypeVar("FeedbackT", bound=Message)
+ConstructorT = TypeVar("ConstructorT", bound="Callable[..., None]")
+
+
+def in_context_thread(constructor: ConstructorT) -> ConstructorT:
+    """Have the constructor of `Node` run in the thread of its context's loop, if that is open."""
+
+    @wraps(constructor)
+    def construct(self: Node, *args: Any, **options: Any) -> None:
+        affinity = (options.get("context") or Context.default())._affinity
+        if affinity.is_other_thread():
+            affinity.wait_for(partial(constructor, self, *args, **options))
+        else:
+            constructor(self, *args, **options)
+
+    return construct  # type: ignore[return-value]  # it has the same signature
 
 
 class Node(NodeEndpoints, NodeGraphQueries):
     """A participant in the ROS graph, with publishers, subscriptions, services, clients and timers.
 
-    A node and its entities can be created at any time, with or without a running event loop. Their
-    callbacks are called while the node runs: inside ``async with node:``, or during
-    ``await node.run()``. A node runs once; after `destroy_node` every use raises
+    A node and its entities can be created at any time, with or without a running event loop, and in
+    any thread: outside the thread of the context's event loop the call blocks until the loop has
+    created them. Their callbacks are called while the node runs: inside ``async with node:``, or
+    during ``await node.run()``. A node runs once; after `destroy_node` every use raises
     EntityDestroyedError.
 
     An exception in the callback of a subscription or timer ends the node, unless the entity's
@@ -65,6 +82,7 @@ class Node(NodeEndpoints, NodeGraphQueries):
         EntityDestroyedError: the context was shut down (a RuntimeError).
     """
 
+    @in_context_thread
     def __init__(
         self,
         node_name: str,

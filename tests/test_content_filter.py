@@ -189,3 +189,41 @@ def test_a_filter_says_what_python_says(tree: Any, value: int) -> None:
     expected = eval(written(tree, "==", "!="), {"data": value})  # noqa: S307  # the test's own text
 
     assert passes(Int32(data=value), written(tree, "=", "<>")) == expected
+
+
+def test_a_byte_is_a_number() -> None:
+    """Though a scalar byte is bytes of length 1 in Python, as in rclpy."""
+    status = DiagnosticStatus(level=b"\x02")
+
+    assert passes(status, "level = 2")
+    assert passes(status, "level > 1")
+    assert not passes(status, "level = 1")
+
+
+@pytest.mark.parametrize(
+    ("pattern", "expected"),
+    [("%a%b%", True), ("%b%a_b", True), ("a%", True), ("%a", False), ("%%", True), ("_%_", True)],
+)
+def test_several_wildcards_match_as_in_sql(pattern: str, expected: bool) -> None:
+    """Each `%` takes as little as it can, which finds a match wherever there is one."""
+    assert passes(String(data="aab ab axb"), f"data LIKE '{pattern}'") is expected
+
+
+@pytest.mark.timeout(10)
+def test_a_pattern_with_many_wildcards_takes_no_time() -> None:
+    """It may come from another process, and would keep this one busy for hours."""
+    assert not passes(String(data="a" * 5000), f"data LIKE '{'%a' * 40}%b'")
+
+
+@given(st.text("ab_", max_size=6), st.text("ab%_", max_size=8))
+def test_like_agrees_with_a_plain_definition(text: str, pattern: str) -> None:
+    """Taking each part where it is found first loses no match."""
+
+    def like(text: str, pattern: str) -> bool:
+        if not pattern:
+            return not text
+        if pattern[0] == "%":
+            return any(like(text[n:], pattern[1:]) for n in range(len(text) + 1))
+        return bool(text) and pattern[0] in ("_", text[0]) and like(text[1:], pattern[1:])
+
+    assert passes(String(data=text), f"data LIKE '{pattern}'") is like(text, pattern)

@@ -96,6 +96,7 @@ async def test_what_is_of_use_to_any_node_is_not_mentioned(
     clock: ManualClock, caplog: pytest.LogCaptureFixture, words: list[str]
 ) -> None:
     """To one that is made later, or gone by then, as well."""
+    twins = "there are two nodes named"  # renaming all of them says so, which is another matter
     context = program(clock, *words)
     first = Node("first", context=context)
     first.declare_parameter("a", 0)
@@ -108,7 +109,7 @@ async def test_what_is_of_use_to_any_node_is_not_mentioned(
             late.create_client(AddTwoInts, "/add")
             await clock.advance(5.0)
 
-    assert warnings(caplog) == []
+    assert [text for text in warnings(caplog) if not text.startswith(twins)] == []
 
 
 async def test_a_node_that_takes_any_parameter_has_use_for_each(

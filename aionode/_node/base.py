@@ -13,7 +13,7 @@ from aionode.arguments import Arguments, Usage, parse_arguments
 from aionode.clock import ROSClock
 from aionode.endpoints._core.callback_runner import Callbacks
 from aionode.endpoints._core.entity import EndStage
-from aionode.endpoints._core.loop_affinity import LoopAffinity
+from aionode.endpoints._core.loop_affinity import in_loop_thread
 from aionode.endpoints._core.shutdown import Ending
 from aionode.errors import EntityDestroyedError
 from aionode.logging import get_logger
@@ -79,6 +79,7 @@ class NodeBase:
         namespace = names.remap_namespace(self._rules, node_name, namespace)
         full_name = names.fully_qualified_name(namespace, node_name)
         self._constructed = False  # until the built-in services exist; then come the program's own
+        self._warned_about: set[str] = set()  # kinds of arguments that have no effect
         self._entities: dict[Entity, None] = {}  # in order of creation; destroyed ones leave it
         self._tasks: asyncio.TaskGroup | None = None  # of the entities, once the node has started
         self._running = False
@@ -91,7 +92,7 @@ class NodeBase:
         self._callbacks = Callbacks(
             node=full_name, logger=self._logger, budget_ns=round(callback_budget_ms * 1e6)
         )
-        self._affinity = LoopAffinity()
+        self._affinity = context._affinity
         self._ending = Ending(self._entities, self._callbacks, self._leave)
         self._stop_rosout: Callable[[], None] | None = None
         self._registrations: list[Registration] = []  # of the node itself, one for each transport
@@ -122,7 +123,6 @@ class NodeBase:
         except BaseException:
             self._running = False
             raise
-        self._affinity.attach()
         self._end_record.begin()
         self._tasks = await asyncio.TaskGroup().__aenter__()
         for entity in list(self._entities):
@@ -161,7 +161,6 @@ class NodeBase:
                     raise
             finally:
                 self._running = False
-                self._affinity.detach()
                 await to_the_end(self.context._release())
 
     async def run(self) -> None:
@@ -259,7 +258,6 @@ class NodeBase:
 
         Called by the context in a forked child.
         """
-        self._affinity.detach()
         self._destroyed = asyncio.Event()  # a new one: the parent's tasks wait for the old one
         self._destroyed.set()
         self._tasks = None
@@ -329,13 +327,14 @@ class NodeBase:
 
     # Entities
 
+    @in_loop_thread
     def _add_entity(self, entity: EntityT, graph_entry: GraphEntry | None = None) -> EntityT:
         """Own `entity`: enter it into the graph, start it if the node runs, destroy it at the end.
 
         An action server or client, made of other entities, adds itself here.
         """
         self._entities[entity] = None
-        entity._adopt(self._forget_entity)
+        entity._adopt(self._forget_entity, self._affinity)
         if graph_entry is not None:
             graph_entry.open()
         if self._tasks is not None:

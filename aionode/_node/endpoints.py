@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar, overload
 
 from aionode import qos
 from aionode._node.parameters import NodeParameters
+from aionode.clock import Clock
 from aionode.endpoints._core.graph_entry import GraphEntry
+from aionode.endpoints._core.loop_affinity import in_loop_thread
 from aionode.endpoints.client import Client
 from aionode.endpoints.publisher import Publisher
 from aionode.endpoints.service import Service
@@ -20,7 +22,7 @@ from aionode.message import Message, ServiceType, holds_arrays
 from aionode.parameter import declare_qos_overrides
 
 if TYPE_CHECKING:
-    from aionode.clock import Clock
+    from aionode.content_filter import ContentFilterOptions
     from aionode.endpoints._core.callback_runner import OnError
     from aionode.endpoints._core.entity import Entity
     from aionode.endpoints.events import PublisherEventCallbacks, SubscriptionEventCallbacks
@@ -67,6 +69,7 @@ class NodeEndpoints(NodeParameters):
         """The timers of this node."""
         return self._entities_of(Timer)
 
+    @in_loop_thread
     def create_publisher(
         self,
         msg_type: type[MsgT],
@@ -121,6 +124,7 @@ class NodeEndpoints(NodeParameters):
         offload: bool = False,
         event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
+        content_filter_options: ContentFilterOptions | None = None,
     ) -> Subscription[bytes]: ...
 
     @overload
@@ -137,8 +141,10 @@ class NodeEndpoints(NodeParameters):
         offload: bool = False,
         event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
+        content_filter_options: ContentFilterOptions | None = None,
     ) -> Subscription[MsgT]: ...
 
+    @in_loop_thread
     def create_subscription(
         self,
         msg_type: type[Any],
@@ -152,6 +158,7 @@ class NodeEndpoints(NodeParameters):
         offload: bool = False,
         event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
+        content_filter_options: ContentFilterOptions | None = None,
     ) -> Subscription[Any]:
         """Return a subscription to `topic`.
 
@@ -170,10 +177,12 @@ class NodeEndpoints(NodeParameters):
             offload: Whether to run a sync callback in a thread.
             event_callbacks: Called with its events; without them, see `Subscription.events`.
             qos_overriding_options: Which policies parameters may override.
+            content_filter_options: Which messages to deliver; see `set_content_filter`.
 
         Raises:
             TypeError: an argument has the wrong type, or the callback takes other arguments.
             ValueError: `concurrent`, `on_error` or `qos_profile` is invalid.
+            ContentFilterError: the filter is malformed, or does not fit the type (a ValueError).
             InvalidTopicNameException: `topic` is invalid (a ValueError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
@@ -193,6 +202,11 @@ class NodeEndpoints(NodeParameters):
             offload=offload,
             event_callbacks=event_callbacks,
         )
+        if content_filter_options is not None:  # before messages can arrive
+            subscription.set_content_filter(
+                content_filter_options.filter_expression,
+                content_filter_options.expression_parameters,
+            )
         subscription._add_registrations(
             self._register(
                 lambda transport: transport.create_reader(
@@ -202,6 +216,7 @@ class NodeEndpoints(NodeParameters):
         )
         return self._add_with_events(subscription, graph_entry)
 
+    @in_loop_thread
     def create_service(
         self,
         srv_type: ServiceClass[RequestT, ResponseT],
@@ -241,6 +256,7 @@ class NodeEndpoints(NodeParameters):
             graph_entry,
             srv_type,
             callback,
+            self.create_publisher,
             concurrent=concurrent,
             on_error=on_error,
             offload=offload,
@@ -254,6 +270,7 @@ class NodeEndpoints(NodeParameters):
         )
         return self._add_entity(service, graph_entry)
 
+    @in_loop_thread
     def create_client(
         self,
         srv_type: ServiceClass[RequestT, ResponseT],
@@ -280,9 +297,17 @@ class NodeEndpoints(NodeParameters):
             lambda transport: transport.create_requester(graph_entry.endpoint, srv_type)
         )
         return self._add_entity(
-            Client(graph_entry, srv_type, requesters, self.context.time_base), graph_entry
+            Client(
+                graph_entry,
+                srv_type,
+                requesters,
+                self.context.time_base,
+                self.create_publisher,
+            ),
+            graph_entry,
         )
 
+    @in_loop_thread
     def create_timer(
         self,
         timer_period_sec: float,
@@ -301,7 +326,8 @@ class NodeEndpoints(NodeParameters):
         Args:
             timer_period_sec: The period in seconds; 0 calls as often as the event loop allows.
             callback: Called without arguments, or with a `TimerInfo`; sync or async.
-            clock: The clock to follow; the node's clock by default.
+            clock: The clock to follow; the node's clock by default. A callback group, rclpy's third
+                argument, is accepted here with a warning, and has no effect.
             autostart: Whether it starts at once; otherwise `reset` starts it.
             on_error: What happens on an exception in the callback: ``"raise"`` ends the node,
                 ``"log"`` logs and counts it, a function is called with (exception,
@@ -317,12 +343,35 @@ class NodeEndpoints(NodeParameters):
         timer = Timer(
             callback,
             to_period_ns(timer_period_sec),
-            self._clock if clock is None else clock,
+            self._clock_for_timer(clock),
             partial(self._callbacks.make_runner, on_error=on_error, offload=offload),
             autostart=autostart,
         )
         return self._add_entity(timer)
 
+    def _clock_for_timer(self, given: object) -> Clock:
+        """Return the clock that a timer follows, from the third argument of `create_timer`."""
+        if isinstance(given, Clock):
+            return given
+        if given is None:
+            return self._clock
+        if not hasattr(given, "can_execute"):
+            raise TypeError(
+                f"create_timer: clock is {brief(given)}; give a clock such as SteadyClock(), or "
+                "nothing for the node's clock"
+            )
+        kind = type(given).__name__
+        if kind not in self._warned_about:
+            self._warned_about.add(kind)
+            self._logger.warning(
+                f"create_timer: the third argument is a {kind}, which has no effect: calls of one "
+                "timer never overlap, and callbacks of different entities take turns where they "
+                "await. In aionode this argument is the clock: write create_timer(period, "
+                "callback), and concurrent= on subscriptions and services for calls at once"
+            )
+        return self._clock
+
+    @in_loop_thread
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
         """Return a rate, for ``await rate.sleep()`` or ``async for _ in rate``.
 

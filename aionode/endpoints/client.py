@@ -8,6 +8,11 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from aionode.clock import perf_ns
 from aionode.endpoints._core.entity import EndStage, Entity
 from aionode.endpoints._core.future import Futures, asks
+from aionode.endpoints.service_introspection import (
+    REQUEST_SENT,
+    RESPONSE_RECEIVED,
+    Introspection,
+)
 from aionode.endpoints.stats import ClientStats
 from aionode.errors import (
     AionodeError,
@@ -21,10 +26,12 @@ from aionode.message import Message, checker
 from aionode.transport.base import SampleInfo
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
-    from aionode.clock import TimeBase
+    from aionode.clock import Clock, TimeBase
     from aionode.endpoints._core.graph_entry import GraphEntry
+    from aionode.endpoints.publisher import Publisher
+    from aionode.endpoints.service_introspection import ServiceIntrospectionState
     from aionode.errors import ServiceError
     from aionode.qos import QoSProfile
     from aionode.transport.base import Call, Requester
@@ -51,6 +58,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         srv_type: Any,
         requesters: Sequence[Requester],
         time_base: TimeBase,
+        create_publisher: Callable[..., Publisher[Any]],
     ) -> None:
         super().__init__(f"client of {graph_entry.endpoint.name}", EndStage.LAST)
         self.srv_type = srv_type
@@ -58,6 +66,8 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         self.stats = ClientStats()
         self._graph_entry = graph_entry
         self._requesters = tuple(requesters)
+        self._introspection = Introspection(srv_type, graph_entry.endpoint.name, create_publisher)
+        self._introspects = False  # whether it publishes events
         self._check = checker(srv_type.Request)
         self._now_ns = time_base.system_ns
         self._answers: set[asyncio.Future[Any]] = set()
@@ -76,6 +86,33 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         return self._graph_entry.endpoint.name
 
     service_name = srv_name
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile | int,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Publish each request sent and response received from now on.
+
+        The topic is ``<service>/_service_event``, and ``aionode service echo`` prints it. It may be
+        called at any time, with another state.
+
+        Args:
+            clock: Where the time stamps come from, such as ``node.get_clock()``.
+            service_event_qos_profile: QoS of the publisher.
+            introspection_state: Whether to publish nothing, which requests there are, or their
+                contents as well.
+
+        Raises:
+            TypeError: `clock` or the profile has the wrong type.
+            ValueError: `introspection_state` is unknown.
+            EntityDestroyedError: the client was destroyed (a RuntimeError).
+        """
+        self._refuse_if_destroyed("configure introspection")
+        self._introspects = self._introspection.configure(
+            clock, service_event_qos_profile, introspection_state
+        )
 
     def service_is_ready(self) -> bool:
         """Return whether a server is matched now."""
@@ -215,7 +252,20 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         except BaseException:
             exchange.cancel()
             raise
+        if self._introspects:
+            self._introspect(request, sample_info, exchange)
         return exchange
+
+    def _introspect(self, request: Any, sample_info: SampleInfo, exchange: Exchange) -> None:
+        """Publish that a request was sent, and its response when that arrives."""
+        publish = self._introspection.publish
+        publish(REQUEST_SENT, sample_info, request)
+
+        def answered(answer: asyncio.Future[Any]) -> None:
+            if not answer.cancelled() and answer.exception() is None:
+                publish(RESPONSE_RECEIVED, sample_info, answer.result())
+
+        exchange.answer.add_done_callback(answered)
 
     def _servers(self) -> int:
         return sum(requester.servers for requester in self._requesters)
@@ -235,6 +285,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         for answer in list(self._answers):
             answer.cancel(f"{self._subject}: destroyed")
         self._futures.close()
+        self._introspection.close()
         for requester in self._requesters:
             requester.close()
 

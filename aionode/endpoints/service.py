@@ -15,14 +15,22 @@ from aionode.endpoints._core.callback_runner import (
 )
 from aionode.endpoints._core.entity import Entity
 from aionode.endpoints._core.message_queue import MessageQueue
+from aionode.endpoints.service_introspection import (
+    REQUEST_RECEIVED,
+    RESPONSE_SENT,
+    Introspection,
+)
 from aionode.endpoints.stats import CallbackStats
 from aionode.message import Message, type_name
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from aionode.clock import Clock
     from aionode.endpoints._core.callback_runner import OnError
     from aionode.endpoints._core.graph_entry import GraphEntry
+    from aionode.endpoints.publisher import Publisher
+    from aionode.endpoints.service_introspection import ServiceIntrospectionState
     from aionode.qos import QoSProfile
     from aionode.transport.base import Registration, Request
 
@@ -60,6 +68,7 @@ class Service(Entity, Generic[RequestT, ResponseT]):
         graph_entry: GraphEntry,
         srv_type: Any,
         callback: ServiceCallback[RequestT, ResponseT],
+        create_publisher: Callable[..., Publisher[Any]],
         *,
         concurrent: bool | int,
         on_error: OnError,
@@ -71,6 +80,8 @@ class Service(Entity, Generic[RequestT, ResponseT]):
         self.callback = callback
         self.stats = CallbackStats()
         self._graph_entry = graph_entry
+        self._introspection = Introspection(srv_type, graph_entry.endpoint.name, create_publisher)
+        self._introspects = False  # whether it publishes events
         self._registrations: list[Registration] = []  # one for each transport
         self._message_queue: MessageQueue[Request] = MessageQueue(
             WAITING_REQUESTS, self.stats, keep_all=True
@@ -96,6 +107,33 @@ class Service(Entity, Generic[RequestT, ResponseT]):
         return self._graph_entry.endpoint.name
 
     service_name = srv_name
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile | int,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Publish each request received and response sent from now on.
+
+        The topic is ``<service>/_service_event``, and ``aionode service echo`` prints it. It may be
+        called at any time, with another state.
+
+        Args:
+            clock: Where the time stamps come from, such as ``node.get_clock()``.
+            service_event_qos_profile: QoS of the publisher.
+            introspection_state: Whether to publish nothing, which requests there are, or their
+                contents as well.
+
+        Raises:
+            TypeError: `clock` or the profile has the wrong type.
+            ValueError: `introspection_state` is unknown.
+            EntityDestroyedError: the service was destroyed (a RuntimeError).
+        """
+        self._refuse_if_destroyed("configure introspection")
+        self._introspects = self._introspection.configure(
+            clock, service_event_qos_profile, introspection_state
+        )
 
     def _add_registrations(self, registrations: Sequence[Registration]) -> None:
         """Keep what the transports returned for this server, to be closed with it."""
@@ -126,6 +164,8 @@ class Service(Entity, Generic[RequestT, ResponseT]):
             return None
         self.stats.received += 1
         self.stats.queue_wait.record(perf_ns() - entered_ns)
+        if self._introspects:
+            self._introspection.publish(REQUEST_RECEIVED, request.sample_info, request.message)
         try:
             if self._wants_response:
                 entered = self._runner.enter(request.message, self.srv_type.Response())
@@ -163,10 +203,13 @@ class Service(Entity, Generic[RequestT, ResponseT]):
                 f"{type_name(self.srv_type.Response)}; it must end with `return response`"
             )
         request.reply(response)
+        if self._introspects:
+            self._introspection.publish(RESPONSE_SENT, request.sample_info, response)
 
     def _close(self) -> None:
         """Withdraw the service, and drop the queued requests."""
         self._graph_entry.close()
+        self._introspection.close()
         for registration in self._registrations:
             registration.close()
         for request in self._message_queue.discard():

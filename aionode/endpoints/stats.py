@@ -127,14 +127,17 @@ def _middle_ns(bucket: int) -> int:
 class CallbackStats:
     """What became of the messages, requests or ticks of one entity.
 
-    Everything that arrived is in ``received``, in ``dropped``, in ``expired``, or still queued.
+    Everything that arrived is in ``received``, ``dropped``, ``expired`` or ``filtered``, or still
+    queued.
 
     Attributes:
         received: How many were handed to a callback or a reader.
         dropped: How many a full queue discarded, or were unread when the entity was destroyed.
         expired: How many were older than their lifespan when they arrived, or when their turn came.
         errors: How many callbacks raised.
-        lost: How many are missing in the sequence numbers of publishers in other processes.
+        filtered: How many arrived and did not pass the content filter.
+        lost: How many are missing in the sequence numbers of publishers in other processes; not
+            counted while there is a content filter.
         queue_wait: From arrival to the start of the callback.
         run_time: From the start of the callback to its end, including its awaits.
         blocking: The longest stretch of each callback without an await, which blocks the loop.
@@ -147,6 +150,7 @@ class CallbackStats:
         "dropped",
         "errors",
         "expired",
+        "filtered",
         "lost",
         "queue_wait",
         "received",
@@ -158,6 +162,7 @@ class CallbackStats:
         self.dropped = 0
         self.expired = 0
         self.errors = 0
+        self.filtered = 0
         self.lost = 0
         self.queue_wait = Distribution(self._record_noted)
         self.run_time = Distribution(self._record_noted)
@@ -220,6 +225,15 @@ class PublisherStats:
         What a full subscription drops is counted by the subscription.
         """
         return sum(writer.dropped for writer in self._writers)
+
+    @property
+    def filtered(self) -> int:
+        """How many messages were not sent, as no subscription of another process wants them.
+
+        Counted once for each link, and once for Zenoh. What arrives and does not pass the content
+        filter of a subscription is counted by the subscription.
+        """
+        return sum(writer.filtered for writer in self._writers)
 
     @property
     def routes(self) -> dict[str, str]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar
 
 from aionode._concurrency import SLICE_NS, checkpoint
 from aionode.clock import perf_ns
+from aionode.content_filter import ContentFilterOptions, compile_filter
 from aionode.endpoints._core.callback_runner import (
     CallbackRunner,
     accepts,
@@ -17,10 +18,11 @@ from aionode.endpoints._core.entity import Entity
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints._qos.subscription_monitor import SubscriptionMonitor
 from aionode.endpoints.stats import CallbackStats
-from aionode.errors import EntityDestroyedError
+from aionode.errors import DecodeError, EntityDestroyedError
 from aionode.graph import EndpointKind
 from aionode.message import Message
 from aionode.qos import HistoryPolicy, depth_of
+from aionode.transport.base import ReaderRegistration
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Sequence
@@ -33,7 +35,6 @@ if TYPE_CHECKING:
         SubscriptionEvent,
         SubscriptionEventCallbacks,
     )
-    from aionode.errors import DecodeError
     from aionode.graph import EndpointInfo
     from aionode.qos import QoSProfile
     from aionode.transport.base import Registration, SampleInfo
@@ -100,6 +101,7 @@ class Subscription(Entity, Generic[ItemT]):
         self.stats = CallbackStats()
         self._graph_entry = graph_entry
         self._registrations: list[Registration] = []  # one for each transport
+        self._content_filter = ContentFilterOptions()
         self._concurrent = checked_concurrency(concurrent, self._subject)
         self._turn_ends_ns = 0
         self._runner: CallbackRunner | None = None
@@ -140,6 +142,48 @@ class Subscription(Entity, Generic[ItemT]):
         It is the same stream each time; it begins with what has happened so far.
         """
         return self._monitor.events()
+
+    # Content filter
+
+    @property
+    def is_cft_enabled(self) -> bool:
+        """Whether a content filter is set."""
+        return bool(self._content_filter.filter_expression)
+
+    def set_content_filter(
+        self, filter_expression: str, expression_parameters: Sequence[str] = ()
+    ) -> None:
+        """Receive only messages that pass a filter, from now on.
+
+        Messages that are already in the queue stay there. Publishers of aionode in other processes
+        learn of the filter as soon as the network allows, and then leave out what no subscription
+        wants; `stats.filtered` counts what arrived and did not pass.
+
+        Args:
+            filter_expression: A condition over the fields of the message, as described in
+                `aionode.content_filter`; an empty one lets all messages pass.
+            expression_parameters: The literals that ``%0`` and the following stand for, as text.
+
+        Raises:
+            ContentFilterError: the expression is malformed, or does not fit the type (a
+                ValueError). The filter before it stays.
+            TypeError: a parameter is not a str.
+            EntityDestroyedError: the subscription was destroyed (a RuntimeError).
+        """
+        self._refuse_if_destroyed("set content filter")
+        accepts = None
+        if filter_expression:
+            accepts = compile_filter(self.msg_type, filter_expression, expression_parameters)
+            if self.raw:
+                accepts = decoding(self.msg_type, accepts)
+        self._content_filter = ContentFilterOptions(filter_expression, list(expression_parameters))
+        self._reader.set_filter(accepts)
+        self._announce_filter()
+
+    def get_content_filter(self) -> ContentFilterOptions:
+        """Return the content filter; its expression is empty if there is none."""
+        given = self._content_filter
+        return ContentFilterOptions(given.filter_expression, list(given.expression_parameters))
 
     # Reading without a callback
 
@@ -188,6 +232,13 @@ class Subscription(Entity, Generic[ItemT]):
     def _add_registrations(self, registrations: Sequence[Registration]) -> None:
         """Keep what the transports returned for this reader, to be closed with it."""
         self._registrations.extend(registrations)
+        if self.is_cft_enabled:
+            self._announce_filter()
+
+    def _announce_filter(self) -> None:
+        for registration in self._registrations:
+            if isinstance(registration, ReaderRegistration):
+                registration.set_content_filter(self._content_filter)
 
     def _run(self) -> Coroutine[Any, Any, None] | None:
         """Return the coroutine that calls the callback; None without a callback."""
@@ -213,6 +264,21 @@ class Subscription(Entity, Generic[ItemT]):
         self._reader.close(discard=self._runner is not None)
 
 
+def decoding(msg_type: type[Message], accepts: Callable[[Any], bool]) -> Callable[[Any], bool]:
+    """Return a filter for messages that are delivered as CDR bytes."""
+    from aionode.wire import cdr  # few subscriptions are raw
+
+    decode = cdr.decoder(msg_type)
+
+    def accepts_bytes(data: Any) -> bool:
+        try:
+            return accepts(decode(data))
+        except DecodeError:
+            return True  # a raw subscription gets malformed messages, too
+
+    return accepts_bytes
+
+
 class _Reader(MessageQueue[Any]):
     """The queue of a subscription, into which transports deliver: their `Reader`.
 
@@ -226,10 +292,12 @@ class _Reader(MessageQueue[Any]):
     Attributes:
         note_alive: Takes the assertion of a publisher that it is alive.
         on_arrival: Called with each message; returns whether to deliver it. None for all.
+        on_filtered: Called for each message that the content filter rejects; None for nothing.
         on_lost: Called with the number of messages that are found missing; None for nothing.
     """
 
     __slots__ = (
+        "_accepts",
         "_closed",
         "_last_sequences",
         "_now_ns",
@@ -237,6 +305,7 @@ class _Reader(MessageQueue[Any]):
         "endpoint",
         "note_alive",
         "on_arrival",
+        "on_filtered",
         "on_lost",
         "raw",
         "wants_info",
@@ -258,8 +327,10 @@ class _Reader(MessageQueue[Any]):
         self.wants_info = wants_info
         self._now_ns = time_base.system_ns
         self._closed = False
+        self._accepts: Callable[[Any], bool] | None = None  # the content filter
         self.note_alive: Callable[[bytes], None]
         self.on_arrival: Callable[[SampleInfo], bool] | None = None
+        self.on_filtered: Callable[[SampleInfo], None] | None = None
         self.on_lost: Callable[[int], None] | None = None
         # By gid, for publishers in other processes; the one heard last is last.
         self._last_sequences: dict[bytes, int] = {}
@@ -267,7 +338,13 @@ class _Reader(MessageQueue[Any]):
 
     def deliver(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
         """Take one message from a transport; see `Reader` for `inline_deadline_ns`."""
-        if sample_info.remote:
+        if self._accepts is not None:
+            if not self._accepts(msg):
+                self.stats.filtered += 1
+                if self.on_filtered is not None:
+                    self.on_filtered(sample_info)
+                return
+        elif sample_info.remote:
             # Moved to the end, so that the first has been silent for longest.
             sequences = self._last_sequences
             gid, sequence = sample_info.gid, sample_info.sequence
@@ -282,6 +359,14 @@ class _Reader(MessageQueue[Any]):
         item = (msg, self._info(sample_info)) if self.wants_info else msg
         if not (inline_deadline_ns and self.take_inline(item, inline_deadline_ns)):
             self.put(item)
+
+    def set_filter(self, accepts: Callable[[Any], bool] | None) -> None:
+        """Deliver only what `accepts` is true of, or everything.
+
+        Gaps are not counted with a filter: publishers may leave out what does not pass.
+        """
+        self._accepts = accepts
+        self._last_sequences.clear()
 
     def reject(self, error: DecodeError) -> None:  # noqa: ARG002  # the transport has logged it
         """Count bytes that are not a message of the subscription's type."""

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from collections.abc import Set as AbstractSet
 
+    from aionode.content_filter import ContentFilterOptions
     from aionode.errors import DecodeError, ServiceError
     from aionode.graph import EndpointInfo, Graph, NodeInfo
 
@@ -28,6 +29,7 @@ __all__ = [
     "Call",
     "LinkStatus",
     "Reader",
+    "ReaderRegistration",
     "Registration",
     "ReplyTo",
     "Request",
@@ -102,6 +104,18 @@ class Reader(Protocol):
         """Call `callback` soon after the next message was taken, or the reader destroyed."""
 
 
+class ReaderRegistration(Registration):
+    """A subscription that was announced to a transport, until it is closed."""
+
+    @abstractmethod
+    def set_content_filter(self, content_filter: ContentFilterOptions) -> None:
+        """Tell the publishers that this transport reaches which messages are wanted.
+
+        They may leave out the others, and need not: the subscription leaves them out itself. An
+        empty expression wants all messages.
+        """
+
+
 class Writer(Registration):
     """The sending end of one publisher in one transport.
 
@@ -139,6 +153,11 @@ class Writer(Registration):
     @property
     def dropped(self) -> int:
         """How many messages were dropped on their way because it was slow."""
+        return 0
+
+    @property
+    def filtered(self) -> int:
+        """How many messages were not sent to another process that wants none of them."""
         return 0
 
     def route_of(self, reader: EndpointInfo) -> str | None:  # noqa: ARG002  # knows of none
@@ -289,7 +308,10 @@ class Transport(ABC):
     def create_reader(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
     ) -> Registration:
-        """Announce a subscription of `msg_type`, whose messages go to `reader`."""
+        """Announce a subscription of `msg_type`, whose messages go to `reader`.
+
+        What it returns may be a `ReaderRegistration`, if publishers are to learn of filters.
+        """
 
     @abstractmethod
     def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Registration:

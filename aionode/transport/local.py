@@ -117,7 +117,10 @@ class _Topic:
 
 
 class LocalReader(Registration):
-    """A subscription as its publishers in the same context see it."""
+    """A subscription as its publishers in the same context see it.
+
+    Its content filter is applied where a message is delivered, which is still within `publish`.
+    """
 
     def __init__(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader, topic: _Topic

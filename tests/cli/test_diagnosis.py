@@ -209,3 +209,16 @@ def test_a_normal_network_is_not_remarked_on() -> None:
 def test_names_that_are_alike(one: str, other: str, alike: bool) -> None:
     """Different words are not a misspelling."""
     assert (likeness(one, other) >= 0.8) is alike
+
+
+async def test_two_servers_of_one_service_are_a_hint(
+    tool: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """Each call reaches both, which is rarely meant."""
+    for name in ("one", "two"):
+        node_factory(name).create_service(AddTwoInts, "/add", lambda request, response: response)
+
+    status, (found,) = await findings(tool, screen)
+
+    assert (status, found["severity"], found["subject"]) == (0, "hint", "service /add")
+    assert found["text"].startswith("it has 2 servers, of /one, /two: each request goes to all")

@@ -243,7 +243,7 @@ async def test_keep_all_refuses_to_publish_when_a_reliable_reader_is_full(
     node: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Nothing is lost, and no reader gets a message that another could not take."""
-    monkeypatch.setattr("aionode.endpoints.subscription.KEEP_ALL_DEPTH", 2)
+    monkeypatch.setattr("aionode.qos._profile.KEEP_ALL_DEPTH", 2)
     full = node.create_subscription(String, "words", qos_profile=KEEP_ALL)
     other = node.create_subscription(String, "words", qos_profile=10)
     publisher = node.create_publisher(String, "words", KEEP_ALL)
@@ -263,7 +263,7 @@ async def test_a_best_effort_keep_all_reader_drops_the_newest(
     node: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It never holds up a publisher."""
-    monkeypatch.setattr("aionode.endpoints.subscription.KEEP_ALL_DEPTH", 2)
+    monkeypatch.setattr("aionode.qos._profile.KEEP_ALL_DEPTH", 2)
     reader = node.create_subscription(String, "words", qos_profile=BEST_EFFORT_KEEP_ALL)
     fill(node.create_publisher(String, "words", KEEP_ALL), "a", "b", "c")
     reader.destroy()
@@ -273,7 +273,7 @@ async def test_a_best_effort_keep_all_reader_drops_the_newest(
 
 async def test_drain_waits_for_room(node: Node, monkeypatch: pytest.MonkeyPatch) -> None:
     """A publisher that must not lose anything goes at the pace of its reader."""
-    monkeypatch.setattr("aionode.endpoints.subscription.KEEP_ALL_DEPTH", 2)
+    monkeypatch.setattr("aionode.qos._profile.KEEP_ALL_DEPTH", 2)
     reader = node.create_subscription(String, "words", qos_profile=KEEP_ALL)
     publisher = node.create_publisher(String, "words", KEEP_ALL)
     fill(publisher, "a", "b")
@@ -291,7 +291,7 @@ async def test_drain_ends_when_the_full_reader_goes(
     node: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """No reader is left to wait for."""
-    monkeypatch.setattr("aionode.endpoints.subscription.KEEP_ALL_DEPTH", 1)
+    monkeypatch.setattr("aionode.qos._profile.KEEP_ALL_DEPTH", 1)
     reader = node.create_subscription(String, "words", qos_profile=KEEP_ALL)
     publisher = node.create_publisher(String, "words", KEEP_ALL)
     fill(publisher, "a")

@@ -458,3 +458,29 @@ def test_a_node_whose_own_constructor_fails_leaves_its_context() -> None:
     assert context.graph.nodes() == []
     assert context.graph.endpoints() == []
     assert repr(context).endswith("nodes=0>")
+
+
+async def test_a_callback_group_as_third_argument_of_create_timer_is_reported(
+    node: Node, caplog: pytest.LogCaptureFixture
+) -> None:
+    """There rclpy has its callback group, and aionode its clock."""
+
+    class MutuallyExclusiveCallbackGroup:
+        def can_execute(self, entity: object) -> bool:
+            return True
+
+    for _ in range(2):
+        timer = node.create_timer(1.0, lambda: None, MutuallyExclusiveCallbackGroup())  # type: ignore[arg-type]
+
+    assert timer.clock is node.get_clock()
+    (record,) = [one for one in caplog.records if one.levelname == "WARNING"]
+    text = record.getMessage()
+    assert "the third argument is a MutuallyExclusiveCallbackGroup, which has no effect" in text
+
+
+def test_a_clock_that_is_none_is_refused() -> None:
+    """With what to give instead."""
+    node = Node("node", context=local_context())
+
+    with pytest.raises(TypeError, match=r"create_timer: clock is 'steady'; give a clock such as"):
+        node.create_timer(1.0, lambda: None, "steady")  # type: ignore[arg-type]

@@ -17,6 +17,7 @@ from aionode.cli._support.options import (
     positive,
     ros2_options,
     stdin_text,
+    whole,
 )
 from aionode.cli._support.session import run_verb
 from aionode.cli._verbs.service import call, info
@@ -28,7 +29,7 @@ service_argument = click.argument("service_name", shell_complete=complete_names(
 
 @click.group()
 def service() -> None:
-    """List, find and call services."""
+    """List, find, call and watch services."""
 
 
 @service.command("list")
@@ -73,4 +74,40 @@ def call_command(json: bool, values: str | None, stdin: bool, **options: Any) ->
         lambda node, output: call(node, values=text, output=output, **options),
         json=json,
         endless=options["rate"] is not None,
+    )
+
+
+@service.command("echo")
+@service_argument
+@click.argument("service_type", required=False, shell_complete=complete_types_of("service", "srv"))
+@click.option("--csv", is_flag=True, help="Print all values on one line, separated by commas.")
+@click.option("-f", "--full-length", is_flag=True, help="Print arrays and strings in full.")
+@click.option(
+    "-l",
+    "--truncate-length",
+    metavar="N",
+    type=whole,
+    default=128,
+    show_default=True,
+    help="Print arrays and strings up to this length.",
+)
+@click.option("--no-arr", is_flag=True, help="Describe arrays instead of printing them.")
+@click.option("--no-str", is_flag=True, help="Describe strings instead of printing them.")
+@click.option("--flow-style", is_flag=True, help="Print each event in braces, on one line.")
+@click.option("--once", is_flag=True, help="Print one event and end.")
+@click.option("--timeout", metavar="N", type=positive, help="End after N seconds.")
+@json_option
+@interfaces_option
+@ros2_options
+def echo_command(json: bool, once: bool, **options: Any) -> None:
+    """Print each request and response of a service that is introspected."""
+    from aionode.cli._verbs.service_echo import echo
+
+    if options.pop("full_length"):
+        options["truncate_length"] = None
+    run_verb(
+        lambda node, output: echo(node, once=once, output=output, **options),
+        json=json,
+        endless=not once,
+        busy=True,
     )

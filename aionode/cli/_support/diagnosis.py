@@ -43,7 +43,12 @@ class Finding:
 
 def diagnose(nodes: Sequence[NodeInfo], endpoints: Sequence[EndpointInfo]) -> list[Finding]:
     """Return all findings, problems first."""
-    found = [*same_names(nodes), *mismatches(endpoints), *diagnose_names(endpoints)]
+    found = [
+        *same_names(nodes),
+        *same_servers(endpoints),
+        *mismatches(endpoints),
+        *diagnose_names(endpoints),
+    ]
     unique = list(dict.fromkeys(found))
     return sorted(unique, key=lambda finding: finding.severity != "problem")
 
@@ -57,6 +62,25 @@ def same_names(nodes: Sequence[NodeInfo]) -> Iterator[Finding]:
                 name,
                 f"{count} nodes share this name, so requests for its parameters reach all of them",
                 f"give each its own name: --ros-args -r __node:={name.rpartition('/')[2]}_2",
+            )
+
+
+def same_servers(endpoints: Iterable[EndpointInfo]) -> Iterator[Finding]:
+    """Yield a finding for each service and action that has servers in several nodes."""
+    servers: dict[str, dict[str, None]] = {}
+    for endpoint in endpoints:
+        if endpoint.kind is EndpointKind.SERVER:
+            node = endpoint.node.fully_qualified_name
+            servers.setdefault(endpoint.name, {})[node] = None
+    for name, nodes in servers.items():
+        action = name.removesuffix("/_action/send_goal")
+        if len(nodes) > 1 and (action != name or not is_hidden(name)):
+            yield Finding(
+                "hint",
+                f"{'service' if action == name else 'action'} {action}",
+                f"it has {len(nodes)} servers, of {', '.join(nodes)}: each request goes to all of "
+                "them, and the first response is taken",
+                f"stop one of them, or rename it: --ros-args -r {action}:=…",
             )
 
 

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine
     from typing import Any
 
+    from aionode.endpoints._core.loop_affinity import LoopAffinity
+
 __all__ = ["EndStage", "Entity"]
 
 
@@ -52,10 +54,12 @@ class Entity:
         self.destroyed = False
         self._task: asyncio.Task[None] | None = None
         self._on_destroy: Callable[[Entity], None] | None = None
+        self._node_affinity: LoopAffinity | None = None
 
-    def _adopt(self, on_destroy: Callable[[Entity], None]) -> None:
-        """Set what is called when the entity is destroyed. Called once, by the node."""
+    def _adopt(self, on_destroy: Callable[[Entity], None], affinity: LoopAffinity) -> None:
+        """Set what is called when the entity is destroyed, and where. Called once, by the node."""
         self._on_destroy = on_destroy
+        self._node_affinity = affinity
 
     def _start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:
         """Start `_run` as a task of `tasks`; return it, or None if there is no work."""
@@ -74,8 +78,16 @@ class Entity:
         return None
 
     def destroy(self) -> None:
-        """End the entity: it sends, receives and calls nothing any more. May be called twice."""
+        """End the entity: it sends, receives and calls nothing any more. May be called twice.
+
+        It may be called in any thread. Outside the thread of the node's event loop it blocks until
+        the loop has done it.
+        """
         if self.destroyed:
+            return
+        affinity = self._node_affinity
+        if affinity is not None and affinity.is_other_thread():
+            affinity.wait_for(self.destroy)
             return
         self.destroyed = True
         # A failed callback has already cancelled the others; cancelling again would interrupt what

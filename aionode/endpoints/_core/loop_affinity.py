@@ -1,27 +1,31 @@
-"""Which event loop and thread a node runs in, for calls from other threads."""
+"""Which event loop and thread a context works in, for calls from other threads."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
 from concurrent.futures import Future
+from functools import partial, wraps
 from threading import get_ident
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["LoopAffinity"]
+__all__ = ["LoopAffinity", "in_loop_thread", "in_thread_of_node"]
+
+ResultT = TypeVar("ResultT")
+MethodT = TypeVar("MethodT", bound="Callable[..., Any]")
 
 PATIENCE_S = 1.0
 """How often a waiting thread checks whether the event loop has been closed."""
 
 
 class LoopAffinity:
-    """The event loop that a node runs in.
+    """The event loop that the nodes of a context run in.
 
     Attributes:
-        thread: The thread of that loop; 0 while the node does not run.
+        thread: The thread of that loop; 0 while the context is not open.
     """
 
     __slots__ = ("_loop", "thread")
@@ -31,17 +35,17 @@ class LoopAffinity:
         self._loop: asyncio.AbstractEventLoop | None = None
 
     def attach(self) -> None:
-        """Record the running loop and its thread as those of the node."""
+        """Record the running loop and its thread as those of the context."""
         self._loop = asyncio.get_running_loop()
         self.thread = get_ident()
 
     def detach(self) -> None:
-        """Forget them: the node has stopped."""
+        """Forget them: the context is closed."""
         self._loop = None
         self.thread = 0
 
     def is_other_thread(self) -> bool:
-        """Return whether the node runs in a thread other than this one."""
+        """Return whether the context works in a thread other than this one."""
         return self.thread not in (0, get_ident())
 
     def call(self, action: Callable[[], object]) -> None:
@@ -50,11 +54,11 @@ class LoopAffinity:
         if loop is None or not self.is_other_thread():
             action()
             return
-        with contextlib.suppress(RuntimeError):  # the loop was closed, and with it the node
+        with contextlib.suppress(RuntimeError):  # the loop was closed, and with it the context
             loop.call_soon_threadsafe(action)
 
-    def wait_for(self, action: Callable[..., None], *args: Any) -> None:
-        """Run `action` in the loop's thread, and wait until it is done. From other threads only.
+    def wait_for(self, action: Callable[..., ResultT], *args: Any) -> ResultT:
+        """Run `action` in the loop's thread, and return its result. From other threads only.
 
         Raises:
             Exception: what `action` raised.
@@ -62,26 +66,53 @@ class LoopAffinity:
         """
         loop = self._loop
         if loop is None:
-            action(*args)
-            return
-        done: Future[None] = Future()
+            return action(*args)
+        done: Future[ResultT] = Future()
 
         def act() -> None:
             try:
-                action(*args)
+                result = action(*args)
             except Exception as error:  # noqa: BLE001  # raised in the calling thread
                 done.set_exception(error)
             else:
-                done.set_result(None)
+                done.set_result(result)
 
         loop.call_soon_threadsafe(act)
         while True:
             try:
-                done.result(PATIENCE_S)
+                return done.result(PATIENCE_S)
             except TimeoutError:
                 if done.done():
                     raise  # it is what `action` raised
                 if loop.is_closed():
                     raise RuntimeError("the event loop of the node was closed") from None
-            else:
-                return
+
+
+def in_loop_thread(method: MethodT) -> MethodT:
+    """Have a method of a node run in the thread of the node's loop, and its caller wait for it.
+
+    Entities are created there, as the graph, the transports and Zenoh's session know no locks.
+    """
+
+    @wraps(method)
+    def call(self: Any, *args: Any, **options: Any) -> Any:
+        affinity: LoopAffinity = self._affinity
+        if affinity.is_other_thread():
+            return affinity.wait_for(partial(method, self, *args, **options))
+        return method(self, *args, **options)
+
+    return call  # type: ignore[return-value]  # it has the same signature
+
+
+def in_thread_of_node(constructor: MethodT) -> MethodT:
+    """Have a constructor, whose first argument is a node, run in the thread of the node's loop."""
+
+    @wraps(constructor)
+    def construct(self: Any, node: Any, *args: Any, **options: Any) -> None:
+        affinity: LoopAffinity = node._affinity
+        if affinity.is_other_thread():
+            affinity.wait_for(partial(constructor, self, node, *args, **options))
+        else:
+            constructor(self, node, *args, **options)
+
+    return construct  # type: ignore[return-value]  # it has the same signature

@@ -10,12 +10,13 @@ from uuid import uuid4
 
 from aionode._concurrency import checkpoint
 from aionode.endpoints._core.callback_runner import accepts, consume
-from aionode.endpoints._core.entity import EndStage, Entity
+from aionode.endpoints._core.entity import EndStage
 from aionode.endpoints._core.future import Futures, asks
+from aionode.endpoints._core.loop_affinity import in_thread_of_node
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints.actions._cancel_request import CancelRequest
 from aionode.endpoints.actions._client_goal import ActionResult, ClientGoalHandle
-from aionode.endpoints.actions._common import expect_action_type, reason_id
+from aionode.endpoints.actions._common import ActionEntity, expect_action_type, reason_id
 from aionode.endpoints.actions._goal import GoalStatus
 from aionode.endpoints.stats import CallbackStats
 from aionode.errors import (
@@ -65,7 +66,7 @@ FEEDBACK_QOS = QoSProfile(depth=1000)
 """All goals share one queue of feedback, with room for what ten goals keep."""
 
 
-class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
+class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     """Sends goals to an action server. Works while its node runs.
 
     ::
@@ -99,6 +100,7 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
         EntityDestroyedError: the node was destroyed (a RuntimeError).
     """
 
+    @in_thread_of_node
     def __init__(
         self,
         node: ActionNode,
@@ -129,7 +131,6 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
 
         impl = self.action_type.Impl
         hidden = f"{self.action_name}/_action"
-        self._parts: list[Entity] = []
         try:
             self._send_goal = self._part(
                 node.create_client(
@@ -172,10 +173,6 @@ class ActionClient(Entity, Generic[GoalT, ResultT, FeedbackT]):
             self._close_parts()
             raise
         node._add_entity(self)
-
-    def _part(self, part: Any) -> Any:
-        self._parts.append(part)
-        return part
 
     def __repr__(self) -> str:
         return (

@@ -1,4 +1,4 @@
-"""What action servers and clients share: argument checks, stamps, and abort reasons."""
+"""What action servers and clients share: their parts, argument checks, stamps, abort reasons."""
 
 from __future__ import annotations
 
@@ -7,14 +7,21 @@ import math
 from collections.abc import Awaitable
 from typing import TYPE_CHECKING, Any
 
+from aionode.endpoints._core.entity import EndStage, Entity
+from aionode.endpoints.client import Client
+from aionode.endpoints.service import Service
 from aionode.errors import brief, shortened
 from aionode.message import ActionType
 
 if TYPE_CHECKING:
+    from aionode.clock import Clock
     from aionode.endpoints._core.callback_runner import CallbackContext
+    from aionode.endpoints.service_introspection import ServiceIntrospectionState
+    from aionode.qos import QoSProfile
 
 __all__ = [
     "AbortReason",
+    "ActionEntity",
     "awaited",
     "expect_action_type",
     "in_event_loop",
@@ -23,6 +30,45 @@ __all__ = [
     "seconds_to_ns",
     "stamp_ns",
 ]
+
+
+class ActionEntity(Entity):
+    """An action server or client: an entity that is made of other entities, its parts."""
+
+    def __init__(self, subject: str, stage: EndStage = EndStage.CALLBACKS) -> None:
+        super().__init__(subject, stage)
+        self._parts: list[Entity] = []
+
+    def _part(self, part: Any) -> Any:
+        self._parts.append(part)
+        return part
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile | int,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Publish what the three services of the action send and receive from now on.
+
+        The topics are ``<action>/_action/send_goal/_service_event``, and those of ``cancel_goal``
+        and ``get_result``.
+
+        Args:
+            clock: Where the time stamps come from, such as ``node.get_clock()``.
+            service_event_qos_profile: QoS of the publishers.
+            introspection_state: Whether to publish nothing, which requests there are, or their
+                contents as well.
+
+        Raises:
+            TypeError: `clock` or the profile has the wrong type.
+            ValueError: `introspection_state` is unknown.
+            EntityDestroyedError: the action server or client was destroyed (a RuntimeError).
+        """
+        self._refuse_if_destroyed("configure introspection")
+        for part in self._parts:
+            if isinstance(part, Service | Client):
+                part.configure_introspection(clock, service_event_qos_profile, introspection_state)
 
 
 # Why a goal was aborted

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 from aionode.clock import perf_ns
 from aionode.endpoints._core.callback_runner import accepts, checked_concurrency, consume
-from aionode.endpoints._core.entity import Entity
+from aionode.endpoints._core.loop_affinity import in_thread_of_node
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints.actions._common import (
     AbortReason,
+    ActionEntity,
     awaited,
     expect_action_type,
     in_event_loop,
@@ -66,7 +67,7 @@ DRAIN_LIMIT_S = 1.0
 """How long a result waits until the last feedback is sent, in seconds of real time."""
 
 
-class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
+class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     """Executes goals that clients send, reports progress, and can be asked to stop.
 
     ::
@@ -131,6 +132,7 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
         EntityDestroyedError: the node was destroyed (a RuntimeError).
     """
 
+    @in_thread_of_node
     def __init__(
         self,
         node: ActionNode,
@@ -187,7 +189,6 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
 
         impl = self.action_type.Impl
         hidden = f"{self.action_name}/_action"
-        self._parts: list[Entity] = []
         try:
             self._feedback = self._part(
                 node.create_publisher(
@@ -233,10 +234,6 @@ class ActionServer(Entity, Generic[GoalT, ResultT, FeedbackT]):
             self._close_parts()
             raise
         node._add_entity(self)
-
-    def _part(self, part: Any) -> Any:
-        self._parts.append(part)
-        return part
 
     def __repr__(self) -> str:
         active = sum(goal.is_active for goal in self._goals.values())

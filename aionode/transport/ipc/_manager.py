@@ -90,6 +90,7 @@ class LinkManager:
         peer_directory: What is known about other contexts.
 
     Attributes:
+        content_filters: What subscriptions of other contexts want.
         pool: Shared memory for large payloads.
         now_ns: Returns the time of the context, in nanoseconds since 1970.
         writers: The publishers that may use links.
@@ -108,6 +109,8 @@ class LinkManager:
         self.servers: dict[bytes, IpcServer] = {}
         self.requesters: dict[bytes, IpcRequester] = {}
         self._peer_directory = peer_directory
+        self.content_filters = peer_directory.content_filters
+        self.content_filters.on_change.append(self._refilter)
         self._hello = Hello(participant, VERSION, domain_id)
         self._domain_id = domain_id
         self._graph: Graph | None = None
@@ -131,6 +134,10 @@ class LinkManager:
         self._timers: set[asyncio.TimerHandle] = set()  # of `later`, until they have run
         self._link_changes = 0
         self._malformed = 0  # retransmitted batches that could not be read
+
+    def _refilter(self) -> None:
+        for writer in self.writers.values():
+            writer.update_filters()
 
     # Lifetime
 

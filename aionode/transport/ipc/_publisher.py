@@ -59,6 +59,9 @@ class IpcWriter(Writer):
         self._needs_zenoh = True
         # The registry's `changes` when that was computed; -1 to compute it again.
         self._asked_at = -1
+        # Whether a send queue has `wants`, and how many messages it has not got because of that.
+        self._is_filtered = False
+        self._filtered = 0
         # How many messages were dropped in send queues that were removed.
         self._dropped = 0
 
@@ -72,6 +75,11 @@ class IpcWriter(Writer):
         """How many messages were dropped because a link was slow, or Zenoh."""
         linked = sum(send_queue.dropped for send_queue in self._send_queues.values())
         return self._dropped + linked + self._zenoh.dropped
+
+    @property
+    def filtered(self) -> int:
+        """How many messages were not sent over a link, or over Zenoh, as none is wanted there."""
+        return self._filtered + self._zenoh.filtered
 
     def route_of(self, reader: EndpointInfo) -> str | None:
         """Return ``link``, ``zenoh``, or both while another subscription still needs Zenoh."""
@@ -92,24 +100,28 @@ class IpcWriter(Writer):
         """Send `msg` over each route that a subscription needs."""
         send_queues = self._send_queues
         if send_queues:
+            # A tuple, as one of them may prove to be broken, and is removed.
+            targets = tuple(send_queues.values())
+            if self._is_filtered:
+                targets = self._wanting(targets, msg)
             encode = self._encode
             if encode is None:
                 encode = self._encode = cdr.encoder(self._msg_type)
                 self._shares = has_views(self._msg_type)
             sequence = sample_info.sequence
-            if self._shares:
-                self._write_parts(cdr.parts_encoder(self._msg_type)(msg), sample_info)
+            if not targets:
+                pass
+            elif self._shares:
+                self._write_parts(cdr.parts_encoder(self._msg_type)(msg), sample_info, targets)
             elif len(payload := encode(msg)) >= SHARED_FROM:
-                self._write_parts([payload], sample_info)
+                self._write_parts([payload], sample_info, targets)
             else:
                 # `protocol.pack` inlined: one call less for each message.
                 head = protocol.HEADER.pack(
                     len(payload), DATA, 0, protocol.MARK, sequence, sample_info.source_ns, self._gid
                 )
                 data = head + payload
-                for send_queue in tuple(
-                    send_queues.values()
-                ):  # one may prove to be broken, and is removed
+                for send_queue in targets:
                     send_queue.send(sequence, data)
             self._sequence = sequence
         if self._needs_zenoh and self.update():
@@ -117,7 +129,22 @@ class IpcWriter(Writer):
                 self._zenoh.write(msg, sample_info)
             self._sequence = sample_info.sequence
 
-    def _write_parts(self, parts: Sequence[Data], sample_info: SampleInfo) -> None:
+    def _wanting(self, send_queues: tuple[IpcSendQueue, ...], msg: Any) -> tuple[IpcSendQueue, ...]:
+        """Return the send queues of processes in which a subscription wants `msg`."""
+        wanting = tuple(one for one in send_queues if one.wants is None or one.wants(msg))
+        self._filtered += len(send_queues) - len(wanting)
+        return wanting
+
+    def update_filters(self) -> None:
+        """Find out which processes want all messages, after a change of subscriptions."""
+        filters = self._registry.content_filters
+        for send_queue in self._send_queues.values():
+            send_queue.wants = filters.wanted_by(send_queue.readers, self._msg_type)
+        self._is_filtered = any(one.wants is not None for one in self._send_queues.values())
+
+    def _write_parts(
+        self, parts: Sequence[Data], sample_info: SampleInfo, targets: tuple[IpcSendQueue, ...]
+    ) -> None:
         """Send what may be large: if it is, in one shared buffer for all links."""
         pool = self._registry.pool
         size = sum(map(len, parts))
@@ -127,7 +154,7 @@ class IpcWriter(Writer):
         data = protocol.pack(
             DATA, sample_info.sequence, sample_info.source_ns, self._gid, payload, in_shm=in_shm
         )
-        for send_queue in tuple(self._send_queues.values()):
+        for send_queue in targets:
             send_queue.send(sample_info.sequence, data, buffer)
         if buffer is not None:
             pool.release(buffer)
@@ -184,6 +211,7 @@ class IpcWriter(Writer):
                 confirms=asked.confirms and self._reliable,
             ),
         )
+        self.update_filters()
         connection.send(Opened(self._gid, asked.subscription, self._sequence))
         self.update()
 
@@ -207,6 +235,7 @@ class IpcWriter(Writer):
         if send_queue is None:
             return
         send_queue.remove(reader)
+        self.update_filters()
         if not send_queue.readers:
             self._forget(connection)
         self.update()

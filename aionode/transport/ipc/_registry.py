@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.graph import EndpointInfo, EndpointKind
+    from aionode.transport._content_filters import ContentFilters
     from aionode.transport.ipc._connection import Connection
     from aionode.transport.ipc._send_queue import IpcSendQueue
     from aionode.transport.ipc._shared_memory import BufferPool
@@ -25,6 +26,10 @@ class LinkRegistry(Protocol):
 
     pool: BufferPool
     now_ns: Callable[[], int]
+
+    @property
+    def content_filters(self) -> ContentFilters:
+        """What subscriptions of other contexts want."""
 
     @property
     def changes(self) -> int:
@@ -56,6 +61,7 @@ class PeerDirectory(Protocol):
     Attributes:
         advertisement: What it announces of this context; None for nothing.
         on_advertisement: Called with what another context announces, and whether it is present.
+        content_filters: The filters that subscriptions of other contexts have announced.
         has_unannounced_peers: Whether there may be subscriptions that nothing announces.
         on_unannounced_peers: Called when that has changed.
         on_retransmit: Called with what another context has retransmitted to this one.
@@ -63,6 +69,7 @@ class PeerDirectory(Protocol):
 
     advertisement: str | None
     on_advertisement: Callable[[str, bool], None]
+    content_filters: ContentFilters
     has_unannounced_peers: bool
     on_unannounced_peers: Callable[[bool], None]
     on_retransmit: Callable[[bytes], None]

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import FrameError
 from aionode.transport.ipc._connection import whole
 from aionode.transport.ipc._protocol import Kind
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from aionode.transport.ipc._connection import Connection
     from aionode.transport.ipc._protocol import Credit
@@ -63,6 +63,7 @@ class IpcSendQueue:
         readers: The subscriptions, by gid; changes with their `Open` and `Close`.
         confirmed: Whether any of them confirms messages.
         dropped: How many messages were dropped because the queue was full.
+        wants: Whether any of the subscriptions wants a message; None if one wants all.
     """
 
     __slots__ = (
@@ -77,6 +78,7 @@ class IpcSendQueue:
         "dropped",
         "name",
         "readers",
+        "wants",
     )
 
     def __init__(self, name: str, connection: Connection, depth: int, *, keep_all: bool) -> None:
@@ -84,6 +86,7 @@ class IpcSendQueue:
         self.connection = connection
         self.readers: dict[bytes, RemoteSubscription] = {}
         self.dropped = 0
+        self.wants: Callable[[Any], bool] | None = None
         self.confirmed = False
         self._depth = depth
         self._keep_all = keep_all

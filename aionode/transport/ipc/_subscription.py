@@ -28,13 +28,14 @@ from typing import TYPE_CHECKING, Any, Final
 from aionode.errors import DecodeError, FrameError
 from aionode.message import fields
 from aionode.qos import ReliabilityPolicy, depth_of, keeps_all
-from aionode.transport.base import Registration, SampleInfo
+from aionode.transport.base import ReaderRegistration, Registration, SampleInfo
 from aionode.transport.ipc._protocol import Close, Credit, Open, Switched, can_link
 from aionode.wire import cdr
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from aionode.content_filter import ContentFilterOptions
     from aionode.graph import EndpointInfo
     from aionode.transport.base import Reader
     from aionode.transport.ipc._connection import Connection
@@ -434,7 +435,7 @@ class RemotePublisher:
             self.connection.send(Credit(self.publisher, self.gid, used, last))
 
 
-class IpcReader(Registration):
+class IpcReader(ReaderRegistration):
     """A subscription that hears some of its publishers over links.
 
     Zenoh delivers to this in place of the subscription's own reader, so that what arrives over both
@@ -503,6 +504,11 @@ class IpcReader(Registration):
             )
         if remote_publisher.connection is None:
             remote_publisher.open(connection)
+
+    def set_content_filter(self, content_filter: ContentFilterOptions) -> None:
+        """Announce which messages are wanted, to publishers at the other end of links as well."""
+        if isinstance(self._zenoh, ReaderRegistration):
+            self._zenoh.set_content_filter(content_filter)
 
     def forget(self, remote_publisher: RemotePublisher) -> None:
         """Forget a publisher that was destroyed, when nothing of it is on its way any more."""

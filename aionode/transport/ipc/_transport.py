@@ -18,7 +18,14 @@ from aionode.transport.ipc._subscription import IpcReader, may_be_large
 if TYPE_CHECKING:
     from aionode.clock import TimeBase
     from aionode.graph import EndpointInfo, Graph, NodeInfo
-    from aionode.transport.base import LinkStatus, Reader, Registration, Requester, Serve, Writer
+    from aionode.transport.base import (
+        LinkStatus,
+        Reader,
+        Registration,
+        Requester,
+        Serve,
+        Writer,
+    )
     from aionode.transport.ipc._registry import PeerDirectory
 
 __all__ = ["IpcTransport"]

@@ -1,4 +1,4 @@
-"""Limits, sizes and QoS that publishers, subscriptions and services over Zenoh share."""
+"""Limits, sizes, QoS and attachments that publishers, subscriptions and services share."""
 
 from __future__ import annotations
 
@@ -9,9 +9,14 @@ import zenoh
 from aionode.message import fields
 from aionode.qos import DurabilityPolicy, ReliabilityPolicy
 from aionode.transport._zenoh_config import BLOCK_US
+from aionode.transport.base import SampleInfo
 from aionode.transport.zenoh._session_state import FLUSH_S
+from aionode.wire._attachment import unpack_fields
 
 if TYPE_CHECKING:
+    from collections.abc import Container, Iterable
+
+    from aionode.graph import EndpointInfo
     from aionode.qos import QoSProfile
 
 __all__ = [
@@ -21,10 +26,16 @@ __all__ = [
     "FLUSH_NS",
     "GIVEN_UP_NS",
     "STILL_NS",
+    "UNKNOWN_GID",
+    "acknowledging_readers",
     "has_buffers",
     "is_reliable",
     "is_transient",
+    "sample_info_of",
 ]
+
+UNKNOWN_GID = bytes(16)
+"""The gid of a message without a valid attachment."""
 
 BULK_BYTES = 60_000
 """From this size on a message is sent from a thread: it takes more than one packet of Zenoh's."""
@@ -66,3 +77,34 @@ def is_reliable(qos: QoSProfile) -> bool:
 def is_transient(qos: QoSProfile) -> bool:
     """Whether late subscriptions get what was published before."""
     return qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
+
+
+def sample_info_of(extra: zenoh.ZBytes | None) -> SampleInfo | None:
+    """Return the contents of an attachment; None without one in a known form."""
+    if extra is None:
+        return None
+    fields = unpack_fields(extra.to_bytes())
+    return None if fields is None else SampleInfo(fields[2], fields[0], fields[1], True)
+
+
+def acknowledging_readers(
+    readers: Iterable[EndpointInfo], able: Container[str]
+) -> tuple[dict[bytes, str], bool]:
+    """Return the readers that acknowledge, and whether others must not lose messages.
+
+    Args:
+        readers: The matched subscriptions of other contexts.
+        able: The contexts that acknowledge.
+    """
+    acknowledging: dict[bytes, str] = {}
+    others = False
+    for reader in readers:
+        participant = reader.node.participant
+        if participant not in able:
+            others = True
+        elif is_reliable(reader.qos):
+            if is_transient(reader.qos):
+                others = True
+            else:
+                acknowledging[reader.gid] = participant
+    return acknowledging, others

@@ -8,15 +8,27 @@ from typing import TYPE_CHECKING
 import zenoh
 from zenoh import ext
 
-from aionode.transport.zenoh._delivery import BLOCK, DROP
 from aionode.wire import _attachment as attachment
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["declare_keeping", "unless_expired", "withdraw"]
+__all__ = ["declare_keeping", "declare_plain", "unless_expired", "withdraw"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
+
+
+def declare_plain(
+    session: zenoh.Session, key: str, priority: zenoh.Priority, *, reliable: bool, waits: bool
+) -> zenoh.Publisher:
+    """Declare a publisher that keeps nothing; the arguments are as in `declare_keeping`."""
+    return session.declare_publisher(
+        key,
+        congestion_control=zenoh.CongestionControl.BLOCK if waits else zenoh.CongestionControl.DROP,
+        priority=priority,
+        reliability=zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT,
+        allowed_destination=zenoh.Locality.REMOTE,
+    )
 
 
 def declare_keeping(
@@ -28,7 +40,7 @@ def declare_keeping(
     reliable: bool,
     waits: bool,
 ) -> ext.AdvancedPublisher:
-    """Declare a publisher that keeps its last messages for late readers.
+    """Declare a publisher that keeps its last messages for late readers, expired or not.
 
     Args:
         session: The session.
@@ -41,7 +53,7 @@ def declare_keeping(
     return ext.declare_advanced_publisher(
         session,
         key,
-        congestion_control=BLOCK if waits else DROP,
+        congestion_control=zenoh.CongestionControl.BLOCK if waits else zenoh.CongestionControl.DROP,
         priority=priority,
         reliability=zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT,
         allowed_destination=zenoh.Locality.REMOTE,

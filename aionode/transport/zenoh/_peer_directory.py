@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import zenoh
 
+from aionode.transport import _content_filters
 from aionode.transport._send_thread import SendThread
 from aionode.transport.base import LinkStatus
 from aionode.transport.zenoh._handlers import RETRANSMIT_PRIORITY, direct, reason, translated
@@ -24,6 +25,8 @@ __all__ = ["ZenohPeerDirectory"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 PREFIX: Final = "@aionode"
+
+FILTER: Final = _content_filters.KIND
 
 LINKS_S: Final = 0.5
 """How long `link_status` waits for replies; they take a millisecond."""
@@ -43,6 +46,7 @@ class ZenohPeerDirectory:
     Attributes:
         advertisement: What this context announces, as chunks of a key that begin with the
             participant; None to announce and look for nothing.
+        content_filters: The filters that subscriptions of other contexts have announced.
         on_advertisement: Called with the advertisement of another context, and whether it exists.
         has_unannounced_peers: Whether a peer can be reached whose subscriptions are not announced.
         on_unannounced_peers: Called with `has_unannounced_peers` when that has changed.
@@ -57,6 +61,9 @@ class ZenohPeerDirectory:
         self.on_retransmit: Callable[[bytes], None] = ignore
         self._state = state
         self._prefix = f"{PREFIX}/{state.domain_id}/"
+        self.content_filters = state.content_filters
+        self._filters_declared: Any = None
+        self._first_filters = state.queue(self._take_first_filter)
         self._tokens = state.queue(self._take_token)
         self._nodes = state.queue(self._take_node)
         self._changes = state.queue(self._take_change)
@@ -75,17 +82,31 @@ class ZenohPeerDirectory:
         self._session: zenoh.Session | None = None
 
     def start(self, session: zenoh.Session) -> None:
-        """Declare the token, and subscribe to those of others; existing ones arrive at once."""
-        if self.advertisement is None:
+        """Declare the token, and subscribe to those of others; existing ones arrive at once.
+
+        Without links, other contexts are watched only once one of them has announced a filter: its
+        publishers then have to know whether there is any other reader.
+        """
+        if self.advertisement is not None:
+            self._track(session)
             return
+        with translated("content filters"):
+            self._filters_declared = session.liveliness().declare_subscriber(
+                f"{self._prefix}*/{FILTER}**", direct(self._first_filters.put), history=True
+            )
+
+    def _take_first_filter(self, sample: zenoh.Sample) -> None:
+        session = self._state.session
+        participant = str(sample.key_expr).removeprefix(self._prefix).partition("/")[0]
+        if self._session is None and session is not None and participant != self._state.participant:
+            self._track(session)
+
+    def _track(self, session: zenoh.Session) -> None:
         self._session = session
         self._linked = {}
         liveliness = session.liveliness()
         with translated("links"):
             self._declared = [
-                session.declare_subscriber(
-                    self._retransmit_key(self._state.participant), direct(self._retransmits.put)
-                ),
                 liveliness.declare_subscriber(
                     f"{PREFIX}/*/*/**", direct(self._tokens.put), history=True
                 ),
@@ -93,8 +114,13 @@ class ZenohPeerDirectory:
                     f"{ROS_PREFIX}/*/*/*/*/NN/**", direct(self._nodes.put), history=True
                 ),
                 session.info.declare_transport_events_listener(direct(self._changes.put)),
-                liveliness.declare_token(self._prefix + self.advertisement),
             ]
+            if self.advertisement is not None:
+                retransmits = self._retransmit_key(self._state.participant)
+                self._declared += [
+                    session.declare_subscriber(retransmits, direct(self._retransmits.put)),
+                    liveliness.declare_token(self._prefix + self.advertisement),
+                ]
         self._connected = {
             str(transport.zid): transport.whatami for transport in session.info.transports()
         }
@@ -106,14 +132,25 @@ class ZenohPeerDirectory:
         self._announcer.abandon()
         self._warn(needed=False)
         declared, self._declared = self._declared, []
+        first, self._filters_declared = self._filters_declared, None
+        if first is not None:
+            declared.append(first)
         for one in reversed(declared):
             one.undeclare()
-        for queue in (self._tokens, self._nodes, self._changes, self._retransmits):
+        for queue in (
+            self._first_filters,
+            self._tokens,
+            self._nodes,
+            self._changes,
+            self._retransmits,
+        ):
             queue.clear()
         self._known.clear()
         self._hosts.clear()
         self._connected.clear()
         self.has_unannounced_peers = False
+        self._state.has_unannounced_peers = True
+        self.content_filters.clear()
 
     def retransmit(self, participant: str, data: bytes) -> None:
         """Send `data` to another context from a thread; not dropped while both are open.
@@ -194,6 +231,9 @@ class ZenohPeerDirectory:
                 self._hosts.add(participant)
             else:
                 self._hosts.discard(participant)
+        elif what.startswith(FILTER):
+            if key.startswith(self._prefix) and participant != self._state.participant:
+                self.content_filters.take_token(what, present=present)
         elif what.startswith("link/") and key.startswith(self._prefix):
             self.on_advertisement(key.removeprefix(self._prefix), present)
         self._update()
@@ -237,6 +277,7 @@ class ZenohPeerDirectory:
         # All other contexts reach the clients of this session, but do not see them.
         self._warn(needed=bool(unknown & self._of_kind(zenoh.WhatAmI.CLIENT)))
         has_unannounced_peers = bool(unknown or self._hosts)
+        self._state.note_unannounced_peers(there_are=has_unannounced_peers)
         if has_unannounced_peers != self.has_unannounced_peers:
             self.has_unannounced_peers = has_unannounced_peers
             self.on_unannounced_peers(has_unannounced_peers)

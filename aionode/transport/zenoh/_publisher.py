@@ -20,12 +20,12 @@ from aionode.transport._reliability import WriterHistory
 from aionode.transport._send_thread import SendQueue, SendThread
 from aionode.transport.base import Writer
 from aionode.transport.zenoh._delivery import (
-    BLOCK,
     BULK_BYTES,
     DROP,
     FLUSH_NS,
     GIVEN_UP_NS,
     STILL_NS,
+    acknowledging_readers,
     has_buffers,
     is_reliable,
     is_transient,
@@ -37,7 +37,12 @@ from aionode.transport.zenoh._handlers import (
     direct,
     reason,
 )
-from aionode.transport.zenoh._kept_history import declare_keeping, unless_expired, withdraw
+from aionode.transport.zenoh._kept_history import (
+    declare_keeping,
+    declare_plain,
+    unless_expired,
+    withdraw,
+)
 from aionode.transport.zenoh._session_state import Declaration
 from aionode.wire import _acknack as acknack
 from aionode.wire import _attachment as attachment
@@ -110,6 +115,9 @@ class ZenohWriter(Declaration, Writer):
         # Large messages, and small ones after them to keep the order.
         self._large = self._send_queue(state.bulk, keep_all=False)
         self._bulk_only = self._transient and not self.bounded and has_buffers(msg_type)
+        # Whether any reader wants a message; None if one wants all, or may be there unseen.
+        self._wants: Callable[[Any], bool] | None = None
+        self._filtered = 0
         # Messages for readers that do not acknowledge, once it was needed; from then on it is used
         # for all messages, to keep the order.
         self._patient: SendQueue | None = None
@@ -144,14 +152,8 @@ class ZenohWriter(Declaration, Writer):
                 if self._expiry is not None:
                     self._expiry.note()
         else:
-            self._publisher = session.declare_publisher(
-                self._key,
-                congestion_control=DROP,
-                priority=LOOP_PRIORITY,
-                reliability=zenoh.Reliability.RELIABLE
-                if self._reliable
-                else zenoh.Reliability.BEST_EFFORT,
-                allowed_destination=zenoh.Locality.REMOTE,
+            self._publisher = declare_plain(
+                session, self._key, LOOP_PRIORITY, reliable=self._reliable, waits=False
             )
             self._matching = self._publisher.declare_matching_listener(
                 direct(self._matching_changed.put)
@@ -172,10 +174,7 @@ class ZenohWriter(Declaration, Writer):
         )
 
     def _forget_expired(self, periods: int) -> bool:  # noqa: ARG002  # one lifespan is enough
-        """Replace the publisher by a new one: all that Zenoh keeps of it has expired.
-
-        Readers of aionode look at the age of what arrives, others take everything.
-        """
+        """Replace the publisher by a new one: all that Zenoh keeps of it has expired."""
         if self.state.session is not None and self._publisher is not None:
             if not self.is_done():
                 return True  # once more, after another lifespan
@@ -258,15 +257,17 @@ class ZenohWriter(Declaration, Writer):
         self._update()
 
     def _update(self) -> None:
-        """Update `active` and the history from the matching readers."""
+        """Update `active`, the filter and the history from the matching readers."""
         history, graph = self._history, self.state.graph
         if self._transient:
             if self._encode is None:
                 self._encode = cdr.encoder(self._msg_type)
             return
         self.active = False
+        self._wants = None
         if graph is not None and self._publisher is not None:
             readers = self._matched(graph)
+            self._wants = self._filter_of(readers)
             # The token of a reader can arrive before Zenoh has told of a match, or has a route to
             # it; what is lost until then is sent again.
             self.active = self._is_matching or bool(readers)
@@ -283,9 +284,17 @@ class ZenohWriter(Declaration, Writer):
             if reader.node.participant != self.state.participant and self.endpoint.matches(reader)
         ]
 
+    def _filter_of(self, readers: list[EndpointInfo]) -> Callable[[Any], bool] | None:
+        """Return whether any reader wants a message; None if all messages have to be sent."""
+        filters = self.state.content_filters
+        if not filters or self.state.has_unannounced_peers:
+            return None
+        return filters.wanted_by([reader.gid for reader in readers], self._msg_type)
+
     def _update_readers(self, history: WriterHistory, readers: list[EndpointInfo]) -> None:
         """Add new and returned readers to the history, and remove those that have vanished."""
-        acknowledging, others = self._acknowledging(readers)
+        able = self.state.acknowledgements.participants
+        acknowledging, others = acknowledging_readers(readers, able)
         for gid, known in list(history.readers.items()):
             if gid not in acknowledging and not known.away_until_ns:
                 history.remove(gid)
@@ -303,26 +312,13 @@ class ZenohWriter(Declaration, Writer):
         history.has_other_readers = others or not history.readers
         self._update_route()
 
-    def _acknowledging(self, readers: list[EndpointInfo]) -> tuple[dict[bytes, str], bool]:
-        """Return the acknowledging readers, and whether others must not lose messages."""
-        able = self.state.acknowledgements.participants
-        acknowledging: dict[bytes, str] = {}
-        others = False
-        for reader in readers:
-            participant = reader.node.participant
-            if participant not in able:
-                others = True
-            elif is_reliable(reader.qos):
-                if is_transient(reader.qos):
-                    others = True
-                else:
-                    acknowledging[reader.gid] = participant
-        return acknowledging, others
-
     # Messages
 
     def write(self, msg: Any, sample_info: SampleInfo) -> None:
-        """Send `msg`."""
+        """Send `msg`, unless no reader wants it: the history takes a jump of its numbers."""
+        if self._wants is not None and not self._wants(msg):
+            self._filtered += 1
+            return
         encode = self._encode
         if encode is None:
             encode = self._encode = cdr.encoder(self._msg_type)
@@ -403,12 +399,8 @@ class ZenohWriter(Declaration, Writer):
             self._patient = self._send_queue(self._patient_sender, keep_all=self.bounded)
             self._update_route()
             if not self._transient and self.state.session is not None:
-                self._patient_publisher = self.state.session.declare_publisher(
-                    self._key,
-                    congestion_control=BLOCK,
-                    priority=PATIENT_PRIORITY,
-                    reliability=zenoh.Reliability.RELIABLE,
-                    allowed_destination=zenoh.Locality.REMOTE,
+                self._patient_publisher = declare_plain(
+                    self.state.session, self._key, PATIENT_PRIORITY, reliable=True, waits=True
                 )
         patient = self._patient_publisher or publisher
         send = partial(self._send_patiently, patient, payload, extra)
@@ -574,6 +566,11 @@ class ZenohWriter(Declaration, Writer):
     def dropped(self) -> int:
         """How many messages are known to have been dropped on the way."""
         return self._dropped
+
+    @property
+    def filtered(self) -> int:
+        """How many messages were not sent, as no reader wants them."""
+        return self._filtered
 
     def route_of(self, reader: EndpointInfo) -> str | None:
         """Return ``zenoh`` for subscriptions of other contexts."""

@@ -14,9 +14,9 @@ from aionode.clock import perf_ns
 from aionode.errors import DecodeError, ServiceError
 from aionode.graph import EndpointKind
 from aionode.transport.base import Request, Requester, SampleInfo
+from aionode.transport.zenoh._delivery import UNKNOWN_GID, sample_info_of
 from aionode.transport.zenoh._handlers import CALL_PRIORITY, direct, translated
 from aionode.transport.zenoh._session_state import Declaration
-from aionode.transport.zenoh._subscription import UNKNOWN_GID, sample_info_of
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
 from aionode.wire._key_expression import data_key

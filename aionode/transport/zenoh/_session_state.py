@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 import zenoh
 
 from aionode.clock import MachineTime, perf_ns
+from aionode.transport._content_filters import ContentFilters
 from aionode.transport._loop_waker import LoopWaker, ThreadsafeQueue
 from aionode.transport._send_thread import SendThread
 from aionode.transport.base import Registration
@@ -72,6 +73,8 @@ class SessionState:
         assertions: The liveliness that publishers assert.
         time_base: The time of the context.
         now_ns: Returns the time of the context, in nanoseconds since 1970.
+        content_filters: What subscriptions of other contexts want.
+        has_unannounced_peers: Whether there may be subscriptions that nothing announces.
         on_reader: Called when a remote subscription appears or vanishes, by topic.
     """
 
@@ -96,6 +99,9 @@ class SessionState:
         self.time_base = MachineTime() if time_base is None else time_base
         self.now_ns = self.time_base.system_ns
         self.on_reader: dict[str, list[Callable[[], None]]] = {}
+        self.content_filters = ContentFilters()
+        self.content_filters.on_change.append(self._readers_changed)
+        self.has_unannounced_peers = True  # until the other sessions are known
         self._lingered: asyncio.Future[None] | None = None
         self._declarations: dict[Declaration, None] = {}
         self._graph_is_known = False
@@ -175,10 +181,17 @@ class SessionState:
         return session
 
     def _readers_changed(self) -> None:
-        """Tell all publishers: the readers of another context are now known to acknowledge."""
+        """Tell all publishers that more is known about the readers of other contexts."""
         for updates in list(self.on_reader.values()):
             for update in list(updates):
                 update()
+
+    def note_unannounced_peers(self, *, there_are: bool) -> None:
+        """Record whether there may be subscriptions that nothing announces, for filters."""
+        if there_are != self.has_unannounced_peers:
+            self.has_unannounced_peers = there_are
+            if self.content_filters:
+                self._readers_changed()
 
     def note_malformed(self, key: str, problem: str) -> None:
         """Count a malformed sample; the first on each key is logged."""

@@ -13,11 +13,17 @@ from aionode.clock import perf_ns
 from aionode.errors import DecodeError
 from aionode.graph import EndpointKind
 from aionode.qos import depth_of, is_unlimited, keeps_all
+from aionode.transport._content_filters import filter_token, text_of_filter
 from aionode.transport._reliability import NEVER, OVERHEAD_BYTES
 from aionode.transport._writer_proxy import WriterProxy
-from aionode.transport.base import SampleInfo
-from aionode.transport.zenoh._delivery import has_buffers, is_reliable, is_transient
-from aionode.transport.zenoh._handlers import direct
+from aionode.transport.base import ReaderRegistration, SampleInfo
+from aionode.transport.zenoh._delivery import (
+    UNKNOWN_GID,
+    has_buffers,
+    is_reliable,
+    is_transient,
+)
+from aionode.transport.zenoh._handlers import direct, translated
 from aionode.transport.zenoh._session_state import Declaration
 from aionode.wire import _acknack as acknack
 from aionode.wire import cdr
@@ -29,12 +35,13 @@ from aionode.wire._liveliness import CPU_BACKEND, endpoint_token
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from aionode.content_filter import ContentFilterOptions
     from aionode.graph import EndpointInfo, Graph
     from aionode.transport.base import Reader
     from aionode.transport.zenoh._session_state import SessionState
     from aionode.wire._acknack import Submessage
 
-__all__ = ["UNKNOWN_GID", "ZenohReader", "sample_info_of"]
+__all__ = ["ZenohReader"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
@@ -59,11 +66,8 @@ GONE_TICKS = 300
 Ticks, and no time: while this process is frozen or stalled, nothing that others announce is seen.
 """
 
-UNKNOWN_GID = bytes(16)
-"""The gid of a message without a valid attachment."""
 
-
-class ZenohReader(Declaration):
+class ZenohReader(Declaration, ReaderRegistration):
     """A subscription to the publishers of other contexts."""
 
     def __init__(
@@ -107,6 +111,8 @@ class ZenohReader(Declaration):
         self._full_bytes = 0
         self._waits_for_room = False
         self._refused = 0
+        self._filter_text = ""  # of the content filter, if it is announced
+        self._filter_token: zenoh.LivelinessToken | None = None
         self._subscribers: list[zenoh.Subscriber[None] | ext.AdvancedSubscriber[None]] = []
         self._has_lease = not is_unlimited(endpoint.qos.liveliness_lease_duration)
         if self._has_lease:
@@ -118,6 +124,7 @@ class ZenohReader(Declaration):
 
     def declare_data(self, session: zenoh.Session) -> None:
         """Declare the subscriber; a transient local one gets the history."""
+        self._announce_filter(session)
         put = direct(self._queue.put)
         if self._transient:
             reliable = is_reliable(self.endpoint.qos)
@@ -143,12 +150,31 @@ class ZenohReader(Declaration):
 
     def undeclare_data(self) -> None:
         """Undeclare the subscriber."""
+        self._announce_filter(None)
         subscribers, self._subscribers = self._subscribers, []
         for subscriber in subscribers:
             subscriber.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
         self._queue.clear()
         self._full.clear()
         self._proxies.clear()
+
+    def set_content_filter(self, content_filter: ContentFilterOptions) -> None:
+        """Announce which messages are wanted."""
+        if self.token:
+            self._filter_text = text_of_filter(content_filter)
+            self._announce_filter(self.state.session)
+
+    def _announce_filter(self, session: zenoh.Session | None) -> None:
+        """Declare the token of the filter, and then undeclare the one before it."""
+        before, self._filter_token = self._filter_token, None
+        with translated(self.token):
+            if session is not None and self._filter_text:
+                token = filter_token(
+                    self.state.domain_id, self.state.participant, self.gid, self._filter_text
+                )
+                self._filter_token = session.liveliness().declare_token(token)
+            if before is not None:
+                before.undeclare()
 
     def close(self) -> None:
         """Undeclare the subscription for good."""
@@ -343,11 +369,3 @@ class ZenohReader(Declaration):
             SubmessageKind.ACKNACK, proxy.gid, self.gid, first, 0, acknack.pack_ranges(ranges)
         )
         self.state.acknowledgements.send(proxy.participant, data)
-
-
-def sample_info_of(extra: zenoh.ZBytes | None) -> SampleInfo | None:
-    """Return the contents of an attachment; None without one in a known form."""
-    if extra is None:
-        return None
-    fields = unpack_fields(extra.to_bytes())
-    return None if fields is None else SampleInfo(fields[2], fields[0], fields[1], True)

@@ -24,7 +24,15 @@ if TYPE_CHECKING:
     from aionode.clock import TimeBase
     from aionode.graph import EndpointInfo, Graph, NodeInfo
     from aionode.transport._zenoh_config import Network
-    from aionode.transport.base import LinkStatus, Reader, Registration, Requester, Serve, Writer
+    from aionode.transport.base import (
+        LinkStatus,
+        Reader,
+        ReaderRegistration,
+        Registration,
+        Requester,
+        Serve,
+        Writer,
+    )
 
 __all__ = ["ZenohTransport"]
 
@@ -144,7 +152,7 @@ class ZenohTransport(Transport):
 
     def create_reader(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
-    ) -> Registration:
+    ) -> ReaderRegistration:
         """Declare a subscription."""
         return ZenohReader(self._state, endpoint, msg_type, reader)
 

@@ -46,7 +46,7 @@ async def test_a_thread_cannot_fill_the_loop_with_messages(
     node: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It waits until each is taken, so the same limits apply."""
-    monkeypatch.setattr("aionode.endpoints.subscription.KEEP_ALL_DEPTH", 2)
+    monkeypatch.setattr("aionode.qos._profile.KEEP_ALL_DEPTH", 2)
     keep_all = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=1)
     await settle()
     node.create_subscription(String, "words", qos_profile=keep_all)

@@ -166,3 +166,20 @@ async def test_a_destroyed_publisher_asserts_nothing(pair: Pair) -> None:
     publisher.destroy()
     with pytest.raises(EntityDestroyedError, match="assert liveliness"):
         publisher.assert_liveliness()
+
+
+async def test_messages_that_a_content_filter_rejects_are_signs_of_life(pair: Pair) -> None:
+    """Wherever it is evaluated: the subscription does not want them, but the publisher lives."""
+    publisher, subscription = await pair.joined(MANUAL, MANUAL)
+    changed = subscription.events
+    subscription.set_content_filter("data > %0", ["10"])
+    publisher.publish(Int32(data=1))
+    assert await next_of(changed, QoSLivelinessChangedInfo) == ALIVE
+    if pair.transport != "local":  # until its publisher has the filter, too
+        while not publisher.stats.filtered:
+            publisher.publish(Int32(data=2))
+            await checkpoint()
+    await pair.clock.advance(1)
+    assert await next_of(changed, QoSLivelinessChangedInfo) == NOT_ALIVE
+    publisher.publish(Int32(data=3))
+    assert (await next_of(changed, QoSLivelinessChangedInfo)).alive_count == 1

@@ -268,7 +268,7 @@ async def test_nothing_is_declared_without_a_beacon() -> None:
 
             # That it acknowledges messages has nothing to do with links.
             assert keys == [f"@aionode/{DOMAIN_ID}/a1/reliable/1"]
-        assert (peer_directory._declared, told.told) == ([], [])
+        assert (peer_directory._declared, peer_directory._connected, told.told) == ([], {}, [])
 
 
 async def test_closing_leaves_nothing_behind() -> None:

@@ -1,0 +1,123 @@
+"""Service introspection: each request and response of a service, as messages on a topic.
+
+A client or server that is introspected publishes on ``<service>/_service_event`` what it sends and
+receives: the client ``REQUEST_SENT`` and ``RESPONSE_RECEIVED``, the server ``REQUEST_RECEIVED`` and
+``RESPONSE_SENT``. All four have the client's gid and the number of the request in common.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode.errors import QueueFullError, brief
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.clock import Clock
+    from aionode.endpoints.publisher import Publisher
+    from aionode.qos import QoSProfile
+    from aionode.transport.base import SampleInfo
+
+__all__ = ["ServiceIntrospectionState"]
+
+TOPIC_SUFFIX: Final = "/_service_event"
+
+REQUEST_SENT: Final = 0
+REQUEST_RECEIVED: Final = 1
+RESPONSE_SENT: Final = 2
+RESPONSE_RECEIVED: Final = 3
+
+
+class ServiceIntrospectionState(IntEnum):
+    """What a client or server publishes about each request and response."""
+
+    OFF = 0
+    """Nothing; it has no publisher for it."""
+    METADATA = 1
+    """Which request, of which client, and when."""
+    CONTENTS = 2
+    """The same, and the request or response itself."""
+
+
+class Introspection:
+    """Publishes the service events of one client or server.
+
+    Args:
+        srv_type: The service class.
+        service_name: Full name of the service.
+        create_publisher: The node's method.
+    """
+
+    def __init__(
+        self, srv_type: Any, service_name: str, create_publisher: Callable[..., Publisher[Any]]
+    ) -> None:
+        self._srv_type = srv_type
+        self._topic = service_name + TOPIC_SUFFIX
+        self._create_publisher = create_publisher
+        self._publisher: Publisher[Any] | None = None
+        self._qos: QoSProfile | int | None = None
+        self._clock: Clock | None = None
+        self._state = ServiceIntrospectionState.OFF
+
+    def configure(
+        self, clock: Clock, qos_profile: QoSProfile | int, state: ServiceIntrospectionState
+    ) -> bool:
+        """Publish according to `state` from now on; return whether there is anything to publish.
+
+        Raises:
+            ValueError: `state` is unknown.
+            TypeError: `clock` is no clock, or `qos_profile` has the wrong type.
+        """
+        state = ServiceIntrospectionState(state)
+        if not hasattr(clock, "now"):
+            raise TypeError(
+                f"configure_introspection of {self._topic}: clock is {brief(clock)}; give a clock "
+                "such as node.get_clock()"
+            )
+        if state is ServiceIntrospectionState.OFF or qos_profile != self._qos:
+            self.close()
+        if state is not ServiceIntrospectionState.OFF and self._publisher is None:
+            self._publisher = self._create_publisher(self._srv_type.Event, self._topic, qos_profile)
+            self._qos = qos_profile
+        self._clock = clock
+        self._state = state
+        return self._publisher is not None
+
+    def close(self) -> None:
+        """Destroy the publisher."""
+        publisher, self._publisher = self._publisher, None
+        if publisher is not None:
+            publisher.destroy()
+
+    def publish(self, event_type: int, sample_info: SampleInfo, content: Any) -> None:
+        """Publish one event.
+
+        Args:
+            event_type: One of the constants of `ServiceEventInfo`.
+            sample_info: The client, and its number of the request.
+            content: The request or response.
+        """
+        publisher = self._publisher
+        if publisher is None or publisher.destroyed or self._clock is None:
+            return
+        from aionode.interfaces.service_msgs.msg import ServiceEventInfo  # rarely used
+
+        event = self._srv_type.Event(
+            info=ServiceEventInfo(
+                event_type=event_type,
+                stamp=self._clock.now().to_msg(),
+                client_gid=list(sample_info.gid),
+                sequence_number=sample_info.sequence,
+            )
+        )
+        if self._state is ServiceIntrospectionState.CONTENTS:
+            if event_type in (REQUEST_SENT, REQUEST_RECEIVED):
+                event.request = [content]
+            else:
+                event.response = [content]
+        # A reader that keeps all and does not read is no reason to fail the call.
+        with contextlib.suppress(QueueFullError):
+            publisher.publish(event)

@@ -1,0 +1,116 @@
+"""Nodes and entities that are created and destroyed outside the thread of the event loop."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from aionode import ActionClient, ActionServer, Context, Node
+from aionode.errors import EntityDestroyedError, InvalidTopicNameException
+from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.std_msgs.msg import String
+from aionode.testing import settle
+
+
+def add(request: AddTwoInts.Request) -> AddTwoInts.Response:
+    """Answer a request."""
+    return AddTwoInts.Response(sum=request.a + request.b)
+
+
+CREATORS: dict[str, Callable[[Node], Any]] = {
+    "publisher": lambda node: node.create_publisher(String, "/chatter", 10),
+    "subscription": lambda node: node.create_subscription(String, "/chatter", lambda msg: None),
+    "service": lambda node: node.create_service(AddTwoInts, "/add", add),
+    "client": lambda node: node.create_client(AddTwoInts, "/add"),
+    "timer": lambda node: node.create_timer(1.0, lambda: None),
+    "rate": lambda node: node.create_rate(10.0),
+    "action server": lambda node: ActionServer(node, Fibonacci, "/count", lambda goal: None),
+    "action client": lambda node: ActionClient(node, Fibonacci, "/count"),
+}
+
+
+@pytest.mark.parametrize("kind", CREATORS)
+async def test_every_entity_can_be_created_and_destroyed_in_another_thread(
+    node: Node, kind: str
+) -> None:
+    """The loop's thread does it, so asyncio's debug mode finds nothing to complain about."""
+    before = len(node._entities)
+
+    entity = await asyncio.to_thread(CREATORS[kind], node)
+
+    assert not entity.destroyed
+    assert len(node._entities) > before
+    await asyncio.to_thread(entity.destroy)
+    assert entity.destroyed
+    assert len(node._entities) == before
+
+
+async def test_an_entity_created_in_another_thread_works(node: Node) -> None:
+    """Its callback is called in the loop's thread, as that of any other."""
+    heard = []
+
+    def create() -> None:
+        node.create_subscription(
+            String, "/chatter", lambda msg: heard.append((msg.data, threading.get_ident()))
+        )
+        node.create_publisher(String, "/chatter", 10).publish(String(data="hello"))
+
+    await asyncio.to_thread(create)
+    await settle()
+
+    assert heard == [("hello", threading.get_ident())]
+
+
+async def test_destroy_methods_of_the_node_work_in_another_thread(node: Node) -> None:
+    """As `Entity.destroy`, which they call."""
+    publisher = node.create_publisher(String, "/chatter", 10)
+
+    assert await asyncio.to_thread(node.destroy_publisher, publisher)
+
+    assert publisher not in node.publishers
+
+
+async def test_errors_of_a_creation_come_out_in_the_thread_that_asked(node: Node) -> None:
+    """The loop is not disturbed by them."""
+    with pytest.raises(InvalidTopicNameException):
+        await asyncio.to_thread(node.create_publisher, String, "not a name", 10)
+    node.destroy_node()
+    with pytest.raises(EntityDestroyedError):
+        await asyncio.to_thread(node.create_publisher, String, "/chatter", 10)
+
+
+async def test_a_node_can_be_created_in_another_thread_while_its_context_runs(
+    context: Context,
+) -> None:
+    """Its built-in services are entities, too."""
+
+    class Listener(Node):
+        def __init__(self) -> None:
+            super().__init__("listener", context=context)
+            self.heard: list[str] = []
+            self.create_subscription(String, "/chatter", lambda msg: self.heard.append(msg.data))
+
+    listener = await asyncio.to_thread(Listener)
+
+    async with listener:
+        listener.create_publisher(String, "/chatter", 10).publish(String(data="hello"))
+        await settle()
+        assert listener.heard == ["hello"]
+
+
+async def test_many_threads_create_entities_at_once(node: Node) -> None:
+    """Each gets its own, and none is lost."""
+    created = await asyncio.gather(
+        *(
+            asyncio.to_thread(node.create_publisher, String, f"/topic_{number}", 10)
+            for number in range(20)
+        )
+    )
+
+    assert {one.topic_name for one in created} <= {one.topic_name for one in node.publishers}
+    assert len({one._gid for one in created}) == 20
