@@ -185,9 +185,9 @@ class Graph:
         self._waiters: dict[asyncio.Future[None], None] = {}  # of `changed`, until the next change
         self._nodes_by_name: dict[str, dict[NodeInfo, None]] = defaultdict(dict)
         self._listeners: list[Callable[[EndpointInfo], None]] = []
+        self._node_listeners: list[Callable[[NodeInfo], None]] = []
         self._watchers: dict[tuple[EndpointKind, str], list[Watcher]] = {}
         self.unreported: dict[EndpointInfo, AbstractSet[str]] = {}
-        self._node_listeners: list[Callable[[NodeInfo], None]] = []
 
     def __repr__(self) -> str:
         return f"<Graph: {len(self._nodes)} nodes, {len(self._endpoints)} endpoints>"
@@ -245,6 +245,10 @@ class Graph:
         """Call `listener` with each endpoint added from now on."""
         self._listeners.append(listener)
 
+    def on_node(self, listener: Callable[[NodeInfo], None]) -> None:
+        """Call `listener` with each node added from now on."""
+        self._node_listeners.append(listener)
+
     def watch(self, kind: EndpointKind, name: str, watcher: Watcher) -> Callable[[], None]:
         """Call `watcher` with each endpoint of `kind` and `name` that is known, appears or goes.
 
@@ -265,10 +269,6 @@ class Graph:
     def _tell_watchers(self, endpoint: EndpointInfo, *, present: bool) -> None:
         for watcher in tuple(self._watchers.get((endpoint.kind, endpoint.name), ())):
             watcher(endpoint, present)
-
-    def on_node(self, listener: Callable[[NodeInfo], None]) -> None:
-        """Call `listener` with each node added from now on."""
-        self._node_listeners.append(listener)
 
     def changed(self) -> asyncio.Future[None]:
         """Return a future that is done at the next change: a node or endpoint added or removed.

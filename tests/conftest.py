@@ -41,6 +41,8 @@ PROCESSES = (
     "tests/faults/",
     "tests/cli/test_terminal.py",
     "tests/cli/test_ending.py",
+    "tests/rclpy/test_run.py",
+    "tests/rclpy/test_distribution.py",
     "tests/test_examples.py",
     "tests/test_web_robot.py",
     "tests/typing/",

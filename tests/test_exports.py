@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 MODULES = sorted(
     module.name
     for module in pkgutil.walk_packages(aionode.__path__, "aionode.")
-    if not module.name.startswith("aionode.interfaces.") and module.name != "aionode.__main__"
+    if not module.name.startswith("aionode.interfaces.") and not module.name.endswith(".__main__")
 )
 PUBLIC = [name for name in MODULES if "._" not in name]
 REFERENCE = Path(__file__).parent.parent / "docs/reference"

@@ -79,7 +79,7 @@ class NodeBase:
         namespace = names.remap_namespace(self._rules, node_name, namespace)
         full_name = names.fully_qualified_name(namespace, node_name)
         self._constructed = False  # until the built-in services exist; then come the program's own
-        self._warned_about: set[str] = set()  # kinds of arguments that have no effect
+        self._warned_about: set[str] = set()  # kinds of timers' third argument
         self._entities: dict[Entity, None] = {}  # in order of creation; destroyed ones leave it
         self._tasks: asyncio.TaskGroup | None = None  # of the entities, once the node has started
         self._running = False

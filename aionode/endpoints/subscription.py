@@ -135,14 +135,6 @@ class Subscription(Entity, Generic[ItemT]):
         """Return how many publishers are matched, in this process and in others."""
         return self._graph_entry.count_matched(EndpointKind.PUBLISHER)
 
-    @property
-    def events(self) -> EventStream[SubscriptionEvent]:
-        """The events of the subscription: ``async for event in subscription.events``.
-
-        It is the same stream each time; it begins with what has happened so far.
-        """
-        return self._monitor.events()
-
     # Content filter
 
     @property
@@ -184,6 +176,16 @@ class Subscription(Entity, Generic[ItemT]):
         """Return the content filter; its expression is empty if there is none."""
         given = self._content_filter
         return ContentFilterOptions(given.filter_expression, list(given.expression_parameters))
+
+    # Events
+
+    @property
+    def events(self) -> EventStream[SubscriptionEvent]:
+        """The events of the subscription: ``async for event in subscription.events``.
+
+        It is the same stream each time; it begins with what has happened so far.
+        """
+        return self._monitor.events()
 
     # Reading without a callback
 
@@ -380,6 +382,7 @@ class _Reader(MessageQueue[Any]):
     def close(self, *, discard: bool) -> None:
         """Take no more messages, wake all that wait, and drop unread messages if `discard`."""
         self._closed = True
+        self._accepts = None
         self.on_arrival = refuse
         self.on_lost = None
         if discard:

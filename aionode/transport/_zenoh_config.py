@@ -25,8 +25,10 @@ __all__ = [
     "DiscoveryRange",
     "Network",
     "introducers",
+    "is_near",
     "look_settings",
     "network_from",
+    "peer_endpoints",
     "probed_ports",
     "router_settings",
     "session_settings",
@@ -57,6 +59,10 @@ BATCHES: Final = 16
 
 BURSTING: Final = ("control", "interactive_low", "data_high")
 """The priorities of what the loop sends: tokens, requests and replies, messages."""
+
+
+RETRY: Final = {"period_init_ms": 100, "period_max_ms": 2000, "period_increase_factor": 2}
+"""How often what does not answer is dialled again."""
 
 
 class DiscoveryRange(enum.Enum):
@@ -99,6 +105,26 @@ class Network:
     meeting_ports: tuple[int, ...] = MEETING_PORTS
     spare_ports: tuple[int, ...] = SPARE_PORTS
     router_port: int = ROUTER_PORT
+
+    @property
+    def may_reach_far(self) -> bool:
+        """Whether a session may be connected to other machines itself."""
+        subnet = self.discovery_range is DiscoveryRange.SUBNET
+        return subnet or self.config_file is not None or bool(self.overrides)
+
+    @property
+    def far_peers(self) -> tuple[str, ...]:
+        """Those static peers that a router of this machine dials: on other machines."""
+        if self.discovery_range is DiscoveryRange.OFF:
+            return ()
+        return tuple(endpoint for endpoint in self.static_peers if not is_near(endpoint))
+
+    @property
+    def near_peers(self) -> tuple[str, ...]:
+        """Those static peers that a session dials itself: on this machine."""
+        if self.discovery_range is DiscoveryRange.OFF:
+            return ()
+        return tuple(endpoint for endpoint in self.static_peers if is_near(endpoint))
 
 
 def network_from(
@@ -223,6 +249,14 @@ def peer_endpoints(peer: str, source: str, ports: tuple[int, ...]) -> list[str]:
     raise ConfigurationError(source, peer, fits)
 
 
+def is_near(endpoint: str) -> bool:
+    """Return whether an endpoint is on this machine, as far as its text tells."""
+    protocol, _, address = endpoint.partition("/")
+    host = split_port(address.partition("?")[0].partition("#")[0])[0].strip("[]")
+    host = host.removeprefix("::ffff:")  # an IPv4 address as IPv6 has it
+    return protocol.startswith("unix") or host in ("localhost", "::1") or host.startswith("127.")
+
+
 def split_port(peer: str) -> tuple[str, str, str]:
     """Return host, colon and port; the last two are empty without a port."""
     if peer.startswith("["):  # an IPv6 address in brackets
@@ -266,7 +300,7 @@ def introducers(network: Network) -> tuple[str, ...]:
     if network.config_file is not None or network.discovery_range is DiscoveryRange.OFF:
         return ()
     ports = (*probed_ports(network), *network.spare_ports)
-    return (*(f"tcp/{LOOPBACK}:{p}" for p in ports), *network.static_peers)
+    return (*(f"tcp/{LOOPBACK}:{p}" for p in ports), *network.near_peers)
 
 
 def look_settings(endpoint: str) -> dict[str, Any]:
@@ -309,15 +343,11 @@ def session_settings(network: Network, taken: Iterable[int]) -> dict[str, Any]:
         "listen/exit_on_failure": False,
         "connect/endpoints": [
             *(f"tcp/{LOOPBACK}:{p}" for p in dial),
-            *(() if off else network.static_peers),
+            *network.near_peers,
         ],
         "connect/timeout_ms": -1,
         "connect/exit_on_failure": False,
-        "connect/retry": {
-            "period_init_ms": 100,
-            "period_max_ms": 2000,
-            "period_increase_factor": 2,
-        },
+        "connect/retry": RETRY,
         "open/return_conditions/connect_scouted": False,
         # What waits for a reader without acknowledgements does so in a thread, and as long as the
         # lease: Zenoh ends the connection then anyway, but lets go of the thread only after this.
@@ -331,9 +361,13 @@ def session_settings(network: Network, taken: Iterable[int]) -> dict[str, Any]:
         # processes of other users cannot open Zenoh's, and ROS 2 nodes have it switched off.
         "transport/shared_memory/enabled": False,
         # Bounds close() while a frozen peer does not answer; other machines may be slow to.
-        "transport/unicast/open_timeout": 3000 if network.static_peers else 700,
+        "transport/unicast/open_timeout": 3000 if network.near_peers else 700,
         "scouting/multicast/enabled": subnet,
         "scouting/gossip/enabled": not off,
+        # As rmw_zenoh: if both dialled, Zenoh might keep neither of the two connections.
+        "scouting/gossip/autoconnect_strategy": {
+            "peer": {"to_router": "always", "to_peer": "greater-zid"}
+        },
         # The history of transient_local topics is put in order by time stamps.
         "timestamping/enabled": True,
         # Histories are fetched with this timeout; every other query says its own.
@@ -341,13 +375,23 @@ def session_settings(network: Network, taken: Iterable[int]) -> dict[str, Any]:
     }
 
 
-def router_settings(listen: Iterable[str] = (f"tcp/[::]:{ROUTER_PORT}",)) -> dict[str, Any]:
-    """Return the settings of a router, as those of `rmw_zenohd`: it introduces all peers."""
+def router_settings(
+    listen: Iterable[str] = (f"tcp/[::]:{ROUTER_PORT}",), connect: Iterable[str] = ()
+) -> dict[str, Any]:
+    """Return the settings of a router, as those of `rmw_zenohd`: it introduces all peers.
+
+    Args:
+        listen: The endpoints on which it listens; it does not open if it cannot.
+        connect: The endpoints of other routers, which it dials until they are there.
+    """
     all_kinds = ["router", "peer"]
     return {
         "mode": "router",
         "listen/endpoints": list(listen),
-        "connect/endpoints": [],
+        "connect/endpoints": list(connect),
+        "connect/timeout_ms": -1,
+        "connect/exit_on_failure": False,
+        "connect/retry": {**RETRY, "period_max_ms": 1000},
         "open/return_conditions/connect_scouted": False,
         "scouting/multicast/enabled": False,
         "scouting/gossip/enabled": True,
@@ -355,8 +399,11 @@ def router_settings(listen: Iterable[str] = (f"tcp/[::]:{ROUTER_PORT}",)) -> dic
         "scouting/gossip/autoconnect": {"router": [], "peer": all_kinds},
         "timestamping/enabled": True,
         "queries_default_timeout": 600_000,
-        "transport/link/tx/lease": 60_000,
-        "transport/link/tx/keep_alive": 2,
+        # Another machine may be out of reach for a while: each end gives the connection up soon, so
+        # that it can be made anew as soon as the network is back. `rmw_zenohd` has 60 s.
+        "transport/link/tx/lease": 8_000,
+        "transport/link/tx/keep_alive": 4,
+        "transport/unicast/open_timeout": 2_000,
         "transport/shared_memory/enabled": False,
         # A query for its routing table can deadlock it: zenoh's pull request 2619.
         "adminspace/enabled": False,

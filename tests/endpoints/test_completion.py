@@ -27,29 +27,34 @@ OFFERED = {
     | {
         "callback",
         "events",
+        "get_content_filter",
         "get_publisher_count",
+        "is_cft_enabled",
         "msg_type",
         "qos_profile",
         "raw",
         "receive",
+        "set_content_filter",
         "stats",
     }
     | {"topic", "topic_name"},
     "Service": ENTITY
-    | {"callback", "qos_profile", "service_name", "srv_name", "srv_type", "stats"},
+    | {"callback", "configure_introspection", "qos_profile", "service_name", "srv_name", "srv_type"}
+    | {"stats"},
     "Client": ENTITY
     | {"call", "call_async", "qos_profile", "service_is_ready", "service_name", "srv_name"}
-    | {"srv_type", "stats", "wait_for_service"},
+    | {"configure_introspection", "srv_type", "stats", "wait_for_service"},
     "Timer": ENTITY
     | {"callback", "cancel", "clock", "is_canceled", "is_ready", "reset", "stats"}
     | {"time_since_last_call", "time_until_next_call", "timer_period_ns"},
     "Rate": ENTITY | {"sleep"},
     "ActionServer": ENTITY
-    | {"action_name", "action_type", "register_cancel_callback", "register_execute_callback"}
+    | {"action_name", "action_type", "configure_introspection"}
+    | {"register_cancel_callback", "register_execute_callback"}
     | {"register_goal_callback", "register_handle_accepted_callback", "stats"},
     "ActionClient": ENTITY
     | {"action_name", "action_type", "call", "send_goal", "send_goal_async", "server_is_ready"}
-    | {"wait_for_server"},
+    | {"configure_introspection", "wait_for_server"},
     "ServerGoalHandle": {"abort", "canceled", "execute", "goal_id", "info", "is_active"}
     | {"is_cancel_requested", "publish_feedback", "request", "status", "succeed", "text"},
     "ClientGoalHandle": {"accepted", "cancel", "cancel_goal_async", "done", "get_result_async"}

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import msgspec
 
-from tests.faults.faults import end_and_replace, freeze, freeze_idle, replace, wait
+from tests.faults.faults import arrive, end_and_replace, freeze, freeze_idle, replace, wait
 from tests.faults.harness import Case, Skipped
 from tests.faults.hosts import host_cases
 from tests.faults.roles import Hear, Output, Publish, Role
@@ -63,12 +63,16 @@ ACTING = (
 )
 
 
-def members(count: int, *, ros: int = 0) -> tuple[Role, ...]:
+CROWD = 30
+"""How many processes start at the same moment."""
+
+
+def members(count: int, *, ros: int = 0, period_s: float = 0.05) -> tuple[Role, ...]:
     """Return processes that all hear each other."""
     return tuple(
         Role(
             f"{'ros' if number < ros else 'member'}{number}",
-            publish=(Publish("/hello", period_s=0.05),),
+            publish=(Publish("/hello", period_s=period_s),),
             hear=(Hear("/hello", depth=100),),
             ros=number < ros,
         )
@@ -199,6 +203,18 @@ RECOVERY_OF_BACKLOG_S = 20.0
 """A slow reader has the backlog of its publisher, some thousand messages, before what is new."""
 
 
+def crowds(way: str) -> Iterator[Case]:
+    """Yield what happens when many processes start at the same moment."""
+    first, *others = on(way, *members(CROWD, period_s=0.5))
+    yield Case(
+        f"{way}: {CROWD} processes start at the same moment, all hear all",
+        (first,),
+        arrive(others),
+        loss="any",
+        lasts_s=9.0,  # after those that take little of the processor
+    )
+
+
 def outputs(way: str) -> Iterator[Case]:
     """Yield what happens when nobody reads what a process prints, or the disk is full."""
     full: tuple[Output, str] = ("full", "on /dev/full")
@@ -289,6 +305,9 @@ def routers() -> Iterator[Case]:
 def all_cases() -> list[Case]:
     """Return every case, those that take about as long after each other."""
     cases = [
-        case for way in WAYS for make in (freezes, kills, comings, outputs) for case in make(way)
+        case
+        for way in WAYS
+        for make in (freezes, kills, comings, crowds, outputs)
+        for case in make(way)
     ]
     return sorted([*cases, *routers(), *host_cases()], key=lambda case: case.lasts_s)

@@ -4,11 +4,21 @@ from __future__ import annotations
 
 import asyncio
 import signal
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterable
 
 from tests.faults.harness import Stage
+from tests.faults.roles import Role
 
-__all__ = ["Fault", "all_of", "end_and_replace", "freeze", "freeze_idle", "replace", "wait"]
+__all__ = [
+    "Fault",
+    "all_of",
+    "arrive",
+    "end_and_replace",
+    "freeze",
+    "freeze_idle",
+    "replace",
+    "wait",
+]
 
 Fault = Callable[[Stage], Awaitable[None]]
 
@@ -61,6 +71,18 @@ def replace(name: str, *, after_s: float = 0.5, number: int = signal.SIGKILL) ->
     return strike
 
 
+def arrive(roles: Iterable[Role]) -> Fault:
+    """Start processes at the same moment; over when the node of the last one runs."""
+
+    async def strike(stage: Stage) -> None:
+        for role in roles:
+            await stage.start(role)
+        for role in roles:
+            await until_ready(stage, role.name, limit_s=60.0)
+
+    return strike
+
+
 def end_and_replace(name: str, times: int) -> Fault:
     """End a process in good order and start it anew, several times."""
     return all_of(*[replace(name, after_s=0.0, number=signal.SIGTERM)] * times)
@@ -76,8 +98,8 @@ def all_of(*faults: Fault) -> Fault:
     return strike
 
 
-async def until_ready(stage: Stage, name: str) -> None:
+async def until_ready(stage: Stage, name: str, limit_s: float = 20.0) -> None:
     """Wait until the node of a process runs."""
-    async with asyncio.timeout(20):
+    async with asyncio.timeout(limit_s):
         while not stage.children[name].last.ready:  # noqa: ASYNC110 - it is what a process reports
             await asyncio.sleep(0.01)

@@ -307,6 +307,16 @@ class Stage:
         marks += [(child, "call") for child in living if child.role.call]
         return marks + [(child, "goal") for child in living if child.role.send]
 
+    def wrong_graphs(self) -> list[str]:
+        """Return what processes see of the nodes that is not so."""
+        living = [child for child in self.children.values() if child.runs]
+        nodes = sorted(child.role.name for child in living if not child.role.router)
+        return [
+            f"{child.role.name}: sees {', '.join(child.last.nodes)}"
+            for child in living
+            if not (child.role.router or child.role.ros) and child.last.nodes != nodes
+        ]
+
     async def until_working(self, since_s: float, limit_s: float) -> list[str]:
         """Wait until everything that began at `since_s` or later works; return what does not."""
         ends_s = time.monotonic() + limit_s
@@ -321,6 +331,7 @@ class Stage:
                 for child in self.children.values()
                 if child.runs and not child.last.ready
             ]
+            waiting += self.wrong_graphs()
             if not waiting or time.monotonic() > ends_s:
                 return waiting
             await asyncio.sleep(0.02)

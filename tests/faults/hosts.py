@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import asyncio
+import itertools
 import os
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from typing import Any
 
 import msgspec
 
-from tests.faults.faults import Fault
+from tests.faults.faults import Fault, replace
 from tests.faults.harness import Case, Skipped, Stage
 from tests.faults.roles import Hear, Publish, Role
 
@@ -70,13 +72,31 @@ class TwoHosts:
         wrapper = ("ip", "netns", "exec", self.names[host])
         return msgspec.structs.replace(role, env=env, wrapper=wrapper)
 
+    def placed(self, roles: Iterable[Role]) -> tuple[Role, ...]:
+        """Return roles as those on the hosts that their names end with."""
+        return tuple(self.within(int(role.name.endswith("there")), role) for role in roles)
+
     def cut(self, seconds: float) -> Fault:
-        """Pull the cable out for some time."""
+        """Pull the cable out for some time, and let both hosts know."""
 
         async def strike(stage: Stage) -> None:
             ip("-n", self.names[0], "link", "set", self._devices[0], "down")
             await asyncio.sleep(seconds)
             ip("-n", self.names[0], "link", "set", self._devices[0], "up")
+
+        return strike
+
+    def swallow(self, seconds: float) -> Fault:
+        """Lose everything for some time, as a radio link out of reach does: no host knows."""
+        ends = list(zip(self.names, self._devices, reversed(ADDRESSES), strict=True))
+
+        async def strike(stage: Stage) -> None:
+            for name, device, other in ends:  # to a hardware address that nobody has
+                nobody = ("lladdr", "02:00:00:00:00:01", "nud", "permanent")
+                ip("-n", name, "neigh", "replace", other, "dev", device, *nobody)
+            await asyncio.sleep(seconds)
+            for name, device, other in ends:
+                ip("-n", name, "neigh", "delete", other, "dev", device)
 
         return strike
 
@@ -93,43 +113,85 @@ class TwoHosts:
         return strike
 
 
+def member(name: str, **options: Any) -> Role:
+    """Return a process that hears all others of its kind."""
+    return Role(
+        name,
+        publish=(Publish("/hello", period_s=0.05),),
+        hear=(Hear("/hello", depth=1000),),
+        **options,
+    )
+
+
+ROUTER = Role("router here", router=f"tcp/0.0.0.0:{PORT}")
+NAMING: dict[str, str] = {"ROS_STATIC_PEERS": ADDRESSES[0]}
+"""What a process says that is to reach the other host, which has the only router."""
+
+TALKING = (
+    Role(
+        "here",
+        publish=(Publish("/hello"), Publish("/all", keep_all=True)),
+        hear=(Hear("/hello", depth=1000),),
+        serve="/add",
+    ),
+    Role(
+        "there",
+        publish=(Publish("/hello"),),
+        hear=(Hear("/hello", depth=1000), Hear("/all", keep_all=True)),
+        call="/add",
+    ),
+)
+
+ONE_ROUTER = (
+    ROUTER,
+    TALKING[0],
+    msgspec.structs.replace(TALKING[1], env=NAMING),
+    member("ros_here", ros=True),
+    member("named_there", env=NAMING),
+    member("plain_there"),
+)
+"""A robot with its router and a ROS 2 node, and a laptop whose user names the robot."""
+
+TWO_ROUTERS = (
+    ROUTER,
+    Role("router there", router=f"tcp/0.0.0.0:{PORT}", connect=f"tcp/{ADDRESSES[0]}:{PORT}"),
+    *TALKING,
+)
+
+
 def host_cases() -> Iterator[Case]:
-    """Yield what happens to the cable between two hosts with a router on each of them."""
+    """Yield what happens between two hosts."""
     shapes: list[tuple[str, float | tuple[str, ...]]] = [
         *((f"is cut {seconds} s", seconds) for seconds in (3, 14, 70)),
+        *((f"swallows everything for {seconds} s", -seconds) for seconds in (3, 14, 70)),
         ("delays 100 ms for 5 s", ("netem", "delay", "100ms", "20ms")),
         ("loses 5 % for 5 s", ("netem", "loss", "5%")),
         ("carries 1 Mbit/s for 5 s", ("tbf", "rate", "1mbit", "burst", "10kb", "latency", "50ms")),
     ]
-    for number, (what, how) in enumerate(shapes):
-        hosts = TwoHosts(number)
-        strike = hosts.shape(5, *how) if isinstance(how, tuple) else hosts.cut(how)
-        for_all = Hear("/hello", depth=1000)
-        roles = (
-            Role("router here", router=f"tcp/0.0.0.0:{PORT}"),
-            Role(
-                "router there",
-                router=f"tcp/0.0.0.0:{PORT}",
-                env={"ZENOH_CONFIG_OVERRIDE": f'connect/endpoints=["tcp/{ADDRESSES[0]}:{PORT}"]'},
-            ),
-            Role(
-                "here",
-                publish=(Publish("/hello"), Publish("/all", keep_all=True)),
-                hear=(for_all,),
-                serve="/add",
-            ),
-            Role(
-                "there",
-                publish=(Publish("/hello"),),
-                hear=(for_all, Hear("/all", keep_all=True)),
-                call="/add",
-            ),
-        )
-        yield Case(
-            f"two hosts, the cable {what}",
-            tuple(hosts.within(int(role.name.endswith("there")), role) for role in roles),
-            strike,
-            loss="any",
-            lasts_s=5 if isinstance(how, tuple) else how,
-            around=hosts,
-        )
+    numbers = itertools.count()
+    for what, how in shapes:
+        for roles, where in ((TWO_ROUTERS, "a router on each"), (ONE_ROUTER, "one router")):
+            if roles is ONE_ROUTER and isinstance(how, tuple):
+                continue
+            hosts = TwoHosts(next(numbers))
+            if isinstance(how, tuple):
+                strike = hosts.shape(5, *how)
+            else:
+                strike = hosts.cut(how) if how > 0 else hosts.swallow(-how)
+            yield Case(
+                f"two hosts, {where}, the cable {what}",
+                hosts.placed(roles),
+                strike,
+                loss="any",
+                lasts_s=5 if isinstance(how, tuple) else abs(how),
+                around=hosts,
+                short=how == -3,
+            )
+    hosts = TwoHosts(next(numbers))
+    yield Case(
+        "two hosts, one router, the process that links them killed and replaced",
+        hosts.placed(ONE_ROUTER),
+        replace("there"),
+        loss="any",
+        around=hosts,
+    )

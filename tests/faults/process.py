@@ -115,6 +115,7 @@ class Reporter:
     def __init__(self) -> None:
         self.report = Report()
         self.endpoints: list[Any] = []
+        self.nodes: Callable[[], list[str]] = list
 
     def hear(self, topic: str, data: str) -> None:
         """Take a message."""
@@ -148,6 +149,7 @@ class Reporter:
     def tell(self) -> None:
         """Print a report; its gap begins anew."""
         self.report.time_s = time.monotonic()
+        self.report.nodes = sorted(self.nodes())
         self.report.told = sum(map(told_by, self.endpoints))
         os.write(int(os.environ[REPORTS_VARIABLE]), msgspec.json.encode(self.report) + b"\n")
         self.report.gap_s = self.report.own_gap_s = 0.0
@@ -199,7 +201,9 @@ class Process:
 
     async def route(self) -> None:
         """Be a router."""
-        session = await open_router([self.role.router])
+        session = await open_router(
+            [self.role.router], [self.role.connect] * bool(self.role.connect)
+        )
         self.report.ready = True
         try:
             await asyncio.Event().wait()
@@ -221,6 +225,7 @@ class Process:
                 node.create_service(GetParameters, role.serve, answer)
             if role.act:
                 node.create_action_server(Fibonacci, role.act, count)
+            self.reporter.nodes = node.get_node_names
             self.report.ready = True
             work: list[Coroutine[Any, Any, None]] = [
                 self.publish(node, each) for each in role.publish

@@ -89,6 +89,7 @@ class Role(msgspec.Struct, frozen=True):
         act: The action that it serves.
         send: The action to which it sends goals, one after the other.
         router: The endpoint on which it listens as a router; it has no node then.
+        connect: The endpoint of another router, with which it is linked then.
         ros: Whether it is a stand-in for a ROS 2 node: a Zenoh session with the settings of
             rmw_zenoh, the lease of 60 s included. It can only publish and hear.
         noisy: Whether it writes to stdout and stderr without end.
@@ -110,6 +111,7 @@ class Role(msgspec.Struct, frozen=True):
     act: str = ""
     send: str = ""
     router: str = ""
+    connect: str = ""
     ros: bool = False
     noisy: bool = False
     fork: bool = False
@@ -129,6 +131,7 @@ class Report(msgspec.Struct):
         own_gap_s: The same without the time for which its threads waited for a core of the machine.
         marks: For each thing that works, the start of the last time that it did: see `hear_mark`;
             ``call`` and ``goal`` for an answer and a result.
+        nodes: The nodes that it sees, its own included; a router and a stand-in tell none.
         sent: How many messages it has published, by `stream_key`.
         heard: The numbers that it has heard, by `stream_key`: first and last of each range.
         doubled: How many messages it has heard twice.
@@ -144,6 +147,7 @@ class Report(msgspec.Struct):
     gap_s: float = 0.0
     own_gap_s: float = 0.0
     marks: dict[str, float] = {}
+    nodes: list[str] = []
     sent: dict[str, int] = {}
     heard: dict[str, list[tuple[int, int]]] = {}
     doubled: int = 0

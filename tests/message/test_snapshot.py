@@ -31,10 +31,26 @@ from aionode.interfaces.std_msgs.msg import (
     UInt64,
     UInt64MultiArray,
 )
-from aionode.interfaces.test_msgs.msg import Arrays, BoundedSequences, Strings
+from aionode.interfaces.test_msgs.msg import Arrays, BoundedSequences
 from aionode.interfaces.unique_identifier_msgs.msg import UUID
-from aionode.message import Message, check, checker, snapshot, snapshotter
+from aionode.message import (
+    DEFAULT,
+    Array,
+    Bounded,
+    Message,
+    check,
+    checker,
+    snapshot,
+    snapshotter,
+)
 from tests.support.random_messages import any_messages
+
+
+class Texts(Message, typename="tutorial/msg/Texts"):
+    """Strings with a bound."""
+
+    one: Bounded[str, 10] = ""
+    three: Array[Bounded[str, 10], 3] = DEFAULT
 
 
 class Color(enum.IntEnum):
@@ -107,12 +123,12 @@ def test_what_means_the_same_is_taken_in_one_form(message: Message, value: objec
         ),
         (Byte(data=b""), "std_msgs/msg/Byte.data: 0 bytes, needs 1"),
         (
-            Strings(bounded_string_value="x" * 11),
-            "test_msgs/msg/Strings.bounded_string_value: 11 characters, at most 10 fit",
+            Texts(one="x" * 11),
+            "tutorial/msg/Texts.one: 11 characters, at most 10 fit",
         ),
         (
-            Strings(bounded_string_array_three=["a", "b", "c" * 11]),
-            "test_msgs/msg/Strings.bounded_string_array_three[2]: 11 characters, at most 10 fit",
+            Texts(three=["a", "b", "c" * 11]),
+            "tutorial/msg/Texts.three[2]: 11 characters, at most 10 fit",
         ),
         (
             Imu(orientation_covariance=np.zeros(8)),

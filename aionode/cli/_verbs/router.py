@@ -13,19 +13,25 @@ if TYPE_CHECKING:
 __all__ = ["route"]
 
 
-async def route(endpoints: Sequence[str], *, output: Output) -> int:
+async def route(endpoints: Sequence[str], peers: Sequence[str] = (), *, output: Output) -> int:
     """Run a router that listens on Zenoh endpoints, until cancelled.
+
+    Args:
+        endpoints: Where it listens.
+        peers: The Zenoh endpoints of the routers with which it is linked.
+        output: Where to print.
 
     Raises:
         TransportError: it cannot listen there.
     """
     from aionode.transport.zenoh._session import close_session, open_router
 
-    session = await open_router(endpoints)
+    session = await open_router(endpoints, peers)
     try:
+        linked = f", and links this machine with {', '.join(peers)}" if peers else ""
         output.item(
-            f"Router is listening on {', '.join(endpoints)}. Ctrl-C ends it.",
-            {"listen": list(endpoints)},
+            f"Router is listening on {', '.join(endpoints)}{linked}. Ctrl-C ends it.",
+            {"listen": list(endpoints), "connect": list(peers)},
         )
         await asyncio.get_running_loop().create_future()
     finally:

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import importlib.util
+import os
+import subprocess
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from aionode.errors import CommandError
+from aionode.interfaces import shipped_packages
 from aionode.node import Node
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from types import ModuleType
 
-__all__ = ["FITS", "ROS_ARGS", "node_maker"]
+__all__ = ["FITS", "ROS_ARGS", "is_rclpy_program", "node_maker", "run_program"]
 
 ROS_ARGS = "--ros-args"
 
@@ -42,6 +46,44 @@ def node_maker(spec: str) -> Callable[[], Any]:
         what = "nothing of that name" if made is None else "neither a node class nor a function"
         raise CommandError(f"{spec}: {what} in {source}; its node classes: {known}")
     return made  # type: ignore[no-any-return]  # checked to be callable above
+
+
+def is_rclpy_program(name: str) -> bool:
+    """Return whether a name is that of a file that imports rclpy or ROS's message packages."""
+    if not name.endswith(".py"):
+        return False
+    try:
+        tree = ast.parse(Path(name).read_bytes())
+    except (OSError, SyntaxError, ValueError):
+        return False
+    modules = {
+        module
+        for node in ast.walk(tree)
+        for module in (
+            [alias.name for alias in node.names]
+            if isinstance(node, ast.Import)
+            else [node.module or ""]
+            if isinstance(node, ast.ImportFrom)
+            else []
+        )
+    }
+    return not {"rclpy", *shipped_packages()}.isdisjoint(
+        module.partition(".")[0] for module in modules
+    )
+
+
+def run_program(interfaces: Sequence[str], program: Sequence[str]) -> NoReturn:
+    """Run a program of rclpy in the place of this process, as it is the owner of its signals.
+
+    Args:
+        interfaces: Folders with message packages.
+        program: Its file, or ``-m`` and its module, and its arguments.
+    """
+    folders = [part for folder in interfaces for part in ("--interfaces", folder)]
+    command = [sys.executable, "-m", "aionode.rclpy", *folders, *program]
+    if sys.platform == "win32":  # where the new process would not take the place of this one
+        sys.exit(subprocess.run(command, check=False).returncode)  # noqa: S603 (the user's program)
+    os.execv(sys.executable, command)  # noqa: S606 (the same)
 
 
 def module_of(source: str, spec: str) -> ModuleType:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections import defaultdict
 from itertools import chain
 from typing import TYPE_CHECKING, Final
 
@@ -33,7 +32,7 @@ from aionode.transport.ipc._protocol import (
 from aionode.transport.ipc._publisher import IpcWriter
 from aionode.transport.ipc._service import REPLY, IpcRequester, IpcServer, server_of
 from aionode.transport.ipc._shared_memory import BufferPool
-from aionode.transport.ipc._subscription import IpcReader
+from aionode.transport.ipc._subscription import IpcReader, heard_from
 
 if TYPE_CHECKING:
     import socket
@@ -44,7 +43,6 @@ if TYPE_CHECKING:
     from aionode.transport.ipc._protocol import Control, Frame
     from aionode.transport.ipc._registry import PeerDirectory
     from aionode.transport.ipc._send_queue import IpcSendQueue
-    from aionode.transport.ipc._subscription import RemotePublisher
     from aionode.wire.cdr import Data
 
 __all__ = ["LinkManager"]
@@ -568,7 +566,7 @@ class LinkManager:
                 )
             return
         self._read_until_eof(sender)
-        heard = self._heard_from(sender)
+        heard = heard_from(self.readers.values(), sender)
         for frame in frames:
             if frame.kind == Kind.RETRANSMIT_DONE:
                 for remote_publisher in chain.from_iterable(heard.values()):
@@ -576,15 +574,6 @@ class LinkManager:
             elif frame.kind == Kind.DATA:
                 for remote_publisher in heard.get(frame.gid, ()):
                     remote_publisher.from_retransmit(frame.payload, frame)
-
-    def _heard_from(self, participant: str) -> dict[bytes, list[RemotePublisher]]:
-        """Return what subscriptions keep about the publishers of a context, by their gids."""
-        heard: dict[bytes, list[RemotePublisher]] = defaultdict(list)
-        for reader in self.readers.values():
-            for remote_publisher in reader.remote_publishers.values():
-                if remote_publisher.participant == participant:
-                    heard[remote_publisher.publisher].append(remote_publisher)
-        return heard
 
 
 async def flush(connection: Connection) -> None:

@@ -22,7 +22,7 @@ number from any route, also from a new link, and holds what is further ahead.
 from __future__ import annotations
 
 import enum
-from collections import deque
+from collections import defaultdict, deque
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import DecodeError, FrameError
@@ -33,7 +33,7 @@ from aionode.transport.ipc._protocol import Close, Credit, Open, Switched, can_l
 from aionode.wire import cdr
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from aionode.content_filter import ContentFilterOptions
     from aionode.graph import EndpointInfo
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from aionode.transport.ipc._registry import LinkRegistry
     from aionode.wire.cdr import Data
 
-__all__ = ["IpcReader", "RemotePublisher", "Route", "may_be_large"]
+__all__ = ["IpcReader", "RemotePublisher", "Route", "heard_from", "may_be_large"]
 
 WINDOW: Final = 1_000
 """How many messages a KEEP_ALL subscription lets a publisher send ahead of what it has used."""
@@ -533,3 +533,15 @@ def may_be_large(msg_type: type[Any]) -> bool:
         else type_.container == "unbounded" and type_.kind not in ("string", "wstring")
         for type_ in types
     )
+
+
+def heard_from(
+    readers: Iterable[IpcReader], participant: str
+) -> dict[bytes, list[RemotePublisher]]:
+    """Return what subscriptions keep about the publishers of a context, by their gids."""
+    heard: dict[bytes, list[RemotePublisher]] = defaultdict(list)
+    for reader in readers:
+        for remote_publisher in reader.remote_publishers.values():
+            if remote_publisher.participant == participant:
+                heard[remote_publisher.publisher].append(remote_publisher)
+    return heard

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from typing import TYPE_CHECKING, Any
 
 import zenoh
@@ -16,6 +17,8 @@ from aionode.wire._attachment import unpack_fields
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable
 
+    from zenoh import ext
+
     from aionode.graph import EndpointInfo
     from aionode.qos import QoSProfile
 
@@ -27,12 +30,15 @@ __all__ = [
     "GIVEN_UP_NS",
     "STILL_NS",
     "UNKNOWN_GID",
-    "acknowledging_readers",
+    "acknowledging",
     "has_buffers",
     "is_reliable",
     "is_transient",
     "sample_info_of",
+    "withdraw",
 ]
+
+logger = logging.getLogger("aionode.transport.zenoh")
 
 UNKNOWN_GID = bytes(16)
 """The gid of a message without a valid attachment."""
@@ -87,24 +93,34 @@ def sample_info_of(extra: zenoh.ZBytes | None) -> SampleInfo | None:
     return None if fields is None else SampleInfo(fields[2], fields[0], fields[1], True)
 
 
-def acknowledging_readers(
-    readers: Iterable[EndpointInfo], able: Container[str]
+def acknowledging(
+    readers: Iterable[EndpointInfo], participants: Container[str]
 ) -> tuple[dict[bytes, str], bool]:
-    """Return the readers that acknowledge, and whether others must not lose messages.
+    """Return which readers acknowledge, with their contexts, and whether others must lose nothing.
+
+    Transient local readers get Zenoh's own history.
 
     Args:
-        readers: The matched subscriptions of other contexts.
-        able: The contexts that acknowledge.
+        readers: The matched readers.
+        participants: The contexts that acknowledge.
     """
-    acknowledging: dict[bytes, str] = {}
+    found: dict[bytes, str] = {}
     others = False
     for reader in readers:
         participant = reader.node.participant
-        if participant not in able:
+        if participant not in participants:
             others = True
         elif is_reliable(reader.qos):
             if is_transient(reader.qos):
                 others = True
             else:
-                acknowledging[reader.gid] = participant
-    return acknowledging, others
+                found[reader.gid] = participant
+    return found, others
+
+
+def withdraw(publisher: zenoh.Publisher | ext.AdvancedPublisher) -> None:
+    """Undeclare a publisher, unless its session has been closed already."""
+    try:
+        publisher.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
+    except zenoh.ZError as error:
+        logger.debug("%s: not undeclared: %s", publisher.key_expr, error)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from typing import TYPE_CHECKING
 
 import zenoh
@@ -13,9 +12,7 @@ from aionode.wire import _attachment as attachment
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["declare_keeping", "declare_plain", "unless_expired", "withdraw"]
-
-logger = logging.getLogger("aionode.transport.zenoh")
+__all__ = ["declare_keeping", "declare_plain", "unless_expired"]
 
 
 def declare_plain(
@@ -67,14 +64,6 @@ def declare_keeping(
         if reliable
         else None,
     )
-
-
-def withdraw(publisher: zenoh.Publisher | ext.AdvancedPublisher) -> None:
-    """Undeclare a publisher, unless its session has been closed already."""
-    try:
-        publisher.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
-    except zenoh.ZError as error:
-        logger.debug("%s: not undeclared: %s", publisher.key_expr, error)
 
 
 def unless_expired(

@@ -25,10 +25,11 @@ from aionode.transport.zenoh._delivery import (
     FLUSH_NS,
     GIVEN_UP_NS,
     STILL_NS,
-    acknowledging_readers,
+    acknowledging,
     has_buffers,
     is_reliable,
     is_transient,
+    withdraw,
 )
 from aionode.transport.zenoh._handlers import (
     BULK_PRIORITY,
@@ -41,7 +42,6 @@ from aionode.transport.zenoh._kept_history import (
     declare_keeping,
     declare_plain,
     unless_expired,
-    withdraw,
 )
 from aionode.transport.zenoh._session_state import Declaration
 from aionode.wire import _acknack as acknack
@@ -294,12 +294,12 @@ class ZenohWriter(Declaration, Writer):
     def _update_readers(self, history: WriterHistory, readers: list[EndpointInfo]) -> None:
         """Add new and returned readers to the history, and remove those that have vanished."""
         able = self.state.acknowledgements.participants
-        acknowledging, others = acknowledging_readers(readers, able)
+        found, others = acknowledging(readers, able)
         for gid, known in list(history.readers.items()):
-            if gid not in acknowledging and not known.away_until_ns:
+            if gid not in found and not known.away_until_ns:
                 history.remove(gid)
         if not self._closed:
-            for gid, participant in acknowledging.items():
+            for gid, participant in found.items():
                 reader = history.readers.get(gid)
                 if reader is None or reader.away_until_ns:
                     history.add(gid, participant)

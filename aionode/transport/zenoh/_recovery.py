@@ -10,6 +10,11 @@ its introducer (a router, or the peer at a configured endpoint) sees. A second s
 some milliseconds, queries them. If the introducer sees a participant that this session does not, or
 to which it has lost the connection, or does not see this session, the connection to the introducer
 is cut, and Zenoh makes it anew at once.
+
+The same is done once after the start, and when a peer is connected that announces nothing: where
+many processes start at the same moment, Zenoh gives dialling up before a busy process has answered,
+and of two connections made at once it may keep one on which the other end has announced nothing
+(zenoh 1.10). Such a connection is cut as well.
 """
 
 from __future__ import annotations
@@ -34,7 +39,7 @@ from aionode.transport.zenoh._session import load_config
 from aionode.wire._liveliness import PREFIX as ROS_PREFIX
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from aionode.transport._zenoh_config import Network
     from aionode.transport.zenoh._session_state import SessionState
@@ -48,6 +53,9 @@ LOOK_IDS: Final = "a10de10c"
 
 FIRST_S: Final = 0.5
 """The first look is so long after a connection was lost or made; Zenoh needs milliseconds."""
+
+START_S: Final = 20.0
+"""For so long after the start looks are repeated, until one finds nothing missing."""
 
 AGAIN_S: Final = 3.0
 """The interval of further looks: a process that was frozen returns without a sign."""
@@ -75,7 +83,7 @@ def is_look(zid: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Connection:
-    """A connection that this session has dialled, and that Zenoh dials again when it is lost."""
+    """A connection of this session; without an endpoint, if it does not dial that again."""
 
     zid: str
     source: tuple[str, int]
@@ -106,6 +114,7 @@ class Recovery:
         self._timer: asyncio.TimerHandle | None = None
         self._looking = False
         self._until_s = 0.0
+        self._starting_until_s = 0.0
         # Participants whose connection was lost and not made anew. A router may forward what they
         # send meanwhile, but not always what this session sends.
         self._lost: set[str] = set()
@@ -121,6 +130,8 @@ class Recovery:
             self._listener = session.info.declare_transport_events_listener(
                 direct(self._changes.put)
             )
+        self._starting_until_s = asyncio.get_running_loop().time() + START_S
+        self._look_in(FIRST_S)
 
     def stop(self) -> None:
         """Stop watching; a look that is under connection ends by itself."""
@@ -135,6 +146,7 @@ class Recovery:
             queue.clear()
         self._looking = False
         self._until_s = 0.0
+        self._starting_until_s = 0.0
         self._attempts.clear()
         self._lost.clear()
 
@@ -151,8 +163,6 @@ class Recovery:
             self._lost.add(zid)
         else:
             self._lost.discard(zid)
-            if now_s >= self._until_s:
-                return
         self._look_in(FIRST_S)
 
     def _look_in(self, delay_s: float) -> None:
@@ -168,38 +178,44 @@ class Recovery:
         if session is None or self._looking:
             return
         self._looking = True
+        now_s = asyncio.get_running_loop().time()
+        is_due = now_s < max(self._until_s, self._starting_until_s)
         threading.Thread(
-            target=self._look_in_thread, args=(session, set(self._lost)), name="aionode-zenoh"
+            target=self._look_in_thread,
+            args=(session, set(self._lost), is_due),
+            name="aionode-zenoh",
         ).start()
 
-    def _look_in_thread(self, session: zenoh.Session, lost: set[str]) -> None:
+    def _look_in_thread(self, session: zenoh.Session, lost: set[str], is_due: bool) -> None:
         missing: set[str] = set()
         with suppress(zenoh.ZError, ConfigurationError):
             connection = introducer_connection(session, self._network)
-            if connection is not None:
+            if connection is not None and (is_due or silent_peers(session)):
                 missing = self._missing(session, connection, lost)
                 if missing:
                     threading.Event().wait(SURE_S)
                     missing &= self._missing(session, connection, lost)
                 missing = {zid for zid in missing if self._attempts.get(zid, 0) < ATTEMPTS}
                 if missing:
-                    cut(connection)
+                    cut([*connections_to(session, missing), connection])
         self._looks.put(missing)
 
     def _missing(self, session: zenoh.Session, connection: Connection, lost: set[str]) -> set[str]:
         """Return those that only the introducer sees, and this one if the introducer does not."""
         there = self._seen_at(connection)
-        here = participants(session, self._state.domain_id)
+        here = tokens(session, self._state.domain_id)
         connected = {str(transport.zid) for transport in session.info.transports()}
-        unseen = {self._state.participant} & here - there
-        return (there - here) | (there & lost - connected) | unseen
+        own = {token for token in here if participant_of(token) == self._state.participant}
+        return {participant_of(token) for token in (there - here) | (own - there)} | {
+            participant_of(token) for token in there
+        } & lost - connected
 
     def _seen_at(self, connection: Connection) -> set[str]:
-        """Return the participants that are visible at the other end of a connection."""
+        """Return the tokens that are visible at the other end of a connection."""
         look_id = LOOK_IDS + secrets.token_hex(12)
         config = load_config(self._network, {}, look_id, look_settings(connection.endpoint))
         with closing(zenoh.open(config)) as look:
-            return participants(look, self._state.domain_id)
+            return tokens(look, self._state.domain_id)
 
     def _take_look(self, missing: set[str]) -> None:
         self._looking = False
@@ -216,18 +232,40 @@ class Recovery:
         if self._checks:
             self._checks -= 1
             self._on_change()
-        if self._timer is None and asyncio.get_running_loop().time() < self._until_s:
+        now_s = asyncio.get_running_loop().time()
+        if not missing:
+            self._starting_until_s = 0.0
+        if self._timer is None and now_s < max(self._until_s, self._starting_until_s):
             self._look_in(FIRST_S if missing else AGAIN_S)
 
 
-def participants(session: zenoh.Session, domain_id: int) -> set[str]:
-    """Return the participants of a domain that a session sees."""
+def tokens(session: zenoh.Session, domain_id: int | str) -> set[str]:
+    """Return the tokens of nodes and contexts in a domain that a session sees."""
     found = set()
-    for tokens in (f"{ROS_PREFIX}/{domain_id}/*/*/*/NN/**", f"@aionode/{domain_id}/*/link/**"):
-        for reply in session.liveliness().get(tokens, timeout=ANSWER_S):
+    for keys in (f"{ROS_PREFIX}/{domain_id}/*/*/*/NN/**", f"@aionode/{domain_id}/*/link/**"):
+        for reply in session.liveliness().get(keys, timeout=ANSWER_S):
             if reply.ok is not None:
-                found.add(str(reply.ok.key_expr).split("/", 3)[2])
+                found.add(str(reply.ok.key_expr))
     return found
+
+
+def participant_of(token: str) -> str:
+    """Return the participant of a token of a node or context."""
+    return token.split("/", 3)[2]
+
+
+def silent_peers(session: zenoh.Session) -> set[str]:
+    """Return the connected peers that announce nothing in any domain."""
+    peers = {str(zid) for zid in session.info.peers_zid()}
+    return peers - {participant_of(token) for token in tokens(session, "*")}
+
+
+def connections_to(session: zenoh.Session, zids: set[str]) -> Iterator[Connection]:
+    """Yield the connections to some sessions."""
+    for each in session.info.links():
+        source, target = address_in(str(each.src)), address_in(str(each.dst))
+        if str(each.zid) in zids and source is not None and target is not None:
+            yield Connection(str(each.zid), source, target, "")
 
 
 def introducer_connection(session: zenoh.Session, network: Network) -> Connection | None:
@@ -263,12 +301,12 @@ def addresses_of(endpoint: str) -> Iterator[tuple[str, int]]:
                 yield str(found[0]), int(found[1])
 
 
-def cut(connection: Connection) -> None:
-    """Shut a connection of Zenoh down, as the network would."""
+def cut(connections: Iterable[Connection]) -> None:
+    """Shut connections of Zenoh down, as the network would."""
+    lost = {(connection.source, connection.target) for connection in connections}
     for one in own_sockets():
         with closing(one), suppress(OSError):
-            ends = one.getsockname()[:2], one.getpeername()[:2]
-            if ends == (connection.source, connection.target):
+            if (one.getsockname()[:2], one.getpeername()[:2]) in lost:
                 one.shutdown(socket.SHUT_RDWR)
 
 

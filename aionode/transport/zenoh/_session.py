@@ -28,6 +28,7 @@ from aionode.transport._zenoh_config import (
     session_settings,
 )
 from aionode.transport.zenoh._handlers import direct, reason
+from aionode.transport.zenoh._sockets import give_up_unreachable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -51,8 +52,12 @@ T = TypeVar("T")
 PROBE_S = 0.2
 """How long a port on this machine may take to accept a connection; it takes 0.1 ms."""
 
-SPEAK_S = 0.5
-"""How long a program may take to answer Zenoh's first message; it takes a millisecond."""
+SPEAK_S = 2.0
+"""How long a program may take to answer Zenoh's first message; it takes a millisecond.
+
+A process of aionode may take longer where many start at once. Other programs mostly answer or close
+the connection at once.
+"""
 
 TURN_S = 1.0
 """How long this process waits for its turn to open a session; each turn takes 10 ms."""
@@ -298,22 +303,28 @@ async def open_session(network: Network, participant: str) -> tuple[zenoh.Sessio
                 used, taken = meeting(network, answering) if len(ports) > 1 else (network, set())
                 settings = session_settings(used, taken)
                 session = zenoh.open(load_config(network, settings, participant))
+            if network.may_reach_far:
+                give_up_unreachable(session)
         except zenoh.ZError as error:
             raise TransportError(
                 f"Zenoh: no session could be opened: {reason(error)}; look at "
                 "ZENOH_SESSION_CONFIG_URI, ZENOH_CONFIG_OVERRIDE and Context(config=...)"
             ) from error
         # Configured peers may be absent; one of them is waited for.
-        configured = bool(network.static_peers or network.config_file)
+        configured = bool(network.near_peers or network.config_file)
         return session, len(answering) + configured
 
     return await run_in_own_thread(work, late=lambda opened: opened[0].close())
 
 
-async def open_router(listen: Iterable[str]) -> zenoh.Session:
+async def open_router(listen: Iterable[str], connect: Iterable[str] = ()) -> zenoh.Session:
     """Open a router, as `rmw_zenohd` is; `close_session` ends it.
 
     ``ZENOH_CONFIG_OVERRIDE`` is honoured, for TLS and access control.
+
+    Args:
+        listen: The Zenoh endpoints on which it listens.
+        connect: Those of routers on other machines, with which it is linked; they may be absent.
 
     Raises:
         ConfigurationError: the override does not fit.
@@ -325,12 +336,14 @@ async def open_router(listen: Iterable[str]) -> zenoh.Session:
 
     def work() -> zenoh.Session:
         try:
-            return zenoh.open(load_config(network, router_settings(endpoints)))
+            router = zenoh.open(load_config(network, router_settings(endpoints, connect)))
         except zenoh.ZError as error:
             raise TransportError(
                 f"router on {', '.join(endpoints)}: {reason(error)}; "
                 "is another router running there?"
             ) from error
+        give_up_unreachable(router)
+        return router
 
     return await run_in_own_thread(work, late=lambda session: session.close())
 

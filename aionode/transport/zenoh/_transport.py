@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from aionode.clock import perf_ns
 from aionode.transport.base import Transport
 from aionode.transport.zenoh._graph_watcher import NodeDeclaration, Watcher
+from aionode.transport.zenoh._local_router import LocalRouter
 from aionode.transport.zenoh._peer_directory import ZenohPeerDirectory
 from aionode.transport.zenoh._publisher import ZenohWriter
 from aionode.transport.zenoh._recovery import Recovery
@@ -64,6 +65,7 @@ class ZenohTransport(Transport):
         self._missing = 0  # how many peers that accept connections were not connected in time
         self._recovery = Recovery(self._state, network, self._watcher.check)
         self._linger_switch: LingerSwitch | None = None
+        self._local_router = LocalRouter(self._state, network)
 
     def __repr__(self) -> str:
         state = "closed" if self._state.session is None else "open"
@@ -88,7 +90,12 @@ class ZenohTransport(Transport):
 
     async def open(self, graph: Graph) -> None:
         """Connect; return when the running peers are known, as far as that can be determined."""
-        session, expected = await open_session(self.network, self._state.participant)
+        try:
+            await self._local_router.open()
+            session, expected = await open_session(self.network, self._state.participant)
+        except BaseException:
+            await asyncio.shield(self._local_router.close())
+            raise
         self._state.waker.open(asyncio.get_running_loop())
         # Before waiting for others, so that peers that connect meanwhile see everything. After a
         # failure from here on, `close` closes the session.
@@ -99,9 +106,10 @@ class ZenohTransport(Transport):
             self._watcher.start(session)
             self.peer_directory.start(session)
             self._recovery.start(session)
+            self._local_router.start(session)
             await links.wait_until_connected(expected)
             # Configured peers may be absent, so they are not counted as missing.
-            hoped_for = bool(self.network.static_peers or self.network.config_file)
+            hoped_for = bool(self.network.near_peers or self.network.config_file)
             self._missing = expected - hoped_for - len(session.info.transports())
             self._answered = asyncio.get_running_loop().create_future()
             self._watcher.ask(session, self._answered)
@@ -140,6 +148,7 @@ class ZenohTransport(Transport):
         if session is not None:
             await cut_stuck(session)
             await close_session(session)
+        await self._local_router.close()
         state.waker.close()
 
     def create_node(self, node: NodeInfo) -> Registration:

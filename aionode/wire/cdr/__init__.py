@@ -17,10 +17,12 @@ from aionode.message import Message, fields, snapshotter, type_name
 from aionode.wire.cdr._decoder import generate_decoder
 from aionode.wire.cdr._encoder import FALLBACK_ERRORS, JOIN, generate_encoder, views
 from aionode.wire.cdr._fallback_decoder import decode_slowly
+from aionode.wire.cdr._family import OWN, MessageFamily
 from aionode.wire.cdr._layout import has_views
 
 __all__ = [
     "Data",
+    "MessageFamily",
     "decode",
     "decoder",
     "encode",
@@ -68,18 +70,28 @@ def decode(msg_type: type[MessageT], data: Data) -> MessageT:
     return function(data)  # type: ignore[no-any-return] # a message of this type
 
 
-def encoder(cls: type[MessageT]) -> Callable[[MessageT], bytes]:
+def encoder(
+    cls: type[MessageT], family: MessageFamily | None = None
+) -> Callable[[MessageT], bytes]:
     """Return the function that encodes messages of one class, as `encode` does.
+
+    Args:
+        cls: A message class of aionode.
+        family: Whose objects the function takes; aionode's own without it.
 
     Raises:
         TypeError: `cls` is not a message class.
     """
+    if family is not None:
+        return family_encoder(cls, JOIN, family)
     if cls not in ENCODERS:
-        ENCODERS[cls] = new_encoder(cls, JOIN)
+        ENCODERS[cls] = new_encoder(cls, JOIN, OWN)
     return ENCODERS[cls]
 
 
-def parts_encoder(cls: type[MessageT]) -> Callable[[MessageT], list[bytes | memoryview]]:
+def parts_encoder(
+    cls: type[MessageT], family: MessageFamily | None = None
+) -> Callable[[MessageT], list[bytes | memoryview]]:
     """Return the function that encodes messages of one class into a list of parts.
 
     Joined, the parts are what `encode` returns. Large arrays and byte sequences of the message are
@@ -87,22 +99,34 @@ def parts_encoder(cls: type[MessageT]) -> Callable[[MessageT], list[bytes | memo
     current content of the message, so use the parts before the message may change. This pays off
     for classes for which `has_views` is true; other classes have no such views.
 
+    Args:
+        cls: A message class of aionode.
+        family: Whose objects the function takes; aionode's own without it.
+
     Raises:
         TypeError: `cls` is not a message class.
     """
+    if family is not None:
+        return family_encoder(cls, views, family)
     if cls not in PARTS_ENCODERS:
-        PARTS_ENCODERS[cls] = new_encoder(cls, views)
+        PARTS_ENCODERS[cls] = new_encoder(cls, views, OWN)
     return PARTS_ENCODERS[cls]
 
 
-def decoder(cls: type[MessageT]) -> Callable[[Data], MessageT]:
+def decoder(cls: type[MessageT], family: MessageFamily | None = None) -> Callable[[Data], MessageT]:
     """Return the function that decodes messages of one class, as `decode` does.
+
+    Args:
+        cls: A message class of aionode.
+        family: Whose objects the function makes; aionode's own without it.
 
     Raises:
         TypeError: `cls` is not a message class.
     """
+    if family is not None:
+        return family_decoder(cls, family)
     if cls not in DECODERS:
-        DECODERS[cls] = new_decoder(cls)
+        DECODERS[cls] = new_decoder(cls, OWN)
     return DECODERS[cls]
 
 
@@ -111,11 +135,28 @@ PARTS_ENCODERS: dict[type[Message], Callable[[Any], list[bytes | memoryview]]] =
 DECODERS: dict[type[Message], Callable[[Any], Any]] = {}
 
 
+@cache
+def family_encoder(
+    cls: Any, finish: Callable[[Sequence[Any]], Any], family: MessageFamily
+) -> Callable[[Any], Any]:
+    """Return the encoder of a class for objects of another family."""
+    return new_encoder(cls, finish, family)
+
+
+@cache
+def family_decoder(cls: Any, family: MessageFamily) -> Callable[[Any], Any]:
+    """Return the decoder of a class that makes objects of another family."""
+    return new_decoder(cls, family)
+
+
 def new_encoder(
-    cls: type[Message], finish: Callable[[Sequence[Any]], Encoded]
+    cls: type[Message], finish: Callable[[Sequence[Any]], Encoded], family: MessageFamily
 ) -> Callable[[Any], Encoded]:
-    """Return a new encoder of a class; `finish` as for `generate_encoder`."""
+    """Return a new encoder of a class; arguments as for `generate_encoder`."""
     fields(cls)  # raises TypeError for a service class
+    if family is not OWN:
+        own = new_encoder(cls, finish, OWN)
+        return generate_encoder(cls, lambda msg: own(family.adopt(msg)), finish, family)
     take = snapshotter(cls)
 
     def encode_unusual(msg: Any) -> Encoded:
@@ -132,27 +173,27 @@ def new_encoder(
     return fast
 
 
-def new_decoder(cls: type[Message]) -> Callable[[Any], Any]:
-    """Return a new decoder of a class."""
+def new_decoder(cls: type[Message], family: MessageFamily) -> Callable[[Any], Any]:
+    """Return a new decoder of a class that makes objects of `family`."""
     fields(cls)  # raises TypeError for a service class
 
     def decode_carefully(data: bytes) -> Any:
-        return decode_slowly(cls, memoryview(data))
+        return decode_slowly(cls, memoryview(data), family)
 
     def decode_other(data: Any) -> Any:
-        return view_decoder(cls)(read_only(data))
+        return view_decoder(cls, family)(read_only(data))
 
-    return generate_decoder(cls, decode_carefully, decode_other)
+    return generate_decoder(cls, decode_carefully, decode_other, family=family)
 
 
 @cache
-def view_decoder(cls: Any) -> Callable[[memoryview], Any]:
+def view_decoder(cls: Any, family: MessageFamily) -> Callable[[memoryview], Any]:
     """Return the decoder of a class for data that is not a bytes object."""
 
     def decode_carefully(data: memoryview) -> Any:
-        return decode_slowly(cls, data)
+        return decode_slowly(cls, data, family)
 
-    return generate_decoder(cls, decode_carefully)
+    return generate_decoder(cls, decode_carefully, family=family)
 
 
 def read_only(data: Any) -> memoryview:

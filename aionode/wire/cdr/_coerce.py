@@ -7,6 +7,7 @@ is, and raise `NeedsFallback` otherwise: the encoder then encodes a snapshot of 
 from __future__ import annotations
 
 import struct
+from array import array
 from numbers import Real
 from typing import Any
 
@@ -51,7 +52,7 @@ def real_numbers(*values: object) -> None:
 
 
 def coerce_array(value: object, dtype: Any, code: str) -> Any:
-    """Return a list of Python numbers, or an array of a subclass of ndarray, as an ndarray.
+    """Return a list of numbers, an `array.array`, or an array of a subclass of ndarray as ndarray.
 
     Args:
         value: The value of an array field.
@@ -64,6 +65,8 @@ def coerce_array(value: object, dtype: Any, code: str) -> Any:
         if value.dtype != dtype:
             raise NeedsFallback
         return value.view(np.ndarray)
+    if isinstance(value, array) and value.typecode == code:
+        return np.frombuffer(value, dtype)
     if not isinstance(value, list | tuple) or not set(map(type, value)) <= CLASSES[dtype.kind]:
         raise NeedsFallback
     # struct checks the ranges.

@@ -17,6 +17,7 @@ from aionode.message._field_types import DTYPES
 from aionode.message._validation import EMPTY
 from aionode.wire.cdr._codegen import CodeBuilder, NeedsFallback
 from aionode.wire.cdr._constants import COUNT_SIZE, HEADER
+from aionode.wire.cdr._family import OWN, MessageFamily
 from aionode.wire.cdr._layout import (
     PHASES,
     PRIMITIVES,
@@ -56,6 +57,8 @@ def generate_decoder(
     cls: Any,
     fallback: Callable[[Any], Any],
     other: Callable[[Any], Any] | None = None,
+    *,
+    family: MessageFamily = OWN,
 ) -> Callable[[Any], Any]:
     """Return the function that decodes messages of class `cls`.
 
@@ -64,16 +67,17 @@ def generate_decoder(
         fallback: Decodes data that the function cannot decode, or raises the error.
         other: Decodes data that is not a bytes object. Without it, the function accepts
             memoryviews only.
+        family: Whose objects it makes.
     """
-    return DecoderGenerator(cls, of_bytes=other is not None).whole(fallback, other)
+    return DecoderGenerator(cls, family, of_bytes=other is not None).whole(fallback, other)
 
 
 @cache
 def element_decoder(
-    cls: Any, *, of_bytes: bool
+    cls: Any, family: MessageFamily, *, of_bytes: bool
 ) -> Callable[[Any, memoryview, int], tuple[Any, int]]:
     """Return the function that decodes a nested message: it returns the message and its end."""
-    return DecoderGenerator(cls, of_bytes=of_bytes).element()
+    return DecoderGenerator(cls, family, of_bytes=of_bytes).element()
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,8 +99,9 @@ class DecoderGenerator:
     `_modulus`, so the generator knows which alignments need no padding.
     """
 
-    def __init__(self, cls: Any, *, of_bytes: bool) -> None:
+    def __init__(self, cls: Any, family: MessageFamily, *, of_bytes: bool) -> None:
         self._cls = cls
+        self._family = family
         self._of_bytes = of_bytes
         self._source = CodeBuilder()
         self._layout = "<"
@@ -149,8 +154,9 @@ class DecoderGenerator:
         return f"{self._class(cls)}({', '.join(values)})"
 
     def _class(self, cls: Any) -> str:
-        """Return the name of a class, made from its validated type name."""
-        return self._source.constant(type_name(cls).rpartition("/")[2], cls)
+        """Return the name of what makes a message, derived from its validated type name."""
+        make = self._family.constructor(cls)
+        return self._source.constant(type_name(cls).rpartition("/")[2], make)
 
     def _field(self, kind: FieldType, name: str) -> str:
         """Decode one field; return the expression of its value."""
@@ -269,7 +275,7 @@ class DecoderGenerator:
             if self._uniform_messages(cls, count, local):
                 return
         view = self._view()
-        read = source.constant("read", element_decoder(cls, of_bytes=self._of_bytes))
+        read = source.constant("read", element_decoder(cls, self._family, of_bytes=self._of_bytes))
         if self._offset is not None:
             source.line(f"pos = {self._offset}")
         self._unknown()

@@ -17,6 +17,7 @@ from aionode.message import fields, type_name
 from aionode.wire.cdr._codegen import CodeBuilder, NeedsFallback
 from aionode.wire.cdr._coerce import coerce_array, octets, real_numbers, whole_numbers
 from aionode.wire.cdr._constants import COUNT_SIZE, HEADER
+from aionode.wire.cdr._family import OWN, MessageFamily
 from aionode.wire.cdr._layout import (
     PHASES,
     PRIMITIVES,
@@ -63,6 +64,7 @@ def generate_encoder(
     cls: Any,
     fallback: Callable[[Any], Encoded],
     finish: Callable[[Sequence[Any]], Encoded],
+    family: MessageFamily = OWN,
 ) -> Callable[..., Encoded]:
     """Return the function that encodes messages of class `cls`.
 
@@ -72,8 +74,9 @@ def generate_encoder(
             the function again with True as second argument, which then raises what went wrong.
         finish: Makes the result from the parts, which are bytes and the message's own arrays:
             `JOIN` or `views`.
+        family: Whose objects it encodes.
     """
-    return EncoderGenerator(cls).whole(fallback, finish)
+    return EncoderGenerator(cls, family).whole(fallback, finish)
 
 
 def views(parts: Sequence[Any]) -> list[bytes | memoryview]:
@@ -92,9 +95,9 @@ def views(parts: Sequence[Any]) -> list[bytes | memoryview]:
 
 
 @cache
-def element_encoder(cls: Any) -> Callable[[list[bytes], int, Any], int]:
+def element_encoder(cls: Any, family: MessageFamily) -> Callable[[list[bytes], int, Any], int]:
     """Return the function that encodes a nested message: it appends parts and returns `pos`."""
-    return EncoderGenerator(cls).element()
+    return EncoderGenerator(cls, family).element()
 
 
 class EncoderGenerator:
@@ -106,8 +109,9 @@ class EncoderGenerator:
     the message. In both cases that position is `_residue` modulo `_modulus`.
     """
 
-    def __init__(self, cls: Any) -> None:
+    def __init__(self, cls: Any, family: MessageFamily) -> None:
         self._cls = cls
+        self._family = family
         self._source = CodeBuilder()
         self._run: list[Item] = []
         """The current run."""
@@ -160,7 +164,8 @@ class EncoderGenerator:
 
     def _message(self, cls: Any, owner: str, after: int) -> None:
         """Encode all fields; the next value after them is aligned to `after`."""
-        self._source.require(f"{owner}.__class__ is {self._source.constant('T', cls)}")
+        class_ = self._source.constant("T", self._family.class_of(cls))
+        self._source.require(f"{owner}.__class__ is {class_}")
         described = fields(cls)
         if not described:
             self._run.append(Item("x", 1))
@@ -169,7 +174,7 @@ class EncoderGenerator:
             self._field(
                 field.type,
                 field.name,
-                f"{owner}.{field.name}",
+                f"{owner}.{self._family.prefix}{field.name}",
                 first_alignment(following[0].type) if following else after,
             )
         self._check_scalars()
@@ -330,7 +335,7 @@ class EncoderGenerator:
     def _element(self, cls: Any, local: str) -> None:
         """Encode a nested message by the function of its class."""
         source = self._source
-        write = source.constant("write", element_encoder(cls))
+        write = source.constant("write", element_encoder(cls, self._family))
         source.line(f"pos = {write}(out, pos, {local})")
         self._unknown()
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from aionode.errors import DecodeError
 from aionode.message import fields, type_name
 from aionode.wire.cdr._constants import COUNT_SIZE, HEADER
+from aionode.wire.cdr._family import OWN, MessageFamily
 from aionode.wire.cdr._layout import PRIMITIVES, minimum_size, padding
 from aionode.wire.cdr._strings import wide_string
 
@@ -28,26 +29,27 @@ ORDERS = {b"\x00\x00": ">", b"\x00\x01": "<"}
 """Byte order by the first two bytes; later encodings, which ROS 2 does not use, have others."""
 
 
-def decode_slowly(cls: type[Message], data: memoryview) -> Message:
-    """Return the message in `data`.
+def decode_slowly(cls: type[Message], data: memoryview, family: MessageFamily = OWN) -> Any:
+    """Return the message in `data`, an object of `family`.
 
     Raises:
         DecodeError: The data does not hold a message of this class.
     """
-    return FallbackDecoder(cls, data).whole()
+    return FallbackDecoder(cls, data, family).whole()
 
 
 class FallbackDecoder:
     """Decodes one message."""
 
-    def __init__(self, cls: type[Message], data: memoryview) -> None:
+    def __init__(self, cls: type[Message], data: memoryview, family: MessageFamily) -> None:
         self._cls = cls
+        self._family = family
         self._data = data
         self._pos = 0
         self._path = ""
         self._order = "<"
 
-    def whole(self) -> Message:
+    def whole(self) -> Any:
         """Decode the header and the message after it."""
         start = bytes(self._take(len(HEADER), "the encapsulation header")[:2])
         if start not in ORDERS:
@@ -56,15 +58,15 @@ class FallbackDecoder:
         self._order = ORDERS[start]
         return self._message(self._cls)
 
-    def _message(self, cls: type[Message]) -> Message:
+    def _message(self, cls: type[Message]) -> Any:
         described = fields(cls)
         if not described:
             self._take(1, "the single byte of a message without fields")
-        values = {}
+        values = []
         for field in described:
             with self._inside(f".{field.name}"):
-                values[field.name] = self._field(field.type)
-        return cls(**values)
+                values.append(self._field(field.type))
+        return self._family.constructor(cls)(*values)
 
     def _field(self, kind: FieldType) -> Any:
         if kind.container == "single":

@@ -1,0 +1,9 @@
+"""``python -m aionode.rclpy program.py``: runs a program of rclpy."""
+
+from __future__ import annotations
+
+import sys
+
+from aionode.rclpy._program import main
+
+main(sys.argv[1:])

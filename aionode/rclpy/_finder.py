@@ -1,0 +1,207 @@
+"""Lets programs import `rclpy`, message packages and ROS's small Python packages from aionode."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Sequence
+from importlib import import_module
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec, PathFinder
+from importlib.util import find_spec, spec_from_loader
+from pathlib import Path
+from types import ModuleType
+from typing import Any, Final
+
+from aionode.interfaces import shipped_packages
+from aionode.rclpy._rosidl import (
+    add_folder,
+    classes_of,
+    has_interfaces,
+    module_name,
+    names_in,
+)
+
+__all__ = ["install", "provide"]
+
+ALIASES: Final = {
+    "rclpy": "aionode.rclpy",
+    "rosidl_parser": "aionode.rclpy._rosidl_parser",
+    "rosidl_runtime_py": "aionode.rclpy._rosidl_runtime_py",
+    "sensor_msgs_py": "aionode.rclpy._sensor_msgs_py",
+    "ament_index_python": "aionode.rclpy._ament_index_python",
+}
+"""The packages of ROS that are packages of aionode; their modules are the same objects."""
+
+KINDS: Final = ("msg", "srv", "action")
+
+
+def install(*, interfaces: Iterable[str | Path] = (), prefer_ros: bool = False) -> None:
+    """Make `import rclpy` and `from std_msgs.msg import String` mean aionode's, in this process.
+
+    Message packages are those of aionode, those of the given folders, and those that are installed
+    below AMENT_PREFIX_PATH. Where an rclpy of ROS 2 is installed as well, a line of the log says
+    which of the two is used. A second call only adds folders.
+
+    Args:
+        interfaces: Folders with message packages (``my_msgs/msg/Words.msg``), which need no build.
+        prefer_ros: Use ROS 2's own packages, and change nothing, if its rclpy is installed.
+
+    Raises:
+        ImportError: Another rclpy has been imported already.
+        IdlError: The definition of an interface is not valid.
+        FileNotFoundError: There is no such folder.
+    """
+    loaded = sys.modules.get("rclpy")
+    if loaded is not None and loaded.__name__ != ALIASES["rclpy"]:
+        place = getattr(loaded, "__file__", None)
+        raise ImportError(
+            f"aionode.rclpy.install: the rclpy of {place} is imported already; "
+            "call install() before the first import of rclpy",
+            name="rclpy",
+        )
+    if FINDER not in sys.meta_path:
+        ros = rclpy_of_ros()
+        if ros is not None:
+            from aionode.logging import get_logger  # only if there is something to say
+
+            which = f"ROS ({ros})" if prefer_ros else f"aionode, not that of ROS ({ros})"
+            get_logger("aionode.rclpy").info(f"using the rclpy of {which}")
+            if prefer_ros:
+                return
+        sys.meta_path.insert(0, FINDER)
+    for folder in interfaces:
+        add_folder(folder)
+
+
+def rclpy_of_ros() -> Path | None:
+    """Return the folder of an installed rclpy that is not aionode's, if there is one."""
+    found = PathFinder.find_spec("rclpy")
+    if found is None or found.origin is None:
+        return None
+    file = Path(found.origin)
+    is_own = "aionode" in file.read_text(encoding="utf-8", errors="replace")[:300]
+    return None if is_own else file.parent
+
+
+def provide(name: str) -> None:
+    """Replace a module that is being imported by aionode's of that name.
+
+    The packages of the distribution ``aionode-rclpy`` consist of this call.
+    """
+    if FINDER not in sys.meta_path:
+        sys.meta_path.insert(0, FINDER)
+    del sys.modules[name]
+    import_module(name)
+
+
+class AionodeFinder(MetaPathFinder):
+    """Finds the modules that aionode has instead of ROS."""
+
+    def find_spec(
+        self,
+        fullname: str,
+        path: Sequence[str] | None,  # noqa: ARG002 (of the protocol)
+        target: ModuleType | None = None,  # noqa: ARG002 (the same)
+    ) -> ModuleSpec | None:
+        """Return how a module is loaded; None if it is not one of these."""
+        package, _, inside = fullname.partition(".")
+        if package in ALIASES:
+            own = ".".join((ALIASES[package], inside)) if inside else ALIASES[package]
+            return spec_from_loader(fullname, AliasLoader(own)) if exists(own) else None
+        if package == "aionode" or not has_interfaces(package):
+            return None
+        if not inside:
+            # A package may have Python modules beside its messages.
+            ordinary = None if package in shipped_packages() else PathFinder.find_spec(package)
+            if ordinary is not None and ordinary.origin is not None:
+                return None
+            return spec_from_loader(fullname, EmptyLoader(), is_package=True)
+        kind, _, module = inside.partition(".")
+        if kind not in KINDS or not has_interfaces(package, kind):
+            return None
+        if not module:
+            return spec_from_loader(fullname, KindLoader(package, kind), is_package=True)
+        for name in names_in(package):
+            if module_name(*name.split("/")) == fullname:
+                return spec_from_loader(fullname, InterfaceLoader(name))
+        return None
+
+
+def exists(module: str) -> bool:
+    """Return whether there is a module of aionode of this name."""
+    try:
+        return find_spec(module) is not None
+    except ModuleNotFoundError:
+        return False
+
+
+class AliasLoader(Loader):
+    """Gives a module a second name; it stays one object."""
+
+    def __init__(self, own: str) -> None:
+        self.own = own
+        self.spec: ModuleSpec | None = None
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:  # noqa: ARG002 (of the protocol)
+        """Return the module of aionode."""
+        module = import_module(self.own)
+        self.spec = module.__spec__
+        return module
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Undo what the import system has changed: the module keeps its own description."""
+        module.__spec__ = self.spec
+
+
+class EmptyLoader(Loader):
+    """Loads a package that has only modules."""
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Leave the module as it is."""
+
+
+class KindLoader(Loader):
+    """Loads a module such as ``std_msgs.msg``, whose classes are made when they are asked for."""
+
+    def __init__(self, package: str, kind: str) -> None:
+        self.package = package
+        self.kind = kind
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Give the module what finds its classes."""
+        package, kind = self.package, self.kind
+
+        def names() -> list[str]:
+            return [name for name in names_in(package) if name.split("/")[1] == kind]
+
+        def find(name: str) -> Any:
+            if name == "__all__":
+                return [one.rpartition("/")[2] for one in names()]
+            whole = f"{package}/{kind}/{name.partition('_')[0]}"
+            found = classes_of(whole) if whole in names() else {}
+            if name not in found:
+                raise AttributeError(f"module {module.__name__!r} has no attribute {name!r}")
+            vars(module).update(found)
+            return found[name]
+
+        def listed() -> list[str]:
+            found = {part for name in names() for part in classes_of(name)}
+            return sorted(found.union(vars(module)))
+
+        vars(module).update(__getattr__=find, __dir__=listed)
+
+
+class InterfaceLoader(Loader):
+    """Loads a module such as ``std_msgs.msg._string``."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Put the classes and their metaclasses into the module."""
+        for name, cls in classes_of(self.name).items():
+            vars(module)[name] = cls
+            vars(module)[type(cls).__name__] = type(cls)
+
+
+FINDER: Final = AionodeFinder()

@@ -1,0 +1,1 @@
+"""What programs know as `rosidl_parser`: the types of fields."""

@@ -1,0 +1,94 @@
+"""Types by their ROS names."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from aionode.rclpy._rosidl_parser.definition import NamespacedType
+from aionode.rclpy._rosidl_runtime_py.import_message import import_message_from_namespaced_type
+
+__all__ = [
+    "get_action",
+    "get_action_namespaced_type",
+    "get_interface",
+    "get_message",
+    "get_message_namespaced_type",
+    "get_namespaced_type",
+    "get_service",
+    "get_service_namespaced_type",
+    "is_action",
+    "is_message",
+    "is_service",
+]
+
+
+def get_interface(identifier: str) -> Any:
+    """Return the class of any type, such as ``std_msgs/msg/String``."""
+    return import_message_from_namespaced_type(get_namespaced_type(identifier))
+
+
+def get_message(identifier: str) -> Any:
+    """Return a message class; ``std_msgs/String`` will do."""
+    found = import_message_from_namespaced_type(get_message_namespaced_type(identifier))
+    if not is_message(found):
+        raise ValueError(f"Expected the full name of a message, got '{identifier}'")
+    return found
+
+
+def get_service(identifier: str) -> Any:
+    """Return a service class; ``std_srvs/Trigger`` will do."""
+    found = import_message_from_namespaced_type(get_service_namespaced_type(identifier))
+    if not is_service(found):
+        raise ValueError(f"Expected the full name of a service, got '{identifier}'")
+    return found
+
+
+def get_action(identifier: str) -> Any:
+    """Return an action class; ``example_interfaces/Fibonacci`` will do."""
+    found = import_message_from_namespaced_type(get_action_namespaced_type(identifier))
+    if not is_action(found):
+        raise ValueError(f"Expected the full name of an action, got '{identifier}'")
+    return found
+
+
+def get_namespaced_type(identifier: str) -> NamespacedType:
+    """Return the type that a full name stands for."""
+    return named(identifier, None)
+
+
+def get_message_namespaced_type(identifier: str) -> NamespacedType:
+    """Return the type that the name of a message stands for."""
+    return named(identifier, "msg")
+
+
+def get_service_namespaced_type(identifier: str) -> NamespacedType:
+    """Return the type that the name of a service stands for."""
+    return named(identifier, "srv")
+
+
+def get_action_namespaced_type(identifier: str) -> NamespacedType:
+    """Return the type that the name of an action stands for."""
+    return named(identifier, "action")
+
+
+def named(identifier: str, kind: str | None) -> NamespacedType:
+    """Return the type that a name stands for; `kind` is added where it is left out."""
+    *namespaces, name = identifier.split("/")
+    if len(namespaces) == 1 and kind is not None:
+        namespaces.append(kind)
+    return NamespacedType(namespaces, name)
+
+
+def is_message(interface: Any) -> bool:
+    """Return whether a class is one of a message."""
+    return hasattr(interface, "SLOT_TYPES")
+
+
+def is_service(interface: Any) -> bool:
+    """Return whether a class is one of a service."""
+    return hasattr(interface, "Request") and hasattr(interface, "Response")
+
+
+def is_action(interface: Any) -> bool:
+    """Return whether a class is one of an action."""
+    return all(hasattr(interface, part) for part in ("Goal", "Result", "Feedback"))

@@ -1,0 +1,5 @@
+"""The package rosgraph_msgs of ROS 2, from aionode."""
+
+from aionode.rclpy import provide
+
+provide(__name__)

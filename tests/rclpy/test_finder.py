@@ -1,0 +1,224 @@
+"""What programs of rclpy import: packages of ROS, from aionode."""
+
+from __future__ import annotations
+
+import importlib
+import logging
+import pickle
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+import aionode.rclpy
+from aionode.rclpy import _finder
+from aionode.rclpy._rosidl import message_class
+
+WORDS = """\
+uint8 MANY = 100
+std_msgs/Header header
+string[] words
+Score[<=3] scores
+"""
+
+
+@pytest.fixture
+def installed() -> Iterator[None]:
+    """A process in which aionode stands in for ROS, and afterwards does not."""
+    before = dict(sys.modules)
+    aionode.rclpy.install()
+    yield
+    sys.meta_path.remove(_finder.FINDER)
+    for name in set(sys.modules) - set(before):
+        if not name.startswith("aionode"):
+            del sys.modules[name]
+
+
+@pytest.fixture
+def words(tmp_path: Path) -> Path:
+    """A folder of two packages, as a workspace or as installed."""
+    share = tmp_path / "share"
+    for package, name, text in (
+        ("find_words_msgs", "Words", WORDS.replace("Score", "find_score_msgs/Score")),
+        ("find_score_msgs", "Score", "float32 value 0.5\n"),
+    ):
+        (share / package / "msg").mkdir(parents=True)
+        (share / package / "msg" / f"{name}.msg").write_text(text)
+    return tmp_path
+
+
+@pytest.mark.usefixtures("installed")
+def test_message_packages_are_there() -> None:
+    """The import that stands at the top of every program."""
+    module = importlib.import_module("std_msgs.msg")
+
+    assert module.String is message_class("std_msgs/msg/String")
+    assert {"String", "Header"} <= set(dir(module))
+    assert "String" in module.__all__
+
+
+@pytest.mark.usefixtures("installed")
+def test_the_module_of_one_message_is_there() -> None:
+    """Rosbridge and pickle import it by the name that the class gives."""
+    module = importlib.import_module("std_msgs.msg._multi_array_layout")
+
+    assert module.MultiArrayLayout is message_class("std_msgs/msg/MultiArrayLayout")
+    assert type(module.MultiArrayLayout) is module.Metaclass_MultiArrayLayout
+
+
+@pytest.mark.usefixtures("installed")
+def test_the_parts_of_services_and_actions_are_there() -> None:
+    """Some programs import them by their full names."""
+    service = importlib.import_module("std_srvs.srv")
+    action = importlib.import_module("example_interfaces.action._fibonacci")
+
+    assert service.SetBool_Request is service.SetBool.Request
+    assert action.Fibonacci_Goal is action.Fibonacci.Goal
+
+
+@pytest.mark.usefixtures("installed")
+def test_messages_can_be_pickled() -> None:
+    """They go to other processes by multiprocessing, or into files."""
+    message = message_class("std_msgs/msg/Header")(frame_id="map")
+
+    assert pickle.loads(pickle.dumps(message)) == message  # noqa: S301 (its own)
+
+
+@pytest.mark.usefixtures("installed")
+def test_rclpy_is_one_module_under_two_names() -> None:
+    """An exception raised under one name has to be caught under the other."""
+    rclpy = importlib.import_module("rclpy")
+    program = importlib.import_module("rclpy._program")
+
+    assert rclpy is aionode.rclpy
+    assert program is importlib.import_module("aionode.rclpy._program")
+    assert rclpy.__spec__ is not None
+    assert rclpy.__spec__.name == "aionode.rclpy"
+
+
+@pytest.mark.usefixtures("installed")
+@pytest.mark.parametrize(
+    ("name", "problem"),
+    [
+        ("rclpy.nothing", "No module named 'rclpy.nothing'"),
+        ("std_msgs.srv", "No module named 'std_msgs.srv'"),
+        ("std_msgs.msg._nothing", "No module named 'std_msgs.msg._nothing'"),
+        ("no_such_msgs", "No module named 'no_such_msgs'"),
+    ],
+)
+def test_what_is_not_there_is_missed_as_usual(name: str, problem: str) -> None:
+    """Programs try imports, and fall back to others."""
+    with pytest.raises(ModuleNotFoundError) as caught:
+        importlib.import_module(name)
+
+    assert str(caught.value) == problem
+
+
+@pytest.mark.usefixtures("installed")
+def test_a_class_that_is_not_there_is_missed_as_usual() -> None:
+    """The error of the import statement is Python's."""
+    module = importlib.import_module("std_msgs.msg")
+
+    with pytest.raises(AttributeError, match=r"module 'std_msgs\.msg' has no attribute 'Strin'"):
+        _ = module.Strin
+
+
+@pytest.mark.usefixtures("installed")
+def test_messages_of_a_folder_need_no_build(words: Path) -> None:
+    """A workspace's packages are there as soon as its folder is named."""
+    aionode.rclpy.install(interfaces=[words])
+
+    module = importlib.import_module("find_words_msgs.msg")
+
+    message = module.Words(words=["a"], scores=[message_class("find_score_msgs/msg/Score")()])
+    assert message.MANY == 100
+    assert message.scores[0].value == 0.5
+    assert type(message.header) is message_class("std_msgs/msg/Header")
+
+
+@pytest.mark.usefixtures("installed")
+def test_installed_packages_need_no_build(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """AMENT_PREFIX_PATH leads to them, and what they use is loaded first."""
+    for package, name, text in (
+        ("share_words_msgs", "Words", "share_score_msgs/Score best\n"),
+        ("share_score_msgs", "Score", "float32 value 0.5\n"),
+    ):
+        folder = tmp_path / "share" / package / "msg"
+        folder.mkdir(parents=True)
+        (folder / f"{name}.msg").write_text(text)
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+
+    module = importlib.import_module("share_words_msgs.msg")
+
+    assert module.Words().best.value == 0.5
+
+
+@pytest.mark.usefixtures("installed")
+def test_python_modules_beside_messages_stay(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A package may have both; only its messages come from aionode."""
+    (tmp_path / "share" / "mixed_msgs" / "msg").mkdir(parents=True)
+    (tmp_path / "share" / "mixed_msgs" / "msg" / "Score.msg").write_text("float32 value\n")
+    (tmp_path / "mixed_msgs").mkdir()
+    (tmp_path / "mixed_msgs" / "__init__.py").write_text("")
+    (tmp_path / "mixed_msgs" / "tools.py").write_text("ANSWER = 42\n")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    monkeypatch.syspath_prepend(tmp_path)
+
+    assert importlib.import_module("mixed_msgs.tools").ANSWER == 42
+    assert importlib.import_module("mixed_msgs.msg").Score().value == 0.0
+
+
+def test_another_rclpy_that_is_imported_is_not_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A program with classes of both would fail later, in places that say nothing."""
+    other = ModuleType("rclpy")
+    other.__file__ = "/opt/ros/rclpy/__init__.py"
+    monkeypatch.setitem(sys.modules, "rclpy", other)
+
+    with pytest.raises(ImportError, match=r"/opt/ros/rclpy/__init__.py is imported already"):
+        aionode.rclpy.install()
+
+
+@pytest.fixture
+def ros(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An installed rclpy that is not aionode's."""
+    (tmp_path / "rclpy").mkdir()
+    (tmp_path / "rclpy" / "__init__.py").write_text("NAME = 'of ROS'\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    return tmp_path / "rclpy"
+
+
+def test_an_installed_rclpy_is_not_passed_over_in_silence(
+    ros: Path, caplog: pytest.LogCaptureFixture, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Whoever has ROS 2 as well sees which of the two runs."""
+    aionode.rclpy.install()
+    sys.meta_path.remove(_finder.FINDER)
+
+    assert f"the rclpy of aionode, not that of ROS ({ros})" in caplog.text + capsys.readouterr().err
+
+
+def test_an_installed_rclpy_can_be_preferred(
+    ros: Path, caplog: pytest.LogCaptureFixture, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Tests of a package run with ROS where it is, and with aionode elsewhere."""
+    with caplog.at_level(logging.INFO):
+        aionode.rclpy.install(prefer_ros=True)
+
+    assert _finder.FINDER not in sys.meta_path
+    assert f"using the rclpy of ROS ({ros})" in caplog.text + capsys.readouterr().err
+
+
+def test_aionode_itself_imports_none_of_this() -> None:
+    """Only programs of rclpy pay for it."""
+    program = "import aionode, sys; print([name for name in sys.modules if 'rclpy' in name])"
+
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+
+    assert done.stdout.strip() == "[]"

@@ -1,0 +1,164 @@
+"""Programs of rclpy run as they are: by `aionode run` and ``python -m aionode.rclpy``."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PROGRAM = """\
+import sys
+
+import helper
+from std_msgs.msg import String
+
+
+class Failure(Exception):
+    pass
+
+
+def work(how):
+    if how == "fail":
+        raise Failure("on purpose")
+    if how == "interrupt":
+        raise KeyboardInterrupt
+    if how == "exit":
+        sys.exit(7)
+
+
+print(__name__, __file__, sys.argv, String(data=helper.TEXT))
+if __name__ == "__main__":
+    work(sys.argv[-1])
+"""
+
+TRACEBACK = """\
+Traceback (most recent call last):
+  File "program.py", line 22, in <module>
+    work(sys.argv[-1])
+  File "program.py", line 13, in work
+    raise Failure("on purpose")
+Failure: on purpose
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with a program, and a module that it imports."""
+    (tmp_path / "program.py").write_text(PROGRAM)
+    (tmp_path / "helper.py").write_text("TEXT = 'hi'\n")
+    return tmp_path
+
+
+def run(
+    folder: Path, *command: str, module: str = "aionode.rclpy"
+) -> subprocess.CompletedProcess[str]:
+    """Run a command in a folder."""
+    return subprocess.run(
+        [sys.executable, "-m", module, *command],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=50,
+        env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])},
+    )
+
+
+@pytest.mark.parametrize(
+    ("module", "command"),
+    [
+        ("aionode.rclpy", ("program.py",)),
+        ("aionode", ("run", "program.py")),
+        ("aionode", ("run", "--rclpy", "program.py")),
+    ],
+)
+def test_a_program_runs_as_python_runs_it(folder: Path, module: str, command: list[str]) -> None:
+    """Its name, its arguments, its neighbours and its exit status are its own."""
+    done = run(folder, *command, "--ros-args", "exit", module=module)
+
+    assert done.returncode == 7
+    assert done.stdout == (
+        "__main__ program.py ['program.py', '--ros-args', 'exit'] std_msgs.msg.String(data='hi')\n"
+    )
+    assert done.stderr == ""
+
+
+def test_a_module_runs_as_python_runs_it(folder: Path) -> None:
+    """As ``python -m`` does, with the whole path in its arguments."""
+    done = run(folder, "run", "-m", "program", "exit", module="aionode")
+
+    assert done.returncode == 7
+    path = str(folder / "program.py")
+    assert done.stdout.startswith(f"__main__ {path} ['{path}', 'exit']")
+
+
+def test_a_traceback_shows_the_program_alone(folder: Path) -> None:
+    """What runs the program is of no interest to its author."""
+    done = run(folder, "program.py", "fail")
+
+    assert done.returncode == 1
+    lines = [line for line in done.stderr.splitlines() if "^^" not in line]  # not in Python 3.13
+    assert lines == TRACEBACK.splitlines()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are POSIX's")
+def test_an_interrupt_that_is_not_caught_ends_by_its_signal(folder: Path) -> None:
+    """A shell stops a loop of programs only if it sees the signal."""
+    done = run(folder, "program.py", "interrupt")
+
+    assert done.returncode == -2
+    assert "_program.py" not in done.stderr
+    assert done.stderr.endswith("KeyboardInterrupt\n")
+
+
+def test_a_program_that_python_cannot_read_is_shown_as_usual(folder: Path) -> None:
+    """The place of the error, and nothing else."""
+    (folder / "bad.py").write_text("def work(:\n")
+
+    done = run(folder, "bad.py")
+
+    assert done.returncode == 1
+    assert done.stderr.startswith('  File "bad.py", line 1\n')
+
+
+@pytest.mark.parametrize(
+    ("command", "problem"),
+    [
+        (("nothing.py",), "aionode.rclpy: can't open file 'nothing.py': No such file or directory"),
+        (("-m", "nothing.inside"), "aionode.rclpy: No module named nothing"),
+        (("-m", "nothing"), "aionode.rclpy: No module named nothing"),
+        (("--interfaces", "nothing", "program.py"), "aionode.rclpy: nothing: no such folder"),
+        ((), "usage: python -m aionode.rclpy"),
+        (("--nothing",), "usage: python -m aionode.rclpy"),
+    ],
+)
+def test_what_cannot_run_is_said_in_a_line(
+    folder: Path, command: tuple[str, ...], problem: str
+) -> None:
+    """As Python does, with its exit status."""
+    done = run(folder, *command)
+
+    assert done.returncode == 2
+    assert done.stderr.startswith(problem)
+
+
+def test_messages_of_the_user_are_given_by_an_option(folder: Path) -> None:
+    """The folder of a workspace, without a build."""
+    (folder / "run_msgs" / "msg").mkdir(parents=True)
+    (folder / "run_msgs" / "msg" / "Score.msg").write_text("float32 value 0.5\n")
+    (folder / "own.py").write_text("from run_msgs.msg import Score\nprint(Score())\n")
+
+    done = run(folder, "run", "--rclpy", "--interfaces", ".", "own.py", module="aionode")
+
+    assert done.stdout == "run_msgs.msg.Score(value=0.5)\n"
+
+
+def test_options_of_programs_are_refused_for_nodes(folder: Path) -> None:
+    """They would have no effect."""
+    done = run(folder, "run", "--interfaces", ".", "helper:Nothing", module="aionode")
+
+    assert done.returncode == 2
+    assert "--interfaces are for programs of rclpy" in done.stderr

@@ -1,0 +1,94 @@
+"""Families: classes other than aionode's own that the codec reads and makes."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from aionode.errors import MessageError
+from aionode.interfaces.geometry_msgs.msg import Pose2D, Vector3
+from aionode.interfaces.sensor_msgs.msg import LaserScan
+from aionode.message import Message, fields
+from aionode.wire import cdr
+
+TYPES: dict[type[Message], type[Any]] = {}
+
+
+def class_of(cls: type[Message]) -> type[Any]:
+    """Return a plain class whose attributes are named as the fields, with ``_`` before."""
+    if cls not in TYPES:
+        TYPES[cls] = type(cls.__name__, (), {})
+    return TYPES[cls]
+
+
+def constructor(cls: type[Message]) -> Callable[..., Any]:
+    """Return what makes an object of such a class."""
+    names = [f"_{field.name}" for field in fields(cls)]
+
+    def make(*values: Any) -> Any:
+        made = class_of(cls)()
+        vars(made).update(zip(names, values, strict=True))
+        return made
+
+    return make
+
+
+def adopt(other: Any) -> Message:
+    """Return such an object without nested messages as a message of aionode."""
+    cls = next(own for own, one in TYPES.items() if one is type(other))
+    return cls(**{name.removeprefix("_"): value for name, value in vars(other).items()})
+
+
+FAMILY = cdr.MessageFamily(class_of, constructor, adopt, prefix="_")
+
+
+@pytest.mark.parametrize("order", ["little", "big"])
+def test_objects_of_the_family_are_made(order: str) -> None:
+    """Nested ones too, and by the careful decoder of unusual data as well."""
+    data = cdr.encode(LaserScan(ranges=[1.0], angle_min=0.5))
+    if order == "big":
+        data = b"\0\0\0\0" + bytes(60)
+
+    made: Any = cdr.decoder(LaserScan, FAMILY)(data)
+
+    assert type(made) is class_of(LaserScan)
+    assert type(made._header).__name__ == "Header"
+    assert made._angle_min == (0.5 if order == "little" else 0.0)
+
+
+def test_objects_of_the_family_are_encoded() -> None:
+    """The bytes are those of aionode's message of the same values, in parts as well."""
+    own = LaserScan(ranges=[1.0, 2.0])
+    made: Any = cdr.decoder(LaserScan, FAMILY)(cdr.encode(own))
+
+    assert cdr.encoder(LaserScan, FAMILY)(made) == cdr.encode(own)
+    assert b"".join(cdr.parts_encoder(LaserScan, FAMILY)(made)) == cdr.encode(own)
+
+
+def test_an_array_of_python_is_encoded() -> None:
+    """Its memory is what is sent."""
+    own = LaserScan(ranges=[1.0, 2.0])
+    made: Any = cdr.decoder(LaserScan, FAMILY)(cdr.encode(own))
+    made._ranges = array("f", [1.0, 2.0])
+
+    assert cdr.encoder(LaserScan, FAMILY)(made) == cdr.encode(own)
+
+
+def test_unusual_values_are_adopted() -> None:
+    """What aionode accepts is encoded, and the rest refused with its errors."""
+    usual: Any = cdr.decoder(Vector3, FAMILY)(cdr.encode(Vector3(x=1.0)))
+    usual._x = True
+
+    with pytest.raises(MessageError, match=r"geometry_msgs/msg/Vector3.x: True \(bool\)"):
+        cdr.encoder(Vector3, FAMILY)(usual)
+
+
+def test_a_message_of_another_class_is_not_taken_for_one_of_the_family() -> None:
+    """A class is known by its identity, not by its fields."""
+    other = constructor(Pose2D)(1.0, 2.0, 3.0)
+
+    with pytest.raises(TypeError):
+        cdr.encoder(Vector3, FAMILY)(other)
