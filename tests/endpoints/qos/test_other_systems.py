@@ -11,6 +11,7 @@ import pytest
 import zenoh  # noqa: TID251  # plays the ROS 2 node, without aionode
 from zenoh import ext  # noqa: TID251  # the same
 
+from aionode._concurrency import checkpoint
 from aionode.clock import Duration, Time
 from aionode.context import Context
 from aionode.endpoints.events import (
@@ -40,7 +41,7 @@ from aionode.wire._key_expression import data_key
 from aionode.wire._liveliness import endpoint_token, gid_of
 from aionode.wire.typehash import type_hash
 from tests.endpoints.qos.conftest import next_of, waiting
-from tests.support.links import folder
+from tests.support.links import folder, transport_of
 from tests.support.peers import DOMAIN_ID, Collector, isolated_environment, quiet_node, raw_session
 
 __all__ = ["folder"]  # a fixture
@@ -92,6 +93,10 @@ class Stranger:
         )
         self.gid = gid_of(token)
         self._token = self._session.liveliness().declare_token(token)
+
+    def put(self, key: str, payload: bytes) -> None:
+        """Send anything."""
+        self._session.put(key, payload)
 
     def subscribe_late(self) -> Numbers:
         """Subscribe with history, as rmw_zenoh does for transient local."""
@@ -252,6 +257,23 @@ async def test_automatic_liveliness_without_assertions_has_no_lease(
     await subscription.receive()
     await clock.advance(5)
     assert waiting(subscription.events, QoSLivelinessChangedInfo) == []
+
+
+async def test_a_malformed_assertion_is_counted_and_renews_nothing(
+    node: Node, stranger: Stranger
+) -> None:
+    """Any process may put anything on any key."""
+    profile = QoSProfile(depth=10, liveliness_lease_duration=SECOND)
+    subscription = node.create_subscription(Int32, "n", None, profile)
+    stranger.announce(EndpointKind.PUBLISHER, profile)
+    await next_of(subscription.events, QoSLivelinessChangedInfo)
+    malformed = transport_of(node).zenoh.malformed  # type: ignore[attr-defined]  # is Zenoh's
+    while not malformed.total():
+        stranger.put(f"@aionode/{DOMAIN_ID}/{'a' * 32}/alive", b"no gid")
+        await checkpoint()
+    liveliness = subscription._monitor._liveliness
+    assert liveliness is not None
+    assert [lease.asserts for lease in liveliness._leases.values()] == [False]
 
 
 async def test_manual_liveliness_is_that_of_the_samples(
