@@ -35,6 +35,7 @@ if TYPE_CHECKING:
         ServerGoalHandle,
     )
     from aionode.clock import Clock, ClockType, Duration, Time
+    from aionode.content_filter import ContentFilterOptions
     from aionode.context import Context
     from aionode.endpoints._core.callback_runner import CallbackContext
     from aionode.endpoints.client import Client
@@ -78,6 +79,7 @@ __all__ = [
     "ClientGoalHandle",
     "Clock",
     "ClockType",
+    "ContentFilterOptions",
     "Context",
     "DurabilityPolicy",
     "Duration",
@@ -126,6 +128,7 @@ _EXPORTS = {
     "ClientGoalHandle": "aionode.action",
     "Clock": "aionode.clock",
     "ClockType": "aionode.clock",
+    "ContentFilterOptions": "aionode.content_filter",
     "Context": "aionode.context",
     "DurabilityPolicy": "aionode.qos",
     "Duration": "aionode.clock",

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 __all__ = ["ContentFilterOptions", "compile_filter"]
 
 MAX_PARAMETERS: Final = 100
-"""The grammar has names for this many."""
+"""The number of parameters that the grammar has names for."""
 
 MAX_DEPTH: Final = 50
 """How deep parentheses and NOT may be nested."""
@@ -162,7 +162,7 @@ class Parser:
         self._next = 0
         self._depth = 0
 
-    # Words
+    # Tokens
 
     @property
     def _token(self) -> Token:
@@ -174,7 +174,7 @@ class Parser:
         return token
 
     def _took(self, kind: str, text: str) -> bool:
-        """Take the next word if it is this one."""
+        """Take the next token if it is this one."""
         if (self._token.kind, self._token.text) != (kind, text):
             return False
         self._next += 1
@@ -361,14 +361,14 @@ class Parser:
 
 
 def kind_of(found: FieldType) -> str:
-    """Return with what a field can be compared."""
+    """Return the kind of values that a field can be compared with."""
     if found.kind in {"string", "wstring"}:
         return "text"
     return "truth" if found.kind == "bool" else "number"
 
 
 def literal(token: Token) -> Operand | None:
-    """Return what a literal stands for; None if the token is no literal."""
+    """Return the operand of a literal; None if the token is not a literal."""
     value: object
     if token.kind == "number":
         text = token.text.lower()
@@ -385,7 +385,7 @@ def literal(token: Token) -> Operand | None:
 
 
 def getter(names: list[str | int]) -> Callable[[Any], Any]:
-    """Return what reads a field of a message, through nested messages and elements.
+    """Return a function that reads a field of a message, through nested messages and elements.
 
     It raises IndexError for an element that the message does not have.
     """

@@ -1,8 +1,8 @@
-"""Images as numpy arrays and PIL images: Image and CompressedImage messages read and made.
+"""Convert Image and CompressedImage messages to numpy arrays and PIL images, and back.
 
 What cv_bridge calls ``imgmsg_to_cv2`` is `to_numpy` here, and ``cv2_to_imgmsg`` is `from_numpy`;
-the arrays are those that OpenCV works with, the encodings those of cv_bridge. What is read looks at
-the message's own bytes wherever it can, so it is read-only if they are, as those of a received
+the arrays are those that OpenCV works with, the encodings those of cv_bridge. An array is a view of
+the message's own bytes where possible, so it is read-only if they are, as those of a received
 message are; copy it to change it. `to_pil`, `from_pil`, `compress` and `decompress` need Pillow.
 """
 
@@ -35,10 +35,10 @@ __all__ = [
 ]
 
 COLORS = {"mono": "m", "rgb": "rgb", "bgr": "bgr", "rgba": "rgba", "bgra": "bgra"}
-"""What the channels of an encoding with colours are."""
+"""The channels of encodings with colours, one letter each."""
 
 YUV = {"yuv422", "yuv422_yuy2", "uyvy", "yuyv"}
-"""Encodings of two bytes for each pixel; the colour is shared by two of them."""
+"""Encodings with two bytes for each pixel; two pixels share their colour."""
 
 OPENCV_TYPES = {
     "8U": "uint8",
@@ -54,13 +54,14 @@ PIL_ENCODINGS = {"L": "mono8", "RGB": "rgb8", "RGBA": "rgba8", "I;16": "mono16",
 
 
 def encoding_of(encoding: str) -> tuple[np.dtype[Any], int]:
-    """Return the type of a number and how many a pixel has.
+    """Return the type of a channel, and the number of channels of a pixel.
 
-    Known are ``mono``, ``rgb``, ``bgr``, ``rgba`` and ``bgra`` with 8 and 16 bits, OpenCV's types
-    such as ``8UC3`` and ``32FC1``, ``bayer_rggb8`` and its kind, ``yuv422`` and ``yuv422_yuy2``.
+    The known encodings are ``mono``, ``rgb``, ``bgr``, ``rgba`` and ``bgra`` with 8 and 16 bits,
+    OpenCV's types such as ``8UC3`` and ``32FC1``, the Bayer patterns such as ``bayer_rggb8``,
+    ``yuv422`` and ``yuv422_yuy2``.
 
     Raises:
-        MessageError: it is unknown (a ValueError).
+        MessageError: the encoding is unknown (a ValueError).
     """
     if found := re.fullmatch(r"(mono|rgba?|bgra?)(8|16)", encoding):
         return np.dtype(f"uint{found[2]}"), len(COLORS[found[1]])
@@ -78,7 +79,7 @@ def encoding_of(encoding: str) -> tuple[np.dtype[Any], int]:
 
 
 def colors_of(encoding: str) -> str:
-    """Return the letters of the channels: ``bgr``; empty where they are no colours."""
+    """Return the letters of the channels, such as ``bgr``; empty if they are not colours."""
     found = re.fullmatch(r"(mono|rgba?|bgra?)(8|16)", encoding)
     return COLORS[found[1]] if found else ""
 
@@ -89,17 +90,17 @@ def colors_of(encoding: str) -> str:
 def to_numpy(image: Image, desired_encoding: str = "passthrough") -> npt.NDArray[Any]:
     """Return the pixels: rows, columns, and a third dimension where a pixel has several channels.
 
-    No copy is made, rows with padding included, unless a grey image becomes a coloured one or the
-    reverse: the order of colours is changed by a view, too.
+    The pixels are copied only to convert between grey and colour, or to an encoding with an alpha
+    channel. Padding of rows and other orders of colours need no copy.
 
     Args:
         image: The message.
-        desired_encoding: Which order of colours is wanted, such as ``bgr8`` for OpenCV or ``rgb8``;
-            ``passthrough`` takes what is there. The number of bits stays.
+        desired_encoding: The order of colours, such as ``bgr8`` for OpenCV or ``rgb8``;
+            ``passthrough`` keeps that of the message. The number of bits cannot be changed.
 
     Raises:
-        TypeError: `image` is no Image.
-        MessageError: it does not hold what it says, or its encoding is unknown (a ValueError).
+        TypeError: `image` is not an Image.
+        MessageError: its data is too short for its size, or its encoding is unknown (a ValueError).
         ValueError: it cannot be converted to `desired_encoding`.
     """
     if not isinstance(image, Image):
@@ -114,7 +115,7 @@ def to_numpy(image: Image, desired_encoding: str = "passthrough") -> npt.NDArray
 
 
 def pixels_of(image: Image) -> npt.NDArray[Any]:
-    """Return the pixels as they are, over the bytes of the message."""
+    """Return the pixels as they are, as a view of the bytes of the message."""
     dtype, channels = encoding_of(image.encoding)
     dtype = dtype.newbyteorder(">" if image.is_bigendian else "<")
     shape = (image.height, image.width, channels)
@@ -145,7 +146,7 @@ def converted(pixels: npt.NDArray[Any], encoding: str, desired: str) -> npt.NDAr
     have, want = colors_of(encoding), colors_of(desired)
     dtype, channels = encoding_of(desired)
     if encoding_of(encoding) == (dtype, channels) and not (have and want):
-        return pixels  # another name of the same, as 8UC3 of bgr8
+        return pixels  # another name for the same layout, as 8UC3 for bgr8
     if not (have and want) or dtype != encoding_of(encoding)[0]:
         raise ValueError(
             f"to_numpy: {encoding} cannot become {desired}: only the order of colours is changed "
@@ -176,20 +177,20 @@ def from_numpy(
 ) -> Image:
     """Return an image of `pixels`: rows, columns, and channels where there are several.
 
-    An array that lies in one piece is not copied: the message looks at it, so leave it as it is
-    until the message is published, which takes a snapshot.
+    A contiguous array is not copied but referenced by the message, so do not change it until the
+    message is published, which takes a snapshot.
 
     Args:
-        pixels: The array; of bytes or numbers that the encoding has.
+        pixels: The array, of the encoding's type.
         encoding: What a pixel is: ``bgr8`` for an image of OpenCV, ``rgb8``, ``mono8``, ``32FC1``;
-            ``passthrough`` takes the type of OpenCV, such as ``8UC3``, which says nothing of
-            colours.
+            ``passthrough`` takes OpenCV's type, such as ``8UC3``, which does not say what the
+            channels are.
         header: When it was exposed, and the frame of the camera.
 
     Raises:
-        TypeError: `pixels` is no array.
+        TypeError: `pixels` is not an array.
         MessageError: `encoding` is unknown (a ValueError).
-        ValueError: the array has another type or shape than `encoding` says.
+        ValueError: the array has a different type or shape than `encoding` says.
     """
     if not isinstance(pixels, np.ndarray):
         raise TypeError(f"from_numpy: {type(pixels).__name__} given; a numpy.ndarray is needed")
@@ -239,11 +240,11 @@ def pillow() -> ModuleType:
 
 
 def to_pil(image: Image) -> PILImage:
-    """Return an image as PIL has it: ``L``, ``RGB``, ``RGBA``, ``I;16`` or ``F``.
+    """Return an image as a PIL image of mode ``L``, ``RGB``, ``RGBA``, ``I;16`` or ``F``.
 
     Raises:
         TypeError, MessageError: as `to_numpy`.
-        ValueError: PIL has no such images, or it is not known what the channels are (``8UC3``).
+        ValueError: PIL has no mode for it, or its encoding does not name the channels (``8UC3``).
         ModuleNotFoundError: Pillow is not installed.
     """
     modes = {encoding: mode for mode, encoding in PIL_ENCODINGS.items()}
@@ -267,7 +268,7 @@ def from_pil(picture: PILImage, header: Header | None = None) -> Image:
     """Return a message of a PIL image; one with a palette or of two colours is converted.
 
     Raises:
-        ValueError: the image is of another mode than ``L``, ``RGB``, ``RGBA``, ``I;16``, ``F``,
+        ValueError: the image has a mode other than ``L``, ``RGB``, ``RGBA``, ``I;16``, ``F``,
             ``1`` and ``P``.
     """
     converting = {"1": "L", "P": "RGBA" if "transparency" in picture.info else "RGB"}
@@ -286,13 +287,13 @@ def compress(image: Image, format: str = "jpeg", **options: Any) -> CompressedIm
 
     Args:
         image: The image.
-        format: ``jpeg``, which loses a little, ``png``, which loses nothing, or another one that
-            Pillow writes.
-        options: What Pillow takes for this format, such as ``quality=90``.
+        format: ``jpeg``, which is lossy, ``png``, which is lossless, or another one that Pillow
+            writes.
+        options: Pillow's options for this format, such as ``quality=90``.
 
     Raises:
         TypeError, MessageError, ValueError, ModuleNotFoundError: as `to_pil`.
-        ValueError: the format is unknown, or has no such images, as JPEG has none of 16 bits.
+        ValueError: the format is unknown, or cannot hold the image, as JPEG cannot hold 16 bits.
     """
     picture = to_pil(image)
     file = io.BytesIO()
@@ -307,11 +308,11 @@ def compress(image: Image, format: str = "jpeg", **options: Any) -> CompressedIm
 
 
 def decompress(image: CompressedImage) -> Image:
-    """Return a compressed image as pixels, with its header: mono8, rgb8, rgba8 or mono16.
+    """Return a compressed image as mono8, rgb8, rgba8 or mono16, with its header.
 
     Raises:
-        TypeError: `image` is no CompressedImage.
-        MessageError: its data is no image that Pillow can read (a ValueError).
+        TypeError: `image` is not a CompressedImage.
+        MessageError: Pillow cannot read its data (a ValueError).
         ModuleNotFoundError: Pillow is not installed.
     """
     if not isinstance(image, CompressedImage):

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 __all__ = [
     "ApproximateTimeSynchronizer",
     "Cache",
+    "Chain",
     "SimpleFilter",
     "Subscriber",
     "Synchronized",
@@ -199,6 +200,12 @@ class Subscriber(SimpleFilter):
             msg_type, topic, self.signalMessage, **options
         )
 
+    def __getattr__(self, name: str) -> Any:
+        """Return an attribute of the subscription, as in ROS 2: ``subscriber.topic_name``."""
+        if name == "sub":  # it could not be created
+            raise AttributeError(name)
+        return getattr(self.sub, name)
+
     def getTopic(self) -> str:  # noqa: N802  # ROS 2's name
         """Return the name of the topic, as it was given."""
         return self.topic
@@ -271,6 +278,54 @@ class Cache(SimpleFilter):
         return self._entries[-1][1] if self._entries else None
 
 
+class Chain(SimpleFilter):
+    """Several filters in a row as one filter: each gets the output of the one before it.
+
+    What comes in is given to the first, and what the last one gives is the output. A filter in a
+    chain has the methods `add` and `connectInput`, as `Cache` has. A chain without filters passes
+    everything on.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._filters: list[Any] = []
+
+    def connectInput(self, f: SimpleFilter) -> None:  # noqa: N802  # ROS 2's name
+        """Take the output of another filter as input."""
+        self.incoming_connection = f.registerCallback(self.add)
+
+    def addFilter(self, f: Any) -> int:  # noqa: N802  # ROS 2's name
+        """Append a filter; return its index."""
+        index = len(self._filters)
+        if self._filters:
+            f.connectInput(self._filters[-1])
+        self._filters.append(f)
+        f.registerCallback(self._on_output, index)
+        return index
+
+    def getFilter(self, index: int) -> Any:  # noqa: N802  # ROS 2's name
+        """Return a filter of the chain.
+
+        Raises:
+            KeyError: there is no filter of this index.
+        """
+        if not 0 <= index < len(self._filters):
+            raise KeyError(f"the chain has {len(self._filters)} filters, and none of index {index}")
+        return self._filters[index]
+
+    def add(self, *msg: Any) -> None:
+        """Give a message to the first filter."""
+        if self._filters:
+            self._filters[0].add(*msg)
+        else:
+            self.signalMessage(*msg)
+
+    def _on_output(self, *msg_and_index: Any) -> None:
+        *msg, index = msg_and_index
+        if index == len(self._filters) - 1:
+            self.signalMessage(*msg)
+
+
 class TimeSynchronizer(SimpleFilter):
     """Calls back with one message of each input, all with the same stamp.
 
@@ -283,9 +338,10 @@ class TimeSynchronizer(SimpleFilter):
         super().__init__()
         self._matcher = Matcher(len(fs), queue_size)
         self._stamps = Stamps(allow_headerless=False)
-        self._connect(fs)
+        self.connectInput(fs)
 
-    def _connect(self, fs: Sequence[SimpleFilter]) -> None:
+    def connectInput(self, fs: Sequence[SimpleFilter]) -> None:  # noqa: N802  # ROS 2's name
+        """Take one message of each of these filters; there are as many as before."""
         self.input_connections = [f.registerCallback(self.add, index) for index, f in enumerate(fs)]
 
     @property
@@ -323,7 +379,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         SimpleFilter.__init__(self)
         self._matcher = ApproximateMatcher(len(fs), queue_size, round(slop * 1e9))
         self._stamps = Stamps(allow_headerless=allow_headerless)
-        self._connect(fs)
+        self.connectInput(fs)
 
 
 # Iteration

@@ -7,7 +7,7 @@ A name goes through four steps, which `resolve` does in this order::
     remap     the first rule that matches  /scan
     validate  the result                   /scan           (the stricter rules of rmw)
 
-The texts of the errors are those of rcl and rmw, so what a user knows or finds on the web fits.
+The texts of the errors are those of rcl and rmw, which users may know, or find on the web.
 """
 
 from __future__ import annotations
@@ -67,13 +67,13 @@ Problem = tuple[str, int]
 
 
 def validate_topic_name(name: str, *, is_service: bool = False) -> Literal[True]:
-    """Return True if `name` may be given to a topic or service.
+    """Return True if `name` is valid for a topic or service.
 
-    It may be relative or absolute, and hold ``~`` and ``{}``.
+    It may be relative or absolute, and contain ``~`` and ``{}``.
 
     Raises:
-        InvalidTopicNameException: It may not, and is for a topic.
-        InvalidServiceNameException: It may not, and is for a service.
+        InvalidTopicNameException: The name of a topic is invalid.
+        InvalidServiceNameException: The name of a service is invalid.
     """
     expect_text(name, "service name" if is_service else "topic name")
     if problem := topic_name_problem(name):
@@ -85,8 +85,8 @@ def validate_full_topic_name(name: str, *, is_service: bool = False) -> Literal[
     """Return True if `name` is a valid absolute name after expansion.
 
     Raises:
-        InvalidTopicNameException: It is not, and is for a topic.
-        InvalidServiceNameException: It is not, and is for a service.
+        InvalidTopicNameException: The name of a topic is invalid.
+        InvalidServiceNameException: The name of a service is invalid.
     """
     if problem := full_name_problem(name):
         raise name_error(name, problem, is_service=is_service)
@@ -127,7 +127,7 @@ def expect_text(name: object, what: str) -> None:
 
 
 def topic_name_problem(name: str) -> Problem | None:
-    """Return what rcl has against a name as a user writes it, or None."""
+    """Return which rule of rcl a name breaks before its expansion, or None."""
     if not name:
         return "topic name must not be empty string", 0
     if is_digit(name[0]):
@@ -138,7 +138,7 @@ def topic_name_problem(name: str) -> Problem | None:
 
 
 def character_problem(name: str) -> Problem | None:
-    """Return the first character that may not stand where it does."""
+    """Return the first character that is not allowed at its place."""
     opened = -1  # index of the brace that is open
     for i, char in enumerate(name):
         if char == "~":
@@ -173,7 +173,7 @@ def problem_outside(char: str) -> str | None:
 
 
 def token_problem(name: str) -> Problem | None:
-    """Return the first token that starts with what no token may start with."""
+    """Return the first token that starts with a character that no token may start with."""
     if name[0] == "~" and len(name) > 1 and name[1] != "/":
         # rcl does not look at a last character: "~a" passes there and "~ab" does not. The rule is
         # the same for both.
@@ -189,7 +189,7 @@ def token_problem(name: str) -> Problem | None:
 def full_name_problem(
     name: str, what: str = "topic name", max_length: int = TOPIC_MAX_LENGTH
 ) -> Problem | None:
-    """Return what rmw has against an absolute name, or None; `what` is the subject of the texts."""
+    """Return which rule of rmw an absolute name breaks, or None; `what` is the texts' subject."""
     if not name:
         return f"{what} must not be empty", 0
     if name[0] != "/":
@@ -214,7 +214,7 @@ def full_name_problem(
 
 
 def node_name_problem(name: str) -> Problem | None:
-    """Return what rmw has against a node name, or None."""
+    """Return which rule of rmw a node name breaks, or None."""
     if not name:
         return "node name must not be empty", 0
     if found := re.search("[^A-Za-z0-9_]", name):
@@ -244,7 +244,7 @@ def is_digit(char: str) -> bool:
 
 
 def is_word(char: str) -> bool:
-    """Return whether `char` may stand anywhere in a token."""
+    """Return whether `char` is allowed anywhere in a token."""
     return char == "_" or (char.isascii() and char.isalnum())
 
 
@@ -255,8 +255,8 @@ def expand(name: str, node_name: str, namespace: str, *, is_service: bool = Fals
     """Return the absolute form of `name` as used by a node.
 
     ``~`` becomes the node's full name; ``{node}``, ``{ns}`` and ``{namespace}`` are filled in; a
-    name that is still relative goes under the node's namespace. The result may still be invalid:
-    `validate_full_topic_name` tells.
+    name that is still relative is put under the node's namespace. The result may still be
+    invalid: check it with `validate_full_topic_name`.
 
     Raises:
         InvalidTopicNameException: The name is invalid, or has an unknown substitution.
@@ -306,7 +306,7 @@ def split_node_name(full_name: str) -> tuple[str, str]:
 
 
 def normalize_namespace(namespace: str | None) -> str:
-    """Return `namespace` as nodes keep it: none is the root, and a leading ``/`` may be left out.
+    """Return `namespace` as nodes store it: absolute, and ``/`` if there is none.
 
     Raises:
         InvalidNamespaceException: It is invalid even so.
@@ -338,7 +338,7 @@ class RemapKind(Enum):
 
 
 WORD = "[A-Za-z_][A-Za-z0-9_]*"
-# Texts, compiled (and kept by `re`) on first use: most programs have no rules, and import fast.
+# Not compiled here: `re` does so on first use, and most programs have no rules.
 RULE = (
     rf"(?s)(?:(?P<node>{WORD}):(?!//|=))?(?P<url>rostopic://|rosservice://)?"
     r"(?P<match>.*?):=(?P<new>.*)"
@@ -356,7 +356,7 @@ KINDS = {
 
 @dataclass(frozen=True, slots=True)
 class RemapRule:
-    r"""One rule that gives a node, topic or service another name.
+    r"""One rule that renames a node, topic or service.
 
     Its text is ``match:=replacement``:
 
@@ -366,7 +366,7 @@ class RemapRule:
     ``node:foo:=bar``        in nodes of this name only
     ``__node:=new``          the node's name (also ``__name``)
     ``__ns:=/new``           the node's namespace
-    ``/foo/*:=/bar/\1``      ``*`` is one token, ``\1`` to ``\9`` what the wildcards stood for
+    ``/foo/*:=/bar/\1``      ``*`` is one token, ``\1`` to ``\9`` what the wildcards matched
     ``/foo/**:=/bar/\1``     ``**`` is one or more tokens; in front of a name (``**/foo``) any
                              number of them, none included
     ======================== ============================================================
@@ -385,10 +385,10 @@ class RemapRule:
 
     @classmethod
     def parse(cls, text: str) -> RemapRule:
-        """Return the rule that `text` stands for.
+        """Return the rule that `text` describes.
 
         Raises:
-            InvalidRemapRuleError: It stands for none; the error says what is wrong with it.
+            InvalidRemapRuleError: It is not a rule; the error says what is wrong with it.
         """
         parts = re.fullmatch(RULE, text)
         if parts is None:
@@ -413,7 +413,7 @@ class RemapRule:
         return f"{scope}{word}:={self.replacement}"
 
     def applies_to(self, kind: RemapKind, node_name: str) -> bool:
-        """Return whether the rule is one for things of `kind` in a node of this name."""
+        """Return whether the rule applies to names of `kind` in a node of this name."""
         if self.node is not None and self.node != node_name:
             return False
         if self.kind is RemapKind.TOPIC_OR_SERVICE:
@@ -435,7 +435,7 @@ class RemapRule:
 
 @lru_cache(maxsize=1024)
 def match_pattern(match: str, node_name: str, namespace: str) -> re.Pattern[str]:
-    """Return the expression for the names that a rule's left side matches in one node."""
+    """Return a regular expression for the names that a rule's left side matches in one node."""
     if match.startswith("**"):
         start, rest = "((?:/[^/]+)*)", match[2:]
     elif match.startswith("*"):
@@ -460,7 +460,7 @@ def check_special(text: str, kind: RemapKind, new: str) -> None:
 
 
 def check_sides(text: str, match: str, new: str) -> None:
-    """Raise InvalidRemapRuleError if one side of a rule for names cannot be read."""
+    """Raise InvalidRemapRuleError if one side of a rule for names is invalid."""
     names = "names are tokens of letters, digits and '_' with '/' between them, after '/' or '~/'"
     if not re.fullmatch(MATCH, match):
         problem = f"'{match}' cannot be matched; {names}, and a whole token may be '*' or '**'"

@@ -1,6 +1,6 @@
-"""Point clouds as numpy arrays: PointCloud2 messages read and made, with sensor_msgs_py's names.
+"""Convert PointCloud2 messages to numpy arrays and back, with the names of sensor_msgs_py.
 
-What is read looks at the message's own bytes wherever it can, so it is read-only if they are, as
+An array is a view of the message's own bytes where possible, so it is read-only if they are, as
 those of a received message are; copy it to change it.
 """
 
@@ -53,18 +53,19 @@ SUBJECT = "sensor_msgs/msg/PointCloud2"
 def dtype_from_fields(
     fields: Iterable[PointField], point_step: int | None = None, *, is_bigendian: bool = False
 ) -> np.dtype[Any]:
-    """Return the type of one point as numpy has it.
+    """Return the numpy type of one point.
 
-    A field of several numbers is an array in it, and one without a name is ``unnamed_field_0``.
+    A field of several numbers becomes an array, and one without a name is called ``unnamed_field_``
+    and its index.
 
     Args:
         fields: What a point consists of.
-        point_step: The bytes from one point to the next; without it, up to the end of the last
+        point_step: The bytes from one point to the next; by default up to the end of the last
             field.
-        is_bigendian: Whether numbers have the highest byte first.
+        is_bigendian: Whether numbers have the most significant byte first.
 
     Raises:
-        MessageError: two fields have one name, one is of an unknown type, or a point is longer than
+        MessageError: two fields have one name, a field has an unknown type, or a point exceeds
             `point_step` (a ValueError).
     """
     order = ">" if is_bigendian else "<"
@@ -76,7 +77,9 @@ def dtype_from_fields(
         path = f"{SUBJECT}.fields[{number}]"
         name = field.name or f"unnamed_field_{number}"
         if name in names:
-            raise MessageError(f"{path}.name", f"{name!r} is there twice; each needs its own")
+            raise MessageError(
+                f"{path}.name", f"{name!r} is used twice; each field needs a name of its own"
+            )
         if field.datatype not in DTYPES:
             raise MessageError(
                 f"{path}.datatype", f"{field.datatype} is unknown; a constant of PointField fits"
@@ -98,8 +101,8 @@ def fields_from_dtype(dtype: npt.DTypeLike) -> list[PointField]:
     """Return the fields of points of a structured type, at its offsets.
 
     Raises:
-        TypeError: `dtype` is not structured, or holds something else than numbers of 8 to 32 bits
-            and float64.
+        TypeError: `dtype` is not structured, or contains anything but integers of 8 to 32 bits,
+            float32 and float64.
     """
     dtype = np.dtype(dtype)
     if dtype.names is None:
@@ -108,7 +111,7 @@ def fields_from_dtype(dtype: npt.DTypeLike) -> list[PointField]:
         )
     made = []
     for name in dtype.names:
-        part, offset = dtype.fields[name][:2]  # type: ignore[index]  # it has names, so it has these
+        part, offset = dtype.fields[name][:2]  # type: ignore[index]  # a type with names has fields
         kind = part.base.str[1:]
         if kind not in DATATYPES:
             fitting = ", ".join(np.dtype(each).name for each in DATATYPES)
@@ -130,20 +133,20 @@ def read_points(
 ) -> npt.NDArray[Any]:
     """Return the points as a structured array: ``points["x"]``.
 
-    No copy is made, except for `skip_nans`, for `uvs`, and where rows that are padded become one
-    list; ``reshape_organized_cloud=True`` keeps them as rows.
+    The points are copied only for `skip_nans`, for `uvs`, and to join rows with padding;
+    ``reshape_organized_cloud=True`` keeps them as rows.
 
     Args:
         cloud: The message.
-        field_names: Which fields, all without it.
-        skip_nans: Whether to leave points out of which a field is NaN; nothing is looked at in a
-            cloud that says of itself that it is dense.
-        uvs: Which points: their numbers, or pairs of column and row.
+        field_names: Which fields to return; by default all.
+        skip_nans: Whether to leave out points with a field that is NaN; a cloud marked as dense is
+            not searched.
+        uvs: Which points to return: their indexes, or pairs of column and row.
         reshape_organized_cloud: Whether a cloud of several rows becomes an array of two dimensions.
 
     Raises:
-        TypeError: `cloud` is no PointCloud2.
-        MessageError: it does not hold what it says (a ValueError).
+        TypeError: `cloud` is not a PointCloud2.
+        MessageError: its data does not match its fields and size (a ValueError).
         ValueError: it has no such field, or `skip_nans` would leave gaps in rows.
     """
     if not isinstance(cloud, PointCloud2):
@@ -171,13 +174,13 @@ def read_points(
 
 
 def rows_of(cloud: PointCloud2) -> npt.NDArray[Any]:
-    """Return all points as an array of rows, over the bytes of the message."""
+    """Return all points as an array of rows, a view of the bytes of the message."""
     dtype = dtype_from_fields(cloud.fields, cloud.point_step, is_bigendian=cloud.is_bigendian)
     shape = (cloud.height, cloud.width)
     if not (cloud.height and cloud.width):
         return np.empty(shape, dtype)
     row = cloud.width * cloud.point_step
-    # Of a single row many drivers leave the step out, and nothing depends on it.
+    # Many drivers leave out the step of a single row, and nothing depends on it.
     step = row if cloud.height == 1 else cloud.row_step
     if step < row:
         raise MessageError(
@@ -195,7 +198,7 @@ def rows_of(cloud: PointCloud2) -> npt.NDArray[Any]:
 
 
 def numbers_of(uvs: Iterable[Any], width: int) -> npt.NDArray[Any]:
-    """Return the numbers of points that are given so, or by column and row."""
+    """Return the indexes of points that are given as indexes, or as columns and rows."""
     chosen = np.asarray(uvs if isinstance(uvs, np.ndarray) else list(uvs))
     if chosen.ndim == 2 and chosen.shape[1] == 2:
         return np.asarray(chosen[:, 1] * width + chosen[:, 0])
@@ -203,7 +206,7 @@ def numbers_of(uvs: Iterable[Any], width: int) -> npt.NDArray[Any]:
 
 
 def has_nan(points: npt.NDArray[Any]) -> npt.NDArray[np.bool_]:
-    """Return for each point whether a number of it is NaN."""
+    """Return for each point whether any of its numbers is NaN."""
     found = np.zeros(points.shape, bool)
     for name in points.dtype.names or ():
         values = points[name]
@@ -222,13 +225,13 @@ def read_points_numpy(
     uvs: Iterable[Any] | None = None,
     reshape_organized_cloud: bool = False,
 ) -> npt.NDArray[Any]:
-    """Return points whose fields are all of one type as a plain array, one column for each field.
+    """Return points whose fields have one type as a plain array, one column for each field.
 
-    No copy is made where the fields lie side by side. See `read_points` for the arguments.
+    The points are not copied if the fields are adjacent. See `read_points` for the arguments.
 
     Raises:
         TypeError, MessageError, ValueError: as `read_points`.
-        ValueError: the fields are of different types.
+        ValueError: the fields have different types.
     """
     points = read_points(cloud, field_names, skip_nans, uvs, reshape_organized_cloud)
     parts = [points.dtype[name].base for name in points.dtype.names or ()]
@@ -249,7 +252,7 @@ def read_points_list(
     skip_nans: bool = False,  # the signatures of sensor_msgs_py
     uvs: Iterable[Any] | None = None,
 ) -> list[Any]:
-    """Return the points as a list of named tuples; slow, and convenient for a few.
+    """Return the points as a list of named tuples: convenient for a few points, slow for many.
 
     See `read_points` for the arguments and the errors.
     """
@@ -269,21 +272,21 @@ def create_cloud(
 ) -> PointCloud2:
     """Return a cloud of `points`.
 
-    A structured array that has the layout already is not copied: the message looks at it, so leave
-    it as it is until the message is published, which takes a snapshot. An array that is marked
-    read-only is never copied within the process.
+    A structured array that already has the layout is not copied but referenced by the message, so
+    do not change it until the message is published, which takes a snapshot. An array that is
+    marked read-only is never copied within the process.
 
     Args:
         header: When the points were measured, and their frame.
-        fields: What a point consists of; for a structured array None takes its own.
-        points: A structured array; an array whose last dimension are the fields; or tuples. One
-            dimension more makes rows: an organized cloud.
-        step: The bytes from one point to the next; without it, up to the end of the last field.
+        fields: What a point consists of; None for the fields of a structured array.
+        points: A structured array; an array whose last dimension is the fields; or tuples. With
+            one more dimension they are the rows of an organized cloud.
+        step: The bytes from one point to the next; by default up to the end of the last field.
 
     Raises:
-        TypeError: `fields` is None, and `points` no structured array.
-        MessageError: the fields contradict each other, or `step` (a ValueError).
-        ValueError: `points` have another number of fields.
+        TypeError: `fields` is None, and `points` is not a structured array.
+        MessageError: the fields contradict each other or `step` (a ValueError).
+        ValueError: `points` has a different number of fields.
     """
     structured = isinstance(points, np.ndarray) and points.dtype.names is not None
     if fields is None:
@@ -315,7 +318,7 @@ def create_cloud(
 
 
 def arranged(points: Any, dtype: np.dtype[Any]) -> npt.NDArray[Any]:
-    """Return points as an array of `dtype`; itself if it is one."""
+    """Return points as an array of `dtype`: the same array if it is one already."""
     names = dtype.names or ()
     if isinstance(points, np.ndarray) and points.dtype.names is not None:
         if points.dtype == dtype:
@@ -345,7 +348,7 @@ def arranged(points: Any, dtype: np.dtype[Any]) -> npt.NDArray[Any]:
 def create_cloud_xyz32(header: Header, points: Any, step: int | None = None) -> PointCloud2:
     """Return a cloud of points with x, y and z as float32.
 
-    An array of float32 with three columns is not copied. See `create_cloud`.
+    A float32 array with three columns is not copied. See `create_cloud`.
     """
     fields = [
         PointField(name=name, offset=offset, datatype=PointField.FLOAT32, count=1)

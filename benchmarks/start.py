@@ -78,7 +78,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="a quarter of the runs")
     args = parser.parse_args()
-    os.environ["AIONODE_MEETING_PORTS"] = "18482,18483,18484"  # hear nobody else
+    os.environ["AIONODE_MEETING_PORTS"] = "18482,18483,18484"  # hear no other process
     os.environ["AIONODE_ROUTER_PORT"] = "18485"
     with start(FIRST) as first:
         assert first.stdout is not None  # noqa: S101  # it is a pipe

@@ -35,7 +35,7 @@ class Heart(Node):
         self.create_timer(1.0, self.beat)
 
     def beat(self) -> None:
-        """Note the time of a beat."""
+        """Record the time of a beat."""
         self.beats.append(self.get_clock().now().nanoseconds / 1e9)
 
 

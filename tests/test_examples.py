@@ -32,7 +32,7 @@ ENDING = ["fibonacci", "overload", "pubsub", "service", "timers"]
 ENDLESS = sorted(
     path.name
     for path in (ROOT / "examples").glob("*.py")
-    if path.name not in {"call_service.py", "fastapi_app.py"}
+    if path.name not in {"call_service.py", "fastapi_app.py", "lifecycle_manager.py"}
 )
 STAMP = r"\[INFO\] \[\d+\.\d{9}\]"
 
@@ -155,6 +155,38 @@ def test_a_managed_node_fails_is_canceled_and_goes_up_and_down() -> None:
     assert text.count("heard:") == 3
     assert "down:       the talker is unconfigured [1]" in text
     assert program.process.returncode == 0
+
+
+def test_the_lifecycle_demo_of_ros_in_three_programs(domain: int) -> None:
+    """Talker, listener and manager: what is said while active, and each transition."""
+    with (
+        running("examples/lifecycle_talker.py", domain=domain) as talker,
+        running("examples/lifecycle_listener.py", domain=domain) as listener,
+    ):
+        listener.wait_until_running()
+        talker.wait_until_running()
+        manager = ("examples/lifecycle_manager.py", "--ros-args", "-p", "pause:=0.25")
+        with running(*manager, domain=domain) as program:
+            managed = program.rest()
+        status, said = talker.end_with(signal.SIGINT)
+        heard = listener.end_with(signal.SIGINT)[1]
+
+    assert program.process.returncode == status == 0
+    states = re.findall(r"has current state (\w+)\.", managed)
+    assert states == [
+        *("inactive", "active", "inactive", "active", "inactive", "unconfigured"),
+        *("inactive", "active", "finalized"),
+    ]
+    assert "As expected: /lc_talker: cannot activate" in managed
+    published = re.findall(r"Publishing: \[(.*)\]", said)
+    assert re.findall(r"data_callback: (.*)", heard) == published
+    assert len(published) >= 3
+    assert "Lifecycle publisher is inactive" in said
+    assert "on_shutdown() is called from state active." in said
+    goals = re.findall(r"Transition from state \w+ to (\w+)", heard)
+    assert len(goals) == 18
+    assert goals[:4] == ["configuring", "inactive", "activating", "active"]
+    assert goals[-2:] == ["shuttingdown", "finalized"]
 
 
 def test_a_pause_misses_the_deadline_at_both_ends() -> None:

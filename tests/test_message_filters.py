@@ -18,6 +18,7 @@ from aionode.message_filters import (
     ApproximateMatcher,
     ApproximateTimeSynchronizer,
     Cache,
+    Chain,
     SimpleFilter,
     Subscriber,
     TimeSynchronizer,
@@ -204,3 +205,62 @@ def test_fewer_than_two_subscriptions_are_refused() -> None:
     """Nothing could belong to one alone."""
     with pytest.raises(ValueError, match="at least two"):
         synchronize()
+
+
+# Chains
+
+
+def test_a_chain_gives_each_filter_the_output_of_the_one_before() -> None:
+    """And calls back with the output of the last one, once."""
+    chain = Chain()
+    first, second = Cache(SimpleFilter(), 3), Cache(SimpleFilter(), 3)
+    found: list[Any] = []
+    chain.registerCallback(found.append)
+    messages = [stamped(t) for t in range(3)]
+
+    chain.add(messages[0])
+    chain.addFilter(first)
+    chain.add(messages[1])
+    assert chain.addFilter(second) == 1
+    chain.add(messages[2])
+
+    assert found == messages
+    assert first.getInterval(Time(), Time(seconds=9)) == messages[1:]
+    assert second.getInterval(Time(), Time(seconds=9)) == messages[2:]
+
+
+async def test_a_chain_begins_with_a_subscriber(node: Node) -> None:
+    """And may itself be the input of another filter."""
+    subscriber = Subscriber(node, PointStamped, "/points")
+    chain = Chain()
+    chain.connectInput(subscriber)
+    chain.addFilter(Cache(SimpleFilter(), 2))
+    last = Cache(chain, 5)
+
+    node.create_publisher(PointStamped, "/points", 10).publish(stamped(1))
+    await settle()
+
+    assert last.getLast() == stamped(1)
+    assert subscriber.get_publisher_count() == 1
+
+
+def test_a_filter_that_is_not_in_the_chain_is_a_key_error() -> None:
+    """As in ROS 2."""
+    chain = Chain()
+    cache = Cache(SimpleFilter())
+    chain.addFilter(cache)
+
+    assert chain.getFilter(0) is cache
+    with pytest.raises(KeyError, match="has 1 filters, and none of index 1"):
+        chain.getFilter(1)
+
+
+def test_messages_that_find_no_partner_are_counted() -> None:
+    """Memory stays bounded, and a wrong slop or queue size shows."""
+    left = SimpleFilter()
+    synchronizer = TimeSynchronizer([left, SimpleFilter()], 3)
+
+    for t in range(10):
+        left.signalMessage(stamped(t))
+
+    assert synchronizer.dropped == 7

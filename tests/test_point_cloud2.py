@@ -213,7 +213,7 @@ def broken(**values: Any) -> PointCloud2:
         (broken(row_step=8), r"\.row_step: 8, but 2 points of 12 bytes need 24"),
         (broken(point_step=8), r"\.point_step: 8, but its fields need 12"),
         (broken(fields=[field("x", 0, 42)]), r"fields\[0\]\.datatype: 42 is unknown"),
-        (broken(fields=[field("x", 0), field("x", 4)]), r"fields\[1\]\.name: 'x' is there twice"),
+        (broken(fields=[field("x", 0), field("x", 4)]), r"fields\[1\]\.name: 'x' is used twice"),
     ],
 )
 def test_a_cloud_that_contradicts_itself_names_the_field(cloud: PointCloud2, text: str) -> None:

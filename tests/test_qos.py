@@ -313,7 +313,7 @@ def test_what_is_left_to_the_system_counts_as_what_the_system_does() -> None:
 
 
 def test_the_warnings_have_rclpys_words() -> None:
-    """Whoever searches for them finds ROS's answers."""
+    """A web search for them finds ROS's answers."""
     assert qos.incompatible_qos_text("/a", QoSPolicyKind.RELIABILITY, publisher=True) == (
         "New publisher discovered on topic '/a', offering incompatible QoS. "
         "No messages will be received from it. Last incompatible policy: RELIABILITY"
@@ -379,7 +379,7 @@ BEST = qos.qos_profile_best_available
 
 
 def test_best_available_alone_is_the_strongest_there_is() -> None:
-    """Nobody is visible who would be left out."""
+    """No endpoint is visible that would not receive messages."""
     assert str(qos.best_available_for_subscription(BEST, [])) == (
         "keep_last(10) reliable transient_local manual_by_topic"
     )

@@ -2,15 +2,15 @@
 
 ::
 
-    /ns/node:               # a node; /* is any one token, /** any number of them
+    /ns/node:               # a node; /* matches one token, /** any number of tokens
       ros__parameters:
         rate: 10.0
         camera:
           frame: "front"    # the parameter camera.frame
 
 Scalars have the types that rcl gives them, which are neither YAML 1.1's nor YAML 1.2's: a plain
-``1e3`` is a double, ``yes`` a bool, ``null`` a string. So this reads the events of the YAML parser,
-not its values.
+``1e3`` is a double, ``yes`` a bool, ``null`` a string. This module therefore reads the events of
+the YAML parser, not its values.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ __all__ = [
 ]
 
 ParameterValueType = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
-"""What a parameter in a file may be."""
+"""The values that a parameter in a file may have."""
 
 PARAMETERS_KEY = "ros__parameters"
 
@@ -48,13 +48,13 @@ MINUS_INFINITY = {"-.inf", "-.Inf", "-.INF"}
 NOT_A_NUMBER = {".nan", ".NaN", ".NAN"}
 
 # What C's strtoll with base 0 and strtod take, which is what rcl calls.
-LONGEST_INTEGER = 100  # digits; far more than 64 bits have, far less than Python refuses
+LONGEST_INTEGER = 100  # digits: far more than 64 bits need, far fewer than Python refuses
 INTEGER = r"[+-]?(?:0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)"
 DECIMAL = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 HEXADECIMAL = r"[+-]?0[xX](?:[0-9a-fA-F]+(?:\.[0-9a-fA-F]*)?|\.[0-9a-fA-F]+)(?:[pP][+-]?[0-9]+)?"
 WORDS = r"(?ai)[+-]?(?:inf|infinity|nan)"
 
-DEEPEST = 100  # mappings; no name has so many parts, and Python's stack must hold them
+DEEPEST = 100  # nested mappings: more parts than any name has, few enough for Python's stack
 
 NODE_PART = r"\*\*?|[A-Za-z_][A-Za-z0-9_]*"
 
@@ -67,7 +67,7 @@ class ParameterRule:
         node: Full name of a node, in which ``*`` stands for one token and ``**`` for any number.
         name: Name of the parameter.
         value: Its value.
-        typed: What was typed after ``-p``; empty for one of a file.
+        typed: The text after ``-p``; empty for a parameter of a file.
     """
 
     node: str
@@ -82,7 +82,7 @@ class ParameterRule:
 
 @lru_cache(maxsize=1024)
 def node_pattern(node: str) -> re.Pattern[str]:
-    """Return the expression for the full names that a rule's node stands for."""
+    """Return a regular expression for the full names that a rule's node matches."""
     wild = {"/*": r"/\w+", "/**": r"(?:/\w+)*"}
     tokens = re.findall("/[^/]+", node)
     return re.compile("".join(wild.get(token) or re.escape(token) for token in tokens))
@@ -91,7 +91,7 @@ def node_pattern(node: str) -> re.Pattern[str]:
 def matching_parameters(
     rules: Iterable[ParameterRule], node_name: str
 ) -> dict[str, ParameterValueType]:
-    """Return the parameters of the node with this full name: of each, the last that matches."""
+    """Return the parameters of the node with this full name; the last rule that matches wins."""
     return {rule.name: rule.value for rule in rules if rule.matches(node_name)}
 
 
@@ -99,7 +99,7 @@ def matching_parameters(
 
 
 def parse_scalar(text: str) -> bool | int | float | str:
-    """Return the value that rcl sees in a scalar without quotes."""
+    """Return the value that rcl gives to a scalar without quotes."""
     if text in TRUE or text in FALSE:
         return text in TRUE
     if re.fullmatch(INTEGER, text) and len(text) < LONGEST_INTEGER:
@@ -114,12 +114,12 @@ def parse_scalar(text: str) -> bool | int | float | str:
 
 
 def is_octal(text: str) -> bool:
-    """Return whether C reads an integer with base 8."""
+    """Return whether C parses an integer in base 8."""
     return text.lstrip("+-").startswith("0")
 
 
 def parse_double(text: str) -> float | str:
-    """Return the number that strtod sees, or the text itself if it sees none, or one too large."""
+    """Return the number that strtod parses, or the text if there is none, or it is too large."""
     if re.fullmatch(WORDS, text):
         return float(text)
     number = None
@@ -138,7 +138,7 @@ def parse_value(text: str, source: str = "value") -> ParameterValueType:
 
     Args:
         text: The value, in YAML.
-        source: What an error calls it.
+        source: Its name in errors.
 
     Raises:
         ParameterFileError: It is neither.
@@ -192,7 +192,7 @@ def parse_parameter_yaml(text: str, source: str = "parameters") -> tuple[Paramet
 
 
 class Events:
-    """The events of the YAML parser, one ahead, as errors with file and line where it fails."""
+    """The events of the YAML parser, with one event of lookahead; errors have file and line."""
 
     def __init__(self, text: str, source: str) -> None:
         import yaml
@@ -213,7 +213,7 @@ class Events:
             problem = getattr(error, "problem", None) or str(error).partition("\n")[0]
             line = mark.line + 1 if mark else 0
             raise ParameterFileError(self.source, line, f"not YAML: {problem}") from error
-        while True:  # behind the end there is only the end
+        while True:  # after the end
             yield None
 
     def at(self, kind: str) -> bool:
@@ -221,11 +221,11 @@ class Events:
         return type(self.next).__name__ == f"{kind}Event"
 
     def is_empty_scalar(self) -> bool:
-        """Return whether the next event is the scalar that YAML puts where nothing stands."""
+        """Return whether the next event is the scalar that YAML inserts for a missing value."""
         return self.at("Scalar") and self.next.value == "" and not self.next.style
 
     def take(self, kind: str) -> Any:
-        """Return the next event, which must be of this kind, and go on."""
+        """Return the next event, which must be of this kind, and advance."""
         event = self.next
         if event is None or type(event).__name__ != f"{kind}Event":
             self.fail(f"{describe(event)} where a {kind.lower()} should stand")
@@ -242,7 +242,7 @@ class Events:
 
 
 def describe(event: Any) -> str:
-    """Return what an event stands for, for an error."""
+    """Return a description of an event for an error."""
     return {
         "AliasEvent": "an alias (rcl supports none)",
         "MappingStartEvent": "a mapping",
@@ -252,7 +252,7 @@ def describe(event: Any) -> str:
 
 
 def read_nodes(events: Events, above: tuple[str, ...]) -> Iterator[ParameterRule]:
-    """Read a mapping of names, nested as deep as the file likes, down to the parameters."""
+    """Read a mapping of names, nested to any depth, down to the parameters."""
     events.take("MappingStart")
     while not events.at("MappingEnd"):
         key = read_key(events)

@@ -96,7 +96,7 @@ class Publisher(Entity, Generic[MsgT]):
             EntityDestroyedError: the publisher or its node was destroyed (a RuntimeError).
         """
         thread = self._affinity.thread
-        if thread and thread != get_ident():
+        if thread and thread != get_ident() and self._affinity.is_other_thread():
             self._affinity.wait_for(self.publish, msg)
             return
         if self.destroyed:

@@ -21,7 +21,7 @@ from aionode.endpoints.stats import CallbackStats
 from aionode.errors import DecodeError, EntityDestroyedError
 from aionode.graph import EndpointKind
 from aionode.message import Message
-from aionode.qos import HistoryPolicy, depth_of
+from aionode.qos import HistoryPolicy, depth_of, is_unlimited
 from aionode.transport.base import ReaderRegistration
 
 if TYPE_CHECKING:
@@ -116,6 +116,7 @@ class Subscription(Entity, Generic[ItemT]):
         self._reader = _Reader(endpoint, self.stats, time_base, raw=raw, wants_info=wants == 2)
         self._monitor = SubscriptionMonitor(graph_entry, self._reader, time_base, event_callbacks)
         self._reader.note_alive = self._monitor.note_alive
+        self._reader.note_filtered = self._monitor.note_filtered
 
     def __repr__(self) -> str:
         return (
@@ -162,6 +163,10 @@ class Subscription(Entity, Generic[ItemT]):
             TypeError: a parameter is not a str.
             EntityDestroyedError: the subscription was destroyed (a RuntimeError).
         """
+        affinity = self._graph_entry.affinity
+        if affinity.is_other_thread():
+            affinity.wait_for(self.set_content_filter, filter_expression, expression_parameters)
+            return
         self._refuse_if_destroyed("set content filter")
         accepts = None
         if filter_expression:
@@ -238,6 +243,9 @@ class Subscription(Entity, Generic[ItemT]):
             self._announce_filter()
 
     def _announce_filter(self) -> None:
+        """Tell publishers of the filter, unless their messages are awaited as signs of life."""
+        if not is_unlimited(self.qos_profile.liveliness_lease_duration):
+            return
         for registration in self._registrations:
             if isinstance(registration, ReaderRegistration):
                 registration.set_content_filter(self._content_filter)
@@ -293,8 +301,8 @@ class _Reader(MessageQueue[Any]):
 
     Attributes:
         note_alive: Takes the assertion of a publisher that it is alive.
+        note_filtered: Takes the publisher of a message that does not pass the content filter.
         on_arrival: Called with each message; returns whether to deliver it. None for all.
-        on_filtered: Called for each message that the content filter rejects; None for nothing.
         on_lost: Called with the number of messages that are found missing; None for nothing.
     """
 
@@ -306,8 +314,8 @@ class _Reader(MessageQueue[Any]):
         "_reception_sequence",
         "endpoint",
         "note_alive",
+        "note_filtered",
         "on_arrival",
-        "on_filtered",
         "on_lost",
         "raw",
         "wants_info",
@@ -331,8 +339,8 @@ class _Reader(MessageQueue[Any]):
         self._closed = False
         self._accepts: Callable[[Any], bool] | None = None  # the content filter
         self.note_alive: Callable[[bytes], None]
+        self.note_filtered: Callable[[bytes], None]
         self.on_arrival: Callable[[SampleInfo], bool] | None = None
-        self.on_filtered: Callable[[SampleInfo], None] | None = None
         self.on_lost: Callable[[int], None] | None = None
         # By gid, for publishers in other processes; the one heard last is last.
         self._last_sequences: dict[bytes, int] = {}
@@ -343,8 +351,7 @@ class _Reader(MessageQueue[Any]):
         if self._accepts is not None:
             if not self._accepts(msg):
                 self.stats.filtered += 1
-                if self.on_filtered is not None:
-                    self.on_filtered(sample_info)
+                self.note_filtered(sample_info.gid)
                 return
         elif sample_info.remote:
             # Moved to the end, so that the first has been silent for longest.

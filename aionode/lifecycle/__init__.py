@@ -36,6 +36,7 @@ __all__ = [
     "LifecycleManager",
     "LifecycleNode",
     "LifecyclePublisher",
+    "LifecycleState",
     "LifecycleTimer",
     "ManagedEntity",
     "Node",
@@ -48,6 +49,9 @@ __all__ = [
 
 Node = LifecycleNode
 """rclpy's other name for `LifecycleNode`."""
+
+LifecycleState = State
+"""rclpy's other name for `State`."""
 
 Publisher = LifecyclePublisher
 """rclpy's other name for `LifecyclePublisher`."""

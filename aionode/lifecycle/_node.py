@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode.endpoints._core.callback_runner import accepts
+from aionode.errors import brief
 from aionode.interfaces.lifecycle_msgs.msg import State as StateMsg
 from aionode.interfaces.lifecycle_msgs.msg import Transition as TransitionMsg
 from aionode.interfaces.lifecycle_msgs.msg import TransitionDescription, TransitionEvent
@@ -14,7 +15,7 @@ from aionode.interfaces.lifecycle_msgs.srv import (
     GetAvailableTransitions,
     GetState,
 )
-from aionode.lifecycle._managed import Gate, LifecyclePublisher, LifecycleTimer
+from aionode.lifecycle._managed import Gate, LifecyclePublisher, LifecycleTimer, ManagedEntity
 from aionode.lifecycle._runner import FAILURE, SUCCESS, TransitionRunner
 from aionode.lifecycle._states import (
     ERROR_PROCESSING,
@@ -27,18 +28,20 @@ from aionode.node import Node
 from aionode.qos import QoSProfile
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
+    from collections.abc import AsyncIterator, Callable, Iterable
+    from typing import TypeAlias
 
     from aionode.clock import Clock
     from aionode.endpoints.service import Service, ServiceCallback
     from aionode.endpoints.subscription import Subscription, SubscriptionCallback
     from aionode.endpoints.timer import TimerCallback
-    from aionode.lifecycle._managed import ManagedEntity
     from aionode.lifecycle._runner import LifecycleEvent
     from aionode.lifecycle._states import State, Transition
     from aionode.message import ServiceClass
 
-    Result = TransitionCallbackReturn | Awaitable[TransitionCallbackReturn]
+    Result: TypeAlias = Any
+    """A `TransitionCallbackReturn`, or an awaitable of one. A union would make type checkers refuse
+    ``return super().on_activate(state)`` in an override that returns either of the two."""
 
 __all__ = ["LifecycleNode"]
 
@@ -132,13 +135,14 @@ class LifecycleNode(Node):
     def on_error(self, state: State, error: Exception | None = None) -> Result:  # noqa: ARG002  # for overrides
         """Recover from an error; SUCCESS leads to unconfigured, other results to finalized.
 
-        An override takes ``(state)``, as in rclpy, or ``(state, error)``.
+        By default, have all entities recover, the last one first, which makes the node unconfigured
+        as in rclpy. An override takes ``(state)``, as in rclpy, or ``(state, error)``.
 
         Args:
             state: The state in which the failed transition started.
             error: The exception, or None if the callback returned ERROR.
         """
-        return FAILURE
+        return self._all("on_error", reversed(self._transitions.entities), state)
 
     def _all(
         self, name: str, entities: Iterable[ManagedEntity], state: State
@@ -206,7 +210,16 @@ class LifecycleNode(Node):
     # Entities
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
-        """Have `entity` take part in transitions from now on, after those added earlier."""
+        """Have `entity` take part in transitions from now on, after those added earlier.
+
+        Raises:
+            TypeError: it is not a `ManagedEntity`.
+        """
+        if not isinstance(entity, ManagedEntity):
+            raise TypeError(
+                f"{self.get_fully_qualified_name()}: {brief(entity)} is not a managed entity; "
+                "derive its class from aionode.lifecycle.ManagedEntity"
+            )
         self._transitions.entities.append(entity)
 
     def create_lifecycle_publisher(

@@ -13,11 +13,11 @@ from aionode.parameter._value import Parameter, ParameterType
 
 __all__ = ["descriptor_violation", "type_violation"]
 
-REL_TOL = 1e-6  # how near to a step or to an end of its range a float must be
+REL_TOL = 1e-6  # how close to a step or to an end of its range a float must be
 
 
 def descriptor_violation(parameter: Parameter, descriptor: ParameterDescriptor) -> str | None:
-    """Return why a value is out of the descriptor's range, or None if it is not."""
+    """Return why a value is outside the descriptor's range, or None if it is inside."""
     if parameter.type_ is ParameterType.INTEGER and descriptor.integer_range:
         return integer_violation(parameter, descriptor.integer_range[0])
     if parameter.type_ is ParameterType.DOUBLE and descriptor.floating_point_range:

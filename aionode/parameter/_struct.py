@@ -39,7 +39,7 @@ FLOAT_MAX = sys.float_info.max
 
 
 class ParameterOwner(Protocol):
-    """A node, or whatever else declares parameters as a node does."""
+    """A node, or another object that declares parameters as a node does."""
 
     def declare_parameter(
         self, name: str, value: Any, descriptor: ParameterDescriptor
@@ -50,13 +50,13 @@ class ParameterOwner(Protocol):
         """Return a parameter, or raise if it has no value."""
 
     def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
-        """Have changes checked by `callback`."""
+        """Check changes with `callback`."""
 
     def remove_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
-        """End that."""
+        """Stop checking changes with `callback`."""
 
     def add_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
-        """Have changes told to `callback`."""
+        """Report changes to `callback`."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Leaf:
         owner: The instance, perhaps nested in another, that holds it.
         attribute: Name of the field there.
         hint: Its annotation, limits included.
-        kind: What msgspec makes of the annotation, without the wrapping of None and metadata.
+        kind: The annotation as msgspec's type, without None and metadata around it.
         type_: The parameter's type.
         is_optional: Whether it may be None, that is, have no value.
         has_default: Whether it is declared with a value.
@@ -88,7 +88,7 @@ class Leaf:
     def problem(self, value: object) -> str | None:
         """Return why a value does not fit the annotation, or None."""
         if isinstance(self.kind, inspect.IntType | inspect.FloatType):
-            return open_end_problem(self.kind, value)  # closed ends and steps: the descriptor
+            return open_end_problem(self.kind, value)  # the descriptor checks the rest
         try:
             self.from_ros(value)
         except msgspec.ValidationError as error:
@@ -96,7 +96,7 @@ class Leaf:
         return None
 
     def from_ros(self, value: Any) -> object:
-        """Return a parameter's value as the field holds it."""
+        """Return a parameter's value in the type of the field."""
         if self.type_ is ParameterType.BYTE_ARRAY and not isinstance(value, bytes):
             value = b"".join(value)
         if isinstance(self.kind, inspect.IntType | inspect.FloatType):
@@ -104,7 +104,7 @@ class Leaf:
         return msgspec.convert(value, self.hint)
 
     def to_ros(self) -> Any:
-        """Return the field's value as the parameter's."""
+        """Return the field's value in the type of the parameter."""
         value = getattr(self.owner, self.attribute)
         if isinstance(self.kind, inspect.FloatType):
             return float(value)
@@ -129,23 +129,23 @@ def declare_struct(
 
     A field becomes a parameter of its name, with its type, its default, and from `msgspec.Meta`
     its limits (``ge``, ``le``, ``gt``, ``lt``, ``multiple_of``) and description. A field without a
-    default must be given by an override. ``X | None = None`` may stay without a value. `Literal`
-    and `Enum` allow their values only. ``Meta(extra={"read_only": True})`` makes a parameter
+    default needs an override. ``X | None = None`` may stay without a value. `Literal` and `Enum`
+    allow only their values. ``Meta(extra={"read_only": True})`` makes a parameter
     read-only. A field that is itself such a class becomes a group: ``group.name``.
 
     When a parameter changes, so does the field, before `on_change` is called.
 
     Args:
         owner: The node.
-        struct_type: A `msgspec.Struct` or a dataclass; not a frozen one.
-        prefix: Put in front of all names, with a dot, unless it is empty.
+        struct_type: A `msgspec.Struct` or a dataclass, which must not be frozen.
+        prefix: Prepended to all names, with a dot, unless it is empty.
         on_change: Called with the instance after a change.
 
     Raises:
-        TypeError: A field's type is none that parameters have, or the class is frozen.
+        TypeError: No parameter can have a field's type, or the class is frozen.
         ParameterUninitializedException: A field has neither a default nor an override.
-        InvalidParameterValueException: A default or an override is out of its limits.
-        ParameterAlreadyDeclaredException: The node has a parameter of one of the names.
+        InvalidParameterValueException: A default or an override is outside its limits.
+        ParameterAlreadyDeclaredException: The node already has a parameter of one of the names.
     """
     instance = blank(struct_type)
     start = f"{prefix}{PARAMETER_SEPARATOR_STRING}" if prefix else ""
@@ -180,7 +180,7 @@ def declare_struct(
 
 
 def declare_leaf(owner: ParameterOwner, leaf: Leaf) -> None:
-    """Declare one parameter, and take its value over into the field."""
+    """Declare one parameter, and copy its value to the field."""
     value = leaf.to_ros() if leaf.has_default else leaf.type_
     if isinstance(value, Parameter):
         value = value.get_parameter_value()  # an empty list of a known type
@@ -191,10 +191,10 @@ def declare_leaf(owner: ParameterOwner, leaf: Leaf) -> None:
 
 
 def blank(struct_type: type[StructT]) -> StructT:
-    """Return an instance; fields without a default are to be set.
+    """Return an instance in which fields without a default are None.
 
     Raises:
-        TypeError: It is no class with fields, or one that cannot be changed.
+        TypeError: It is not a class with fields, or its instances cannot be changed.
     """
     info = inspect.type_info(struct_type)
     if not isinstance(info, inspect.StructType | inspect.DataclassType):
@@ -275,10 +275,10 @@ LISTS: dict[ParameterType, ParameterType] = {
 
 
 def parameter_type(kind: inspect.Type, where: str) -> ParameterType:
-    """Return the type of parameter that holds a field.
+    """Return the type of the parameter for a field.
 
     Raises:
-        TypeError: None does.
+        TypeError: No type of parameter fits.
     """
     type_: ParameterType | None = SINGLE.get(type(kind))
     if isinstance(kind, inspect.LiteralType | inspect.EnumType):
@@ -304,7 +304,7 @@ def choices(kind: inspect.LiteralType | inspect.EnumType) -> list[Any]:
 
 
 def descriptor_of(kind: inspect.Type, metas: Iterable[inspect.Metadata]) -> ParameterDescriptor:
-    """Return what a field's annotation says, as a descriptor."""
+    """Return the descriptor that a field's annotation describes."""
     descriptor = ParameterDescriptor()
     for meta in metas:
         schema, extra = meta.extra_json_schema or {}, meta.extra or {}
@@ -340,7 +340,7 @@ def float_range(kind: inspect.FloatType) -> FloatingPointRange:
     """Return the range of a float; open ends are left to `open_end_problem`.
 
     Raises:
-        TypeError: There are steps, and nothing to count them from.
+        TypeError: It has steps, but no lower end to count them from.
     """
     step = kind.multiple_of or 0.0
     low = kind.ge if kind.ge is not None else kind.gt

@@ -135,7 +135,7 @@ async def test_without_names_the_routes_are_only_in_the_record(
             "publisher": "/talker",
             "subscription": "/listener",
             "topic": "/chatter",
-            "way": "local",
+            "route": "local",
             "reason": "",
         }
     ]

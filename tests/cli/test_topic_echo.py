@@ -311,3 +311,29 @@ async def test_lost_messages_are_said(running: Any, screen: Any) -> None:
     assert lost > 0
     assert screen.errors.endswith(f"\n\ttotal count: {lost}---\n")
     assert screen.errors.startswith("A message was lost!!!\n\ttotal count change:")
+
+
+async def test_a_content_filter_keeps_messages_away(
+    running: Any, tool: Node, talker: Node, screen: Any
+) -> None:
+    """In the language of DDS; publishers of other processes do not even send the others."""
+    text = await echoed(
+        running,
+        tool,
+        screen,
+        talker,
+        *(String(data=word) for word in ("apple", "pear", "apricot")),
+        content_filter="data LIKE 'ap%'",
+    )
+
+    assert text == "data: apple\n---\ndata: apricot\n---\n"
+
+
+async def test_a_content_filter_that_does_not_fit_is_an_error(
+    tool: Node, talker: Node, screen: Any
+) -> None:
+    """With what is wrong, and where."""
+    talker.create_publisher(String, "/topic", 10)
+
+    with pytest.raises(CommandError, match=r"--content-filter: .*has no field 'date'"):
+        await echo(tool, "/topic", content_filter="date = 1", output=screen.output)

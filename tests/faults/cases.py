@@ -216,7 +216,7 @@ def crowds(way: str) -> Iterator[Case]:
 
 
 def outputs(way: str) -> Iterator[Case]:
-    """Yield what happens when nobody reads what a process prints, or the disk is full."""
+    """Yield what happens when the output of a process is not read, or the disk is full."""
     full: tuple[Output, str] = ("full", "on /dev/full")
     unread: tuple[Output, str] = ("unread", "in a pipe that is not read")
     for output, what in (full, unread):

@@ -185,7 +185,7 @@ def host_cases() -> Iterator[Case]:
                 loss="any",
                 lasts_s=5 if isinstance(how, tuple) else abs(how),
                 around=hosts,
-                short=how == -3,
+                short=how == -3 and roles is ONE_ROUTER,
             )
     hosts = TwoHosts(next(numbers))
     yield Case(

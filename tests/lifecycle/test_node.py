@@ -16,7 +16,13 @@ from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.lifecycle_msgs.msg import Transition, TransitionEvent
 from aionode.interfaces.lifecycle_msgs.srv import ChangeState, GetAvailableTransitions, GetState
 from aionode.interfaces.std_msgs.msg import String
-from aionode.lifecycle import LifecycleEvent, LifecycleNode, State, TransitionCallbackReturn
+from aionode.lifecycle import (
+    LifecycleEvent,
+    LifecycleNode,
+    ManagedEntity,
+    State,
+    TransitionCallbackReturn,
+)
 from aionode.testing import ManualClock, local_context, settle
 
 SUCCESS = TransitionCallbackReturn.SUCCESS
@@ -128,6 +134,39 @@ async def test_an_error_that_is_not_put_right_finalizes(managed: Managed) -> Non
 
     assert await managed.trigger_configure() is ERROR
     assert managed.lifecycle_state.label == "finalized"
+
+
+async def test_an_error_without_on_error_makes_the_node_unconfigured(
+    node_factory: Callable[..., Any],
+) -> None:
+    """As in rclpy, whose default asks the entities, which recover."""
+
+    class Broken(LifecycleNode):
+        def on_configure(self, state: State) -> TransitionCallbackReturn:
+            return ERROR
+
+    class Recovering(ManagedEntity):
+        asked_in = ""
+
+        def on_error(self, state: State) -> TransitionCallbackReturn:
+            self.asked_in = state.label
+            return SUCCESS
+
+    broken: Any = node_factory(Broken, "broken")
+    entity = Recovering()
+    broken.add_managed_entity(entity)
+
+    assert await broken.trigger_configure() is ERROR
+    assert broken.lifecycle_state.label == "unconfigured"
+    assert entity.asked_in == "unconfigured"
+
+
+def test_something_that_is_no_managed_entity_is_refused() -> None:
+    """With the class to derive from."""
+    node = LifecycleNode("managed", context=local_context())
+
+    with pytest.raises(TypeError, match="is not a managed entity; derive its class from"):
+        node.add_managed_entity("camera")  # type: ignore[arg-type]
 
 
 async def test_a_result_of_another_kind_is_an_error(managed: Managed) -> None:
@@ -263,6 +302,25 @@ async def test_shutdown_cancels_what_is_under_way(node: Node, managed: Managed) 
         assert await change(node, transition_id=Transition.TRANSITION_UNCONFIGURED_SHUTDOWN)
 
     assert managed.lifecycle_state.label == "finalized"
+
+
+async def test_the_end_of_a_node_cancels_its_transition(
+    node: Node, node_factory: Callable[..., Any]
+) -> None:
+    """As Ctrl-C does: the callback may tidy up, and the state is a primary one."""
+    managed: Managed = node_factory(Managed)
+    managed.outcomes["configure"] = asyncio.Event()
+    client = node.create_client(ChangeState, "/managed/change_state")
+    call = client.call_async(ChangeState.Request(transition=Transition(label="configure")))
+    await settle()
+    assert managed.lifecycle_state.label == "configuring"
+
+    managed.destroy_node()
+    await settle()
+
+    assert managed.lifecycle_state.label == "unconfigured"
+    with pytest.raises(ServiceError):
+        await call
 
 
 async def test_a_timeout_cancels_a_transition(managed: Managed) -> None:
@@ -440,23 +498,29 @@ class Slow(LifecycleNode):
             st.sampled_from(["configure", "activate", "deactivate", "cleanup", "shutdown"]),
             st.integers(0, 12),
             st.booleans(),
+            st.sampled_from(["task", "failure", "error", "shutdown"]),
         ),
         max_size=8,
     )
 )
 def test_a_cancellation_at_any_await_leaves_a_primary_state(
-    steps: list[tuple[str, int, bool]],
+    steps: list[tuple[str, int, bool, str]],
 ) -> None:
-    """Wherever a transition is cut, the node is in a state from which it can go on."""
+    """Wherever and however a transition is cut, the node is in a state from which it can go on."""
 
     async def run() -> None:
         async with local_context() as context, Slow("slow", context=context) as node:
-            for label, turns, failing in steps:
+            for label, turns, failing, how in steps:
                 node.failing = failing
                 task = asyncio.get_running_loop().create_task(getattr(node, f"trigger_{label}")())
                 for _ in range(turns):
                     await asyncio.sleep(0)  # noqa: TID251  # counts turns of the loop
-                task.cancel()
+                if how == "task":
+                    task.cancel()
+                elif how == "shutdown":
+                    await asyncio.gather(node.trigger_shutdown(), return_exceptions=True)
+                else:
+                    node._transitions.cancel(FAILURE if how == "failure" else ERROR)
                 await asyncio.gather(task, return_exceptions=True)
                 assert not node._transitions.machine.in_transition
                 assert node._transitions._idle.is_set()

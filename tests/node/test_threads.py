@@ -14,7 +14,7 @@ from aionode.errors import EntityDestroyedError, InvalidTopicNameException
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
-from aionode.testing import settle
+from aionode.testing import local_context, settle
 
 
 def add(request: AddTwoInts.Request) -> AddTwoInts.Response:
@@ -114,3 +114,39 @@ async def test_many_threads_create_entities_at_once(node: Node) -> None:
 
     assert {one.topic_name for one in created} <= {one.topic_name for one in node.publishers}
     assert len({one._gid for one in created}) == 20
+
+
+async def test_a_content_filter_can_be_set_in_another_thread(node: Node) -> None:
+    """It takes effect between two messages."""
+    subscription = node.create_subscription(String, "/words")
+    publisher = node.create_publisher(String, "/words", 10)
+
+    await asyncio.to_thread(subscription.set_content_filter, "data = 'b'", [])
+    for word in ("a", "b"):
+        publisher.publish(String(data=word))
+
+    assert (await subscription.receive()).data == "b"
+
+
+def test_no_thread_waits_for_a_loop_that_stands_still() -> None:
+    """A program may run its loop in steps, and do something else in between."""
+    loop = asyncio.new_event_loop()
+    node = Node("node", context=local_context())
+    loop.run_until_complete(node.__aenter__())
+    heard: list[str] = []
+
+    def work() -> None:
+        node.create_subscription(String, "/chatter", lambda msg: heard.append(msg.data))
+        publisher = node.create_publisher(String, "/chatter", 10)
+        publisher.publish(String(data="hello"))
+        publisher.destroy()
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join(10)
+
+    assert not thread.is_alive()
+    loop.run_until_complete(settle())
+    assert heard == ["hello"]
+    loop.run_until_complete(node.__aexit__(None, None, None))
+    loop.close()

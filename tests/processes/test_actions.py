@@ -64,7 +64,7 @@ def test_the_exception_of_a_server_is_told_in_the_other_process() -> None:
 
 
 def test_a_killed_server_is_an_error_at_once() -> None:
-    """SIGKILL: no farewell is sent, and yet nobody waits in vain."""
+    """SIGKILL: nothing is sent before the end, and yet no caller waits in vain."""
     with ends(LONG) as (server, client):
         client.expect("feedback")
         killed_s = time.monotonic()

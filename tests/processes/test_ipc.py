@@ -29,6 +29,7 @@ from aionode.transport.ipc._subscription import Route
 from aionode.transport.ipc._transport import IpcTransport
 from tests.processes.ipc_member import STREAMED_BYTES
 from tests.support.peers import isolated_environment, quiet_node
+from tests.support.spies import returns_of
 
 MEMBER = Path(__file__).with_name("ipc_member.py")
 
@@ -205,10 +206,13 @@ def in_mid_frame(link: Connection) -> bool:
     return bool(parser._pieces)
 
 
-async def test_a_sender_that_is_killed_in_mid_frame_ends_its_stream_and_the_next_is_heard() -> None:
+async def test_a_sender_that_is_killed_in_mid_frame_ends_its_stream_and_the_next_is_heard(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """What it has not sent to the end is nothing; what it has is whole."""
     async with linked_node() as node:
         stream = Stream(node)
+        closed = returns_of(monkeypatch, stream.node.context.transports[1].manager, "on_closed")
         for _ in range(2):
             with other_process("stream") as process:
                 await stream.until_linked()
@@ -217,24 +221,27 @@ async def test_a_sender_that_is_killed_in_mid_frame_ends_its_stream_and_the_next
                 process.wait()
                 link = stream.link
                 stream.on_writable()
-                while not link.closed:
-                    await checkpoint()
+                while not link.closed:  # others that dial may be closed, too
+                    await closed.get()
                 while stream.subscription._reader:
                     await stream.next()
             while stream.subscription.get_publisher_count():
                 await stream.node.graph.changed()
 
 
-async def test_a_sender_that_is_frozen_in_mid_frame_goes_on_where_it_was() -> None:
+async def test_a_sender_that_is_frozen_in_mid_frame_goes_on_where_it_was(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """Its link stays, and the rest of the frame comes with the next."""
     async with linked_node() as node:
         stream = Stream(node)
         with other_process("stream") as process:
             await stream.until_linked()
             await stream.freeze_in_mid_frame(process)
+            read = returns_of(monkeypatch, stream.link, "_on_readable")
             stream.on_writable()
             while not stream.link._parser._pieces:
-                await checkpoint()
+                await read.get()
             process.send_signal(signal.SIGCONT)
             for _ in range(20):
                 await stream.next()

@@ -98,7 +98,7 @@ def test_who_asks_for_it_listens_on_every_interface(monkeypatch: pytest.MonkeyPa
 
 
 def test_who_is_off_listens_nowhere(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is found by nobody."""
+    """No other process finds it."""
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")
     with member("one") as one:
         one.expect("open")
@@ -132,7 +132,7 @@ def write(folder: Path, name: str, authority: trustme.CA, *, common_name: str) -
 
 @pytest.fixture
 def join(tmp_path: Path) -> Iterator[Join]:
-    """Starts a member that shows a certificate to the router; it dials nobody else."""
+    """Starts a member that presents a certificate to the router, and dials only the router."""
     authority, other_authority = trustme.CA(), trustme.CA()
     authority.cert_pem.write_to_path(tmp_path / "ca.pem")
     write(tmp_path, "router", authority, common_name="router")

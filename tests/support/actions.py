@@ -14,11 +14,9 @@ from aionode.interfaces.unique_identifier_msgs.msg import UUID
 from aionode.qos import qos_profile_action_status_default
 
 if TYPE_CHECKING:
-    import pytest
-
     from aionode.node import Node
 
-__all__ = ["Goal", "PlainClient", "Worker", "calls_of", "uuid_of"]
+__all__ = ["Goal", "PlainClient", "Worker", "uuid_of"]
 
 Goal = ServerGoalHandle[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
 Impl = Fibonacci.Impl
@@ -49,20 +47,6 @@ class Worker:
             raise
         goal.succeed()
         return Fibonacci.Result(sequence=list(range(goal.request.order + 1)))
-
-
-def calls_of(monkeypatch: pytest.MonkeyPatch, owner: object, name: str) -> asyncio.Queue[Any]:
-    """Return a queue that gets what a method returns, for states that no public call waits for."""
-    returned = asyncio.Queue[Any]()
-    method = getattr(owner, name)
-
-    def call(*args: Any) -> Any:
-        result = method(*args)
-        returned.put_nowait(result)
-        return result
-
-    monkeypatch.setattr(owner, name, call)
-    return returned
 
 
 class PlainClient:

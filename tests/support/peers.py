@@ -54,10 +54,10 @@ def ros_value(value: Any) -> Any:
 
 
 def free_ports(count: int) -> list[int]:
-    """Return ports of loopback on which nobody listens, nor will by chance.
+    """Return loopback ports that are free, and will not be taken by chance.
 
-    They lie below those that the system gives to whoever wants any, such as the sessions of another
-    run of these tests.
+    They lie below the ephemeral ports, which the system gives to other sessions, such as those of
+    another run of these tests.
     """
     found: list[int] = []
     with ExitStack() as until_all_are_found:
@@ -71,7 +71,7 @@ def free_ports(count: int) -> list[int]:
 
 
 def isolated_environment() -> dict[str, str]:
-    """Return variables with which processes hear each other and nobody else."""
+    """Return variables with which processes hear each other and no other process."""
     ports = free_ports(4)
     return {
         "ROS_DOMAIN_ID": str(DOMAIN_ID),

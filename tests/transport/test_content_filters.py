@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+import base64
 from contextlib import AsyncExitStack
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from aionode import Publisher, Subscription
 from aionode.content_filter import ContentFilterOptions
@@ -342,6 +345,19 @@ def test_a_damaged_filter_is_ignored(text: str) -> None:
     filters = ContentFilters()
 
     filters.take_token(f"filter/1/{'ab' * 16}/{text}", present=True)
+
+    assert not filters
+
+
+@given(st.text() | st.binary().map(lambda data: base64.urlsafe_b64encode(data).decode()))
+def test_nothing_from_the_network_raises(text: str) -> None:
+    """A token may have been declared by any program."""
+    filters = ContentFilters()
+
+    for present in (True, False):
+        filters.take_token(f"filter/1/{'ab' * 16}/{text}", present=present)
+        filters.take_token(f"filter/1/{text}", present=present)
+        filters.wanted_by([bytes.fromhex("ab" * 16)], Int32)
 
     assert not filters
 

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from aionode.context import Context
+from aionode.endpoints.service_introspection import ServiceIntrospectionState
 from aionode.errors import MessageError, ServiceError, ServiceUnavailableError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.sensor_msgs.msg import Image, JointState
@@ -86,6 +87,27 @@ async def test_messages_arrive_in_order_and_once(pair: Pair) -> None:
         writer.publish(Int32(data=number))
     assert await numbers(reader, 100) == list(range(100))
     assert (reader.stats.received, reader.stats.dropped, reader.stats.lost) == (100, 0, 0)
+
+
+async def test_service_events_arrive_from_both_sides(pair: Pair) -> None:
+    """Of the client and of the server, with their contents and one gid."""
+    server = pair.right.create_service(AddTwoInts, "add", add)
+    client = pair.left.create_client(AddTwoInts, "add")
+    for endpoint, node in ((server, pair.right), (client, pair.left)):
+        endpoint.configure_introspection(node.get_clock(), 10, ServiceIntrospectionState.CONTENTS)
+    reader = pair.left.create_subscription(AddTwoInts.Event, "add/_service_event")
+    await client.wait_for_service()
+    while reader.get_publisher_count() < 2:
+        await pair.left.graph.changed()
+    await server._introspection._publisher.wait_for_subscribers()  # type: ignore[union-attr]
+
+    await client.call(Request(a=2, b=3))
+    events = [await reader.receive() for _ in range(4)]
+
+    assert sorted(int(event.info.event_type) for event in events) == [0, 1, 2, 3]
+    assert len({bytes(event.info.client_gid) for event in events}) == 1
+    assert [event.request[0].b for event in events if len(event.request)] == [3, 3]
+    assert [event.response[0].sum for event in events if len(event.response)] == [5, 5]
 
 
 async def test_readers_on_both_sides_hear_each_message_once(pair: Pair) -> None:

@@ -14,6 +14,7 @@ from aionode.transport._zenoh_config import (
     ROUTER_PORT,
     DiscoveryRange,
     Network,
+    is_near,
     network_from,
     probed_ports,
     router_settings,
@@ -178,12 +179,32 @@ def test_the_system_default_is_that_of_rmw_zenoh() -> None:
     assert settings(network)["connect/endpoints"] == [f"tcp/127.0.0.1:{ROUTER_PORT}"]
 
 
-def test_static_peers_are_dialled_besides() -> None:
-    """The machine's own processes are found as always."""
-    found = settings(Network(static_peers=("tls/robot:7447",)))
+def test_a_session_dials_static_peers_of_its_own_machine_only() -> None:
+    """A router of the machine dials the others, and the session finds that as always."""
+    network = Network(static_peers=("tls/robot:7447", "tls/localhost:7448"))
+    found = settings(network)
 
-    assert found["connect/endpoints"][-1] == "tls/robot:7447"
+    assert found["connect/endpoints"][-2:] == [f"tcp/127.0.0.1:{ROUTER_PORT}", "tls/localhost:7448"]
     assert found["listen/endpoints"][0] == f"tcp/127.0.0.1:{H1}"
+    assert network.far_peers == ("tls/robot:7447",)
+
+
+@pytest.mark.parametrize(
+    ("endpoint", "near"),
+    [
+        ("tcp/127.0.0.1:1", True),
+        ("tcp/[::1]:1", True),
+        ("tcp/[::ffff:127.0.0.1]:1", True),
+        ("tls/localhost:1?so_sndbuf=1", True),
+        ("unixsock-stream//tmp/a", True),
+        ("tcp/10.0.0.1:1", False),
+        ("tcp/[fe80::1]:1", False),
+        ("tls/robot.local:1#iface=lo", False),
+    ],
+)
+def test_what_is_near_is_seen_from_the_text_of_an_endpoint(endpoint: str, near: bool) -> None:
+    """Names are not resolved: a router that dials its own machine does no harm."""
+    assert is_near(endpoint) == near
 
 
 def test_a_file_takes_the_place_of_all_settings() -> None:
@@ -210,7 +231,7 @@ def test_single_settings_win_over_the_environment() -> None:
     "found",
     [
         *(settings(Network(discovery_range=r)) for r in DiscoveryRange),
-        router_settings(["tcp/127.0.0.1:0"]),
+        router_settings(["tcp/127.0.0.1:0"], ["tcp/robot:7447"]),
     ],
 )
 def test_zenoh_knows_every_setting(found: dict[str, Any]) -> None:

@@ -98,6 +98,11 @@ add_type_and_find(topic, TOPIC, "msg")
     metavar="EXPR",
     help="Print only messages for which this Python expression is true; m is the message.",
 )
+@click.option(
+    "--content-filter",
+    metavar="EXPR",
+    help="Receive only messages that pass this filter of DDS, such as 'pose.x > 1'.",
+)
 @click.option("--once", is_flag=True, help="Print one message and end.")
 @click.option("--timeout", metavar="N", type=positive, help="End after N seconds.")
 @click.option(

@@ -6,7 +6,8 @@ import asyncio
 from typing import TYPE_CHECKING, Any
 
 from aionode.cli._support import lookup
-from aionode.errors import CommandError
+from aionode.content_filter import ContentFilterOptions
+from aionode.errors import CommandError, ContentFilterError
 from aionode.graph import TOPIC_KINDS
 
 if TYPE_CHECKING:
@@ -40,21 +41,30 @@ class Follower:
         qos: QoSProfile,
         *,
         raw: bool = False,
+        content_filter: str = "",
     ) -> Subscription[Any]:
-        """Call `on_message` with each message of `topic`, or with its bytes if `raw`."""
+        """Call `on_message` with each message of `topic`, or with its bytes if `raw`.
+
+        Raises:
+            CommandError: the content filter is malformed, or does not fit the type.
+        """
 
         def while_unfinished(msg: Any, info: MessageInfo) -> None:
             if not self._done.done():
                 on_message(msg, info)
 
-        subscription: Subscription[Any] = self._node.create_subscription(
-            msg_type,
-            topic,
-            while_unfinished,
-            qos,
-            raw=raw,  # type: ignore[call-overload]  # known only at run time
-            on_error=self.fail,
-        )
+        try:
+            subscription: Subscription[Any] = self._node.create_subscription(
+                msg_type,
+                topic,
+                while_unfinished,
+                qos,
+                raw=raw,  # type: ignore[call-overload]  # known only at run time
+                on_error=self.fail,
+                content_filter_options=ContentFilterOptions(content_filter),
+            )
+        except ContentFilterError as error:
+            raise CommandError(f"--content-filter: {error}") from error
         return subscription
 
     def fail(self, error: Exception, _: CallbackContext | None = None) -> None:

@@ -72,7 +72,7 @@ class Pair(NamedTuple):
             "publisher": publisher,
             "subscription": subscription,
             "topic": self.publisher.name,
-            "way": self.route,
+            "route": self.route,
             "reason": self.reason,
         }
 

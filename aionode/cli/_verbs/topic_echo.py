@@ -47,6 +47,7 @@ async def echo(
     no_lost_messages: bool = False,
     raw: bool = False,
     filter_text: str | None = None,
+    content_filter: str | None = None,
     once: bool = False,
     timeout: float | None = None,
     with_info: bool = False,
@@ -57,7 +58,7 @@ async def echo(
     The default profile is the strongest that all current publishers offer.
 
     Raises:
-        CommandError: the type cannot be determined, or `field` or `filter_text` is invalid.
+        CommandError: the type cannot be determined, or `field` or a filter is invalid.
     """
     if field is not None and not field.strip("."):
         raise CommandError(f"Invalid field value '{field}': expected a path such as pose.position")
@@ -90,7 +91,9 @@ async def echo(
             follower.finish()
 
     profile = qos or strongest(publishers, output)
-    subscription = follower.follow(msg_type, name, on_message, profile, raw=raw)
+    subscription = follower.follow(
+        msg_type, name, on_message, profile, raw=raw, content_filter=content_filter or ""
+    )
     if not await follower.finished(timeout) and not subscription.stats.received:
         output.warn(
             f"No message on '{name}' within {timeout:g} s; "

@@ -45,13 +45,19 @@ class LoopAffinity:
         self.thread = 0
 
     def is_other_thread(self) -> bool:
-        """Return whether the context works in a thread other than this one."""
-        return self.thread not in (0, get_ident())
+        """Return whether the context works in a thread other than this one.
+
+        Not while its loop stands still, between two calls of `run_until_complete`: nothing else
+        runs then, and a thread that waited for the loop might wait for ever.
+        """
+        if self.thread in (0, get_ident()):
+            return False
+        return self._loop is not None and self._loop.is_running()
 
     def call(self, action: Callable[[], object]) -> None:
         """Run `action` in the loop's thread: at once if this is it, else soon."""
         loop = self._loop
-        if loop is None or not self.is_other_thread():
+        if loop is None or self.thread == get_ident():
             action()
             return
         with contextlib.suppress(RuntimeError):  # the loop was closed, and with it the context

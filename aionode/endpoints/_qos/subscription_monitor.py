@@ -42,7 +42,6 @@ class MonitoredReader(Protocol):
     items: deque[tuple[int, Any]]
     keep_all: bool
     on_arrival: Callable[[SampleInfo], bool] | None
-    on_filtered: Callable[[SampleInfo], None] | None
     on_lost: Callable[[int], None] | None
 
     def wake_writers(self) -> None:
@@ -103,7 +102,6 @@ class SubscriptionMonitor:
         graph_entry.watch(self._note_publisher)
         if self._deadline is not None or not is_unlimited(qos.liveliness_lease_duration):
             reader.on_arrival = self._on_arrival
-            reader.on_filtered = self._on_filtered
 
     @property
     def handler(self) -> EventHandler | None:
@@ -142,6 +140,11 @@ class SubscriptionMonitor:
         """Take the assertion of a publisher."""
         if self._liveliness is not None:
             self._liveliness.note_assertion(gid)
+
+    def note_filtered(self, gid: bytes) -> None:
+        """Take a message that is not delivered: its publisher is alive all the same."""
+        if self._liveliness is not None:
+            self._liveliness.note_message(gid)
 
     # Publishers
 
@@ -183,11 +186,6 @@ class SubscriptionMonitor:
         if self._deadline is not None:
             self._deadline.note()
         return True
-
-    def _on_filtered(self, sample_info: SampleInfo) -> None:
-        """Take a message that is not delivered as a sign of life."""
-        if self._liveliness is not None:
-            self._liveliness.note_message(sample_info.gid)
 
     def _on_lost(self, count: int) -> None:
         self._hub.emit("message_lost", QoSMessageLostInfo(self._reader.stats.lost, count))

@@ -79,8 +79,7 @@ RETRANSMIT_BYTES: Final = 1 << 20
 class LinkManager:
     """The links of one context: the `LinkRegistry` of its endpoints, and the owner of connections.
 
-    Of two contexts the one with the smaller id dials, as soon as they have matching endpoints;
-    both see the same graph, so both know which.
+    Of two contexts with matching endpoints, the one with the smaller id dials; both know which.
 
     Args:
         participant: Id of the context.
@@ -108,7 +107,6 @@ class LinkManager:
         self.requesters: dict[bytes, IpcRequester] = {}
         self._peer_directory = peer_directory
         self.content_filters = peer_directory.content_filters
-        self.content_filters.on_change.append(self._refilter)
         self._hello = Hello(participant, VERSION, domain_id)
         self._domain_id = domain_id
         self._graph: Graph | None = None
@@ -132,10 +130,6 @@ class LinkManager:
         self._timers: set[asyncio.TimerHandle] = set()  # of `later`, until they have run
         self._link_changes = 0
         self._malformed = 0  # retransmitted batches that could not be read
-
-    def _refilter(self) -> None:
-        for writer in self.writers.values():
-            writer.update_filters()
 
     # Lifetime
 

@@ -57,6 +57,7 @@ class IpcTransport(Transport):
         if time_base is not None:
             self.manager.now_ns = time_base.system_ns
         self._peer_directory = peer_directory
+        peer_directory.content_filters.on_change.append(self._refilter)
         self._graph: Graph | None = None
 
     def __repr__(self) -> str:
@@ -66,6 +67,10 @@ class IpcTransport(Transport):
     def other_domains(self) -> frozenset[int]:
         """Other domains whose nodes can be reached; they do not hear nodes of this domain."""
         return frozenset(getattr(self.zenoh, "other_domains", ()))
+
+    def _refilter(self) -> None:
+        for writer in self.manager.writers.values():
+            writer.update_filters()
 
     async def open(self, graph: Graph) -> None:
         """Connect; without a folder for sockets, or descriptors, over the other transport only."""

@@ -257,7 +257,7 @@ class ZenohWriter(Declaration, Writer):
         self._update()
 
     def _update(self) -> None:
-        """Update `active`, the filter and the history from the matching readers."""
+        """Update `active`, the history and the filter from the matching readers."""
         history, graph = self._history, self.state.graph
         if self._transient:
             if self._encode is None:
@@ -267,12 +267,12 @@ class ZenohWriter(Declaration, Writer):
         self._wants = None
         if graph is not None and self._publisher is not None:
             readers = self._matched(graph)
-            self._wants = self._filter_of(readers)
             # The token of a reader can arrive before Zenoh has told of a match, or has a route to
             # it; what is lost until then is sent again.
             self.active = self._is_matching or bool(readers)
             if history is not None:
                 self._update_readers(history, readers)
+            self._wants = self._filter_of(readers)
         if self.active and self._encode is None:
             self._encode = cdr.encoder(self._msg_type)
 
@@ -289,7 +289,10 @@ class ZenohWriter(Declaration, Writer):
         filters = self.state.content_filters
         if not filters or self.state.has_unannounced_peers:
             return None
-        return filters.wanted_by([reader.gid for reader in readers], self._msg_type)
+        gids = {reader.gid for reader in readers}
+        if self._history is not None:
+            gids.update(self._history.readers)  # also those that are away, and may return
+        return filters.wanted_by(gids, self._msg_type)
 
     def _update_readers(self, history: WriterHistory, readers: list[EndpointInfo]) -> None:
         """Add new and returned readers to the history, and remove those that have vanished."""

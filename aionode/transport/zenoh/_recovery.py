@@ -57,6 +57,9 @@ FIRST_S: Final = 0.5
 START_S: Final = 20.0
 """For so long after the start looks are repeated, until one finds nothing missing."""
 
+POSTPONED_S: Final = 3.0
+"""For so long a look waits for connections that go on being made or lost."""
+
 AGAIN_S: Final = 3.0
 """The interval of further looks: a process that was frozen returns without a sign."""
 
@@ -115,6 +118,7 @@ class Recovery:
         self._looking = False
         self._until_s = 0.0
         self._starting_until_s = 0.0
+        self._changing_since_s = 0.0  # when the first change was seen after the last look
         # Participants whose connection was lost and not made anew. A router may forward what they
         # send meanwhile, but not always what this session sends.
         self._lost: set[str] = set()
@@ -163,7 +167,10 @@ class Recovery:
             self._lost.add(zid)
         else:
             self._lost.discard(zid)
-        self._look_in(FIRST_S)
+        if self._timer is None:
+            self._changing_since_s = now_s
+        if now_s - self._changing_since_s < POSTPONED_S:
+            self._look_in(FIRST_S)
 
     def _look_in(self, delay_s: float) -> None:
         """Look in a while; processes that saw the same end do not all look at once."""
@@ -175,7 +182,10 @@ class Recovery:
     def _look(self) -> None:
         self._timer = None
         session = self._session
-        if session is None or self._looking:
+        if session is None:
+            return
+        if self._looking:
+            self._look_in(FIRST_S)
             return
         self._looking = True
         now_s = asyncio.get_running_loop().time()
@@ -187,18 +197,27 @@ class Recovery:
         ).start()
 
     def _look_in_thread(self, session: zenoh.Session, lost: set[str], is_due: bool) -> None:
-        missing: set[str] = set()
+        missing: set[str] | None = None
         with suppress(zenoh.ZError, ConfigurationError):
             connection = introducer_connection(session, self._network)
-            if connection is not None and (is_due or silent_peers(session)):
-                missing = self._missing(session, connection, lost)
-                if missing:
-                    threading.Event().wait(SURE_S)
-                    missing &= self._missing(session, connection, lost)
-                missing = {zid for zid in missing if self._attempts.get(zid, 0) < ATTEMPTS}
-                if missing:
-                    cut([*connections_to(session, missing), connection])
+            if connection is None or not (is_due or silent_peers(session)):
+                missing = set()
+            else:
+                missing = self._reconnect(session, connection, lost)
         self._looks.put(missing)
+
+    def _reconnect(
+        self, session: zenoh.Session, connection: Connection, lost: set[str]
+    ) -> set[str]:
+        """Cut what has to be made anew, and return the participants for which that was done."""
+        missing = self._missing(session, connection, lost)
+        if missing:
+            threading.Event().wait(SURE_S)
+            missing &= self._missing(session, connection, lost)
+        missing = {zid for zid in missing if self._attempts.get(zid, 0) < ATTEMPTS}
+        if missing:
+            cut([*connections_to(session, missing), connection])
+        return missing
 
     def _missing(self, session: zenoh.Session, connection: Connection, lost: set[str]) -> set[str]:
         """Return those that only the introducer sees, and this one if the introducer does not."""
@@ -217,13 +236,15 @@ class Recovery:
         with closing(zenoh.open(config)) as look:
             return tokens(look, self._state.domain_id)
 
-    def _take_look(self, missing: set[str]) -> None:
+    def _take_look(self, missing: set[str] | None) -> None:
+        """Take what a look has found to be missing; None if it could not be made."""
         self._looking = False
         if self._session is None:
             return
-        self._attempts = {zid: self._attempts.get(zid, 0) + 1 for zid in missing} | {
-            zid: count for zid, count in self._attempts.items() if count >= ATTEMPTS
-        }
+        if missing is not None:
+            self._attempts = {zid: self._attempts.get(zid, 0) + 1 for zid in missing} | {
+                zid: count for zid, count in self._attempts.items() if count >= ATTEMPTS
+            }
         if missing:
             logger.info(
                 "processes %s live, but were not connected any more: connected anew",
@@ -233,7 +254,7 @@ class Recovery:
             self._checks -= 1
             self._on_change()
         now_s = asyncio.get_running_loop().time()
-        if not missing:
+        if missing is not None and not missing:
             self._starting_until_s = 0.0
         if self._timer is None and now_s < max(self._until_s, self._starting_until_s):
             self._look_in(FIRST_S if missing else AGAIN_S)

@@ -41,6 +41,9 @@ DESCRIPTORS: Final = Path("/proc/self/fd")
 STUCK_S: Final = 0.1
 """A peer that reads not one byte for so long, while some wait, is not waited for."""
 
+UNREACHABLE_MS: Final = 5_000
+"""After so long without any answer to what was sent, a connection to another machine is lost."""
+
 RESET: Final = struct.pack("ii", 1, 0)
 """SO_LINGER for a connection that is cut: what was not taken is dropped."""
 
@@ -49,9 +52,6 @@ NO_LINGER: Final = struct.pack("ii", 0, 0)
 
 SETTLE_S: Final = 0.5
 """How long after a new connection its socket is looked for; several are made at once."""
-
-UNREACHABLE_MS: Final = 5_000
-"""After so long without any answer to what was sent, a connection to another machine is lost."""
 
 
 @contextmanager
@@ -90,6 +90,7 @@ def give_up_unreachable(session: zenoh.Session) -> None:
                 if not is_near(f"tcp/{peer}"):
                     with suppress(OSError):  # it is lost already
                         one.setsockopt(socket.IPPROTO_TCP, option, UNREACHABLE_MS)
+                        one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
 
     listener = session.info.declare_transport_events_listener(direct(limit), history=True)
     # It listens as long as it exists; its callback holds it until the session is closed.

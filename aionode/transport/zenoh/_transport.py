@@ -64,8 +64,8 @@ class ZenohTransport(Transport):
         self._answered: asyncio.Future[None] | None = None
         self._missing = 0  # how many peers that accept connections were not connected in time
         self._recovery = Recovery(self._state, network, self._watcher.check)
-        self._linger_switch: LingerSwitch | None = None
         self._local_router = LocalRouter(self._state, network)
+        self._linger_switch: LingerSwitch | None = None
 
     def __repr__(self) -> str:
         state = "closed" if self._state.session is None else "open"

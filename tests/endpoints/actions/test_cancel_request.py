@@ -20,8 +20,9 @@ from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.node import Node
 from aionode.testing import FaultyTransport, local_context, settle
 from aionode.transport.local import LocalTransport
-from tests.support.actions import Goal, Worker, calls_of
+from tests.support.actions import Goal, Worker
 from tests.support.peers import isolated_environment
+from tests.support.spies import returns_of
 
 Client = ActionClient[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
 Server = ActionServer[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
@@ -269,8 +270,8 @@ async def test_a_goal_that_is_cancelled_while_the_server_thinks_is_never_execute
     ends: Ends, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The server refuses it then, as its client has gone."""
-    noted = calls_of(monkeypatch, ends.server, "_note_early_cancel")
-    answered = calls_of(monkeypatch, ends.client, "_on_cancel_answered")
+    noted = returns_of(monkeypatch, ends.server, "_note_early_cancel")
+    answered = returns_of(monkeypatch, ends.client, "_on_cancel_answered")
     door = Doorkeeper()
     ends.server.register_goal_callback(door)
     with anyio.move_on_after(5) as scope:
@@ -291,8 +292,8 @@ async def test_a_goal_that_is_cancelled_in_the_queue_of_the_server_is_never_exec
     ends: Ends, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Behind another one about which the server thinks."""
-    noted = calls_of(monkeypatch, ends.server, "_note_early_cancel")
-    answered = calls_of(monkeypatch, ends.client, "_on_cancel_answered")
+    noted = returns_of(monkeypatch, ends.server, "_note_early_cancel")
+    answered = returns_of(monkeypatch, ends.client, "_on_cancel_answered")
     door = Doorkeeper()
     ends.server.register_goal_callback(door)
     first = beside(ends.client.send_goal(Fibonacci.Goal(order=1)))
@@ -317,7 +318,7 @@ async def test_a_goal_that_another_server_accepts_after_its_cancellation_is_canc
 ) -> None:
     """One that is not of aionode says that it does not know the goal, and accepts it later."""
     monkeypatch.setattr(ends.server, "_note_early_cancel", lambda _goal_id: None)
-    accepted = calls_of(monkeypatch, ends.server, "_accept")
+    accepted = returns_of(monkeypatch, ends.server, "_accept")
     door = Doorkeeper()
     ends.server.register_goal_callback(door)
     task = beside(ends.client.call(Fibonacci.Goal()))

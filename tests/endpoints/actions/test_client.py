@@ -33,9 +33,10 @@ from aionode.errors import (
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
-from aionode.testing import local_context
-from tests.support.actions import Goal, PlainClient, Worker, calls_of, uuid_of
+from aionode.testing import local_context, settle
+from tests.support.actions import Goal, PlainClient, Worker, uuid_of
 from tests.support.peers import isolated_environment
+from tests.support.spies import returns_of
 
 Client = ActionClient[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
 Server = ActionServer[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
@@ -153,7 +154,7 @@ async def test_a_result_can_be_awaited_often(ends: Ends) -> None:
 
 async def test_the_status_follows_the_server(ends: Ends, monkeypatch: pytest.MonkeyPatch) -> None:
     """The handle shows what the status topic tells."""
-    updated = calls_of(monkeypatch, ClientGoalHandle, "_update_status")
+    updated = returns_of(monkeypatch, ClientGoalHandle, "_update_status")
     sent, _ = await begin(ends)
     while sent.status is not GoalStatus.EXECUTING:
         await updated.get()
@@ -233,6 +234,7 @@ async def test_the_newest_hundred_are_kept(ends: Ends) -> None:
         goal.publish_feedback(Fibonacci.Feedback(sequence=[number]))
     ends.worker.may_end.set()
     await sent.result()
+    await settle()  # feedback comes on a topic of its own
 
     assert [int(feedback.sequence[0]) async for feedback in sent] == list(range(50, 150))
 

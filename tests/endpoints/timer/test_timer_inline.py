@@ -120,6 +120,7 @@ async def test_a_callback_may_reset_its_own_timer(node: Node) -> None:
 
     timer = node.create_timer(PERIOD_S, call)
     await calls.have(4)
+    assert not timer.is_canceled()
 
 
 async def test_an_error_that_is_logged_leaves_the_timer_running(node: Node) -> None:

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 from aionode._concurrency import checkpoint
+from aionode.content_filter import ContentFilterOptions
 from aionode.context import Context
 from aionode.endpoints.subscription import MessageInfo
 from aionode.errors import ConfigurationError, ServiceUnavailableError
@@ -159,6 +160,40 @@ async def test_a_stream_goes_on_over_zenoh_when_the_link_ends_and_back_when_it_i
                 await numbers.go()
         await numbers.until_linked()
         assert numbers.subscription.stats.lost == 0
+
+
+@pytest.mark.parametrize("profile", [QoSProfile(depth=1000), KEEP_ALL])
+async def test_a_filtered_stream_loses_nothing_that_passes_when_the_link_ends(
+    profile: QoSProfile,
+) -> None:
+    """Its numbers have holes, on either route, and are sent again over Zenoh all the same."""
+    async with two_nodes() as nodes:
+        subscription = nodes.b.create_subscription(
+            Int32, "n", None, profile, content_filter_options=ContentFilterOptions("data > 0")
+        )
+        publisher = nodes.a.create_publisher(Int32, "n", profile)
+        await publisher.wait_for_subscribers()
+        number = 0
+        for node in nodes:
+            while writer_of(publisher).linked != 1:
+                number += 1
+                publisher.publish(Int32(data=number))
+                assert (await subscription.receive()).data == number
+            first = number + 1
+            for _ in range(50):
+                number += 1
+                publisher.publish(Int32(data=number if number % 5 == 0 else 0))
+                if number == first + 25:
+                    link_of(node).close()
+            number += 1
+            publisher.publish(Int32(data=number))
+            wanted = [n for n in range(first, number) if n % 5 == 0]
+            got: list[int] = []
+            while not got or got[-1] != number:
+                got.append((await subscription.receive()).data)
+            assert got == [*wanted, number]
+        assert publisher.stats.filtered > 0
+        assert subscription.stats.dropped == 0
 
 
 async def test_the_end_is_seen_where_something_is_left_to_read_and_nothing_to_write() -> None:

@@ -12,12 +12,12 @@ from typing import Any
 import pytest
 import zenoh  # noqa: TID251  # plays the other participants, without aionode
 
-from aionode._concurrency import checkpoint
 from aionode.graph import Graph
 from aionode.transport._zenoh_config import network_from
 from aionode.transport.zenoh._session import close_session, open_router
 from aionode.transport.zenoh._transport import ZenohTransport
 from tests.support.peers import DOMAIN_ID, Collector, known, raw_session, ros_router, zenoh_config
+from tests.support.spies import returns_of
 
 PATIENCE_S = 20.0
 """How long a test waits for a connection to come or go."""
@@ -187,11 +187,14 @@ async def test_a_ros_context_stays_known_after_its_last_node(heard: Heard) -> No
 
 
 @pytest.mark.parametrize("domain_id", [DOMAIN_ID, DOMAIN_ID + 1])
-async def test_a_context_is_no_stranger(heard: Heard, domain_id: int) -> None:
+async def test_a_context_is_no_stranger(
+    heard: Heard, domain_id: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Of any domain, and before it has a node."""
+    updated = returns_of(monkeypatch, heard.peer_directory, "_update")
     async with context("b2", domain_id=domain_id):
         while "b2" not in heard.peer_directory._connected:
-            await checkpoint()
+            await updated.get()
         await heard.until(False)
 
 

@@ -15,7 +15,6 @@ from typing import Any
 import pytest
 import zenoh  # noqa: TID251  # plays the other participants, without aionode
 
-from aionode._concurrency import checkpoint
 from aionode.context import Context
 from aionode.errors import QueueFullError
 from aionode.graph import EndpointInfo, EndpointKind
@@ -40,6 +39,7 @@ from tests.support.peers import (
     ros_value,
     two_contexts,
 )
+from tests.support.spies import returns_of
 
 VECTORS: dict[str, Any] = json.loads(
     Path(__file__).parents[2].joinpath("vectors", "vectors.json").read_text()
@@ -390,19 +390,23 @@ def domain_lines(caplog: pytest.LogCaptureFixture) -> list[tuple[int, str]]:
     ]
 
 
-async def test_many_other_domains_make_one_line(caplog: pytest.LogCaptureFixture) -> None:
+async def test_many_other_domains_make_one_line(
+    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """It names a few, and counts the rest; they are forgotten when they are gone."""
     with caplog.at_level(logging.DEBUG, "aionode.transport.zenoh"), raw_session() as session:
         async with quiet_node("here") as here, quiet_node("elsewhere") as near:
-            tokens = announced(session, range(200, 260))
             transport = transport_of(here)
+            added = returns_of(monkeypatch, transport._watcher, "_add")
+            removed = returns_of(monkeypatch, transport._watcher, "_remove")
+            tokens = announced(session, range(200, 260))
             while len(transport.other_domains) < 60:
-                await checkpoint()
+                await added.get()
             before = domain_lines(caplog)
             for token in tokens:
                 token.undeclare()
             while transport.other_domains:
-                await checkpoint()
+                await removed.get()
             assert near.context.ok()
 
     assert len(before) <= 2 * 2  # of each of two contexts the first, and one with ten times as many

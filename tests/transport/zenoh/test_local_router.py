@@ -1,0 +1,115 @@
+"""The router of this machine towards static peers: who opens it, and who takes its place."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from contextlib import AsyncExitStack
+
+import pytest
+
+from aionode._concurrency import checkpoint
+from aionode.context import Context
+from aionode.errors import ConfigurationError
+from aionode.transport._zenoh_config import network_from
+from aionode.transport.zenoh import _local_router as local_router
+from aionode.transport.zenoh._local_router import ROUTER_IDS, LocalRouter
+from aionode.transport.zenoh._session import answering_ports
+from aionode.transport.zenoh._session_state import SessionState
+from aionode.transport.zenoh._transport import ZenohTransport
+from tests.support.peers import ros_router
+
+LIMIT_S = 5.0
+FAR = "tcp/192.0.2.1:7447"
+"""An address for documentation: nothing answers there."""
+
+
+@pytest.fixture(autouse=True)
+def soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Do not wait for what is not there."""
+    monkeypatch.setattr(local_router, "LINKED_S", 0.0)
+
+
+def router_of(context: Context) -> LocalRouter:
+    """Return what opens a router for a context."""
+    transport = context.transports[1]
+    assert isinstance(transport, ZenohTransport)
+    return transport._local_router
+
+
+def port_of(context: Context) -> int:
+    """Return the port of a router of this machine."""
+    return context.network.router_port
+
+
+async def test_the_first_process_with_static_peers_opens_a_router() -> None:
+    """The next one finds it there, and all others with it."""
+    async with (
+        Context(static_peers=[FAR]) as first,
+        Context(static_peers=[FAR]) as second,
+        Context(),
+    ):
+        assert answering_ports([port_of(first)])
+        routers = [router_of(each)._router for each in (first, second)]
+
+        assert routers[0] is not None
+        assert routers[1] is None
+        assert str(routers[0].zid()).startswith(ROUTER_IDS)
+    assert not answering_ports([port_of(first)])
+
+
+async def until(condition: Callable[[], bool]) -> None:
+    """Wait for what a thread of Zenoh brings, which tells no loop."""
+    async with asyncio.timeout(LIMIT_S):
+        while not condition():
+            await checkpoint()
+
+
+async def test_another_process_takes_the_place_of_one_that_ended() -> None:
+    """Nobody is cut off for longer than a moment."""
+    async with AsyncExitStack() as stack:
+        first = await stack.enter_async_context(Context(static_peers=[FAR]))
+        async with AsyncExitStack() as rest:
+            second = await rest.enter_async_context(Context(static_peers=[FAR]))
+            await stack.aclose()
+            await until(lambda: router_of(second)._router is not None)
+            assert answering_ports([port_of(first)])
+
+
+async def test_beside_a_router_it_only_links_that_one() -> None:
+    """Two routers that take the same peers could both carry a message, or neither."""
+    router = await asyncio.to_thread(ros_router)
+    try:
+        async with Context(static_peers=[FAR]) as context:
+            opened = router_of(context)._router
+            assert opened is not None
+            await until(lambda: list(opened.info.routers_zid()) == [router.zid()])
+            assert not list(opened.info.peers_zid())
+    finally:
+        await asyncio.to_thread(router.close)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"static_peers": ["tcp/127.0.0.1:7999"]},
+        {"static_peers": [FAR], "discovery_range": "OFF"},
+    ],
+)
+async def test_without_peers_on_other_machines_there_is_no_router(
+    options: dict[str, object],
+) -> None:
+    """What is not asked for does not listen."""
+    async with Context(**options) as context:  # type: ignore[arg-type]
+        assert router_of(context)._router is None
+        assert not answering_ports([port_of(context)])
+
+
+async def test_a_wrong_setting_is_an_error_and_leaves_nothing_open() -> None:
+    """The session would have the same error."""
+    with pytest.raises(ConfigurationError):
+        async with Context(static_peers=[FAR], config={"no/such/key": 1}):
+            pass
+    network = network_from({})
+    assert LocalRouter(SessionState("a1", 0), network)._router is None
