@@ -52,7 +52,7 @@ class SignOfLife(Writer):
         self._note = note
 
     def write(self, msg: Any, sample_info: SampleInfo) -> None:  # noqa: ARG002  # as every writer
-        """Note a message."""
+        """Record a message."""
         if not any(writer.active for writer in self._writers):
             self._check(msg)
         self._note()

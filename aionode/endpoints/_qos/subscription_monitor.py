@@ -178,7 +178,7 @@ class SubscriptionMonitor:
     # Messages
 
     def _on_arrival(self, sample_info: SampleInfo) -> bool:
-        """Note a message; return whether it is to be delivered."""
+        """Record a message; return whether it is to be delivered."""
         if self._liveliness is not None:
             self._liveliness.note_message(sample_info.gid)
         if self._items is not None and not self._is_fresh(self._items, sample_info):

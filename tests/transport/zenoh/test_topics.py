@@ -547,3 +547,13 @@ async def test_without_a_hash_every_definition_of_a_type_is_heard() -> None:
             listener.undeclare()
         announcement.close()
         announcement.close()
+
+
+async def test_subscriptions_start_no_threads() -> None:
+    """Zenoh would start one for each subscriber, unless it may call in its own thread."""
+    async with quiet_node("many") as node:
+        before = threading.active_count()
+        for number in range(20):
+            node.create_subscription(String, f"t{number}", None, 10)
+            node.create_subscription(Image, f"i{number}", None, 10)
+        assert threading.active_count() == before
