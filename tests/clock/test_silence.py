@@ -89,7 +89,7 @@ async def test_nothing_rings_after_the_end(clock: ManualClock) -> None:
 
 
 async def test_it_works_on_the_time_of_the_machine() -> None:
-    """Where nobody steps it."""
+    """Where no test steps it."""
     rung = asyncio.Event()
 
     def ring(periods: int) -> bool:

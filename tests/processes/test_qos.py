@@ -1,4 +1,4 @@
-"""Liveliness of a process that hangs: the system runs it no more, and says nothing to anyone."""
+"""Liveliness of a process that hangs: the system runs it no more, and no peer is told."""
 
 from __future__ import annotations
 

@@ -158,7 +158,7 @@ async def test_a_deadline_is_kept_by_the_samples_that_come(
     assert waiting(events, QoSRequestedDeadlineMissedInfo) == [QoSRequestedDeadlineMissedInfo(1, 1)]
 
 
-async def test_a_publisher_keeps_its_deadline_towards_anyone(
+async def test_a_publisher_keeps_its_deadline_towards_ros_2(
     node: Node, stranger: Stranger, clock: ManualClock
 ) -> None:
     """It is the publisher's own business."""
