@@ -22,6 +22,7 @@ from aionode.transport.zenoh._assertions import Assertions
 from aionode.transport.zenoh._cancellations import Cancellations
 from aionode.transport.zenoh._handlers import translated
 from aionode.transport.zenoh._peer_senders import PeerSenders
+from aionode.transport.zenoh._sockets import look
 from aionode.wire._liveliness import gid_of
 
 if TYPE_CHECKING:
@@ -86,7 +87,7 @@ class SessionState:
         self.waker = LoopWaker()
         self.bulk = SendThread("aionode-bulk", self.waker)
         self.send_threads = {self.bulk}
-        self.peer_senders = PeerSenders(self.waker)
+        self.peer_senders = PeerSenders(self.waker, self._look)
         self.burst = Burst()
         self.acknowledgements = Acknowledgements(
             participant, domain_id, self.waker, self.note_malformed, self._readers_changed
@@ -137,6 +138,16 @@ class SessionState:
         for declaration in list(self._declarations):
             if declaration.needs_graph and self.session is not None:
                 declaration.declare(self.session)
+
+    def _look(self, participant: str) -> tuple[bool, int] | None:
+        """Return the state of the connection to a participant, as `look`; called in a thread."""
+        session = self.session
+        if session is None:
+            return None
+        try:
+            return look(session, participant)
+        except zenoh.ZError:  # the session was closed meanwhile
+            return None
 
     async def flush(self) -> None:
         """Wait until all messages were sent and acknowledged, for `FLUSH_S` at most.
