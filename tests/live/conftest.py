@@ -37,7 +37,7 @@ def find_ros() -> tuple[list[str], list[str], str]:
     if not any(prefixes) or shutil.which(ros2[0]) is None:
         return python, ros2, "no ROS 2 is sourced: source /opt/ros/<distribution>/setup.bash"
     if not any(Path(prefix, "share", "rmw_zenoh_cpp").is_dir() for prefix in prefixes):
-        return python, ros2, "rmw_zenoh_cpp is not installed: apt install ros-$ROS_DISTRO-rmw-zenoh-cpp"
+        return python, ros2, "no rmw_zenoh_cpp: apt install ros-$ROS_DISTRO-rmw-zenoh-cpp"
     return python, ros2, ""
 
 
