@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+from aionode.qos import QoSProfile
 from aionode.rclpy._rosidl import message_class, service_class
 
 __all__ = [
+    "TEN_MESSAGES",
     "UUID",
     "CancelGoal",
+    "ChangeState",
     "Clock",
     "DescribeParameters",
     "Duration",
+    "GetAvailableStates",
+    "GetAvailableTransitions",
     "GetLoggerLevels",
     "GetParameterTypes",
     "GetParameters",
+    "GetState",
     "GetTypeDescription",
     "GoalInfo",
     "GoalStatus",
+    "LifecycleState",
     "ListParameters",
     "ListParametersResult",
     "LoggerLevel",
@@ -29,6 +36,8 @@ __all__ = [
     "SetParametersAtomically",
     "SetParametersResult",
     "Time",
+    "TransitionDescription",
+    "TransitionEvent",
 ]
 
 CancelGoal = service_class("action_msgs/srv/CancelGoal")
@@ -55,3 +64,14 @@ SetLoggerLevels = service_class("rcl_interfaces/srv/SetLoggerLevels")
 SetParameters = service_class("rcl_interfaces/srv/SetParameters")
 SetParametersAtomically = service_class("rcl_interfaces/srv/SetParametersAtomically")
 GetTypeDescription = service_class("type_description_interfaces/srv/GetTypeDescription")
+
+ChangeState = service_class("lifecycle_msgs/srv/ChangeState")
+GetAvailableStates = service_class("lifecycle_msgs/srv/GetAvailableStates")
+GetAvailableTransitions = service_class("lifecycle_msgs/srv/GetAvailableTransitions")
+GetState = service_class("lifecycle_msgs/srv/GetState")
+LifecycleState = message_class("lifecycle_msgs/msg/State")
+TransitionDescription = message_class("lifecycle_msgs/msg/TransitionDescription")
+TransitionEvent = message_class("lifecycle_msgs/msg/TransitionEvent")
+
+TEN_MESSAGES = QoSProfile(depth=10)
+"""QoS of the services and topics of managed nodes."""

@@ -95,7 +95,7 @@ class ServerGoalHandle:
     @property
     def is_cancel_requested(self) -> bool:
         """Whether it is to be cancelled."""
-        return self.status == GoalStatus.STATUS_CANCELING
+        return bool(self.status == GoalStatus.STATUS_CANCELING)
 
     @property
     def status(self) -> int:
