@@ -99,7 +99,7 @@ def test_what_is_public_is_documented(name: str) -> None:
 
 
 # The modules of aionode.rclpy have rclpy's names, and rclpy's documentation describes them.
-ELSEWHERE = ("aionode.cli", "aionode.examples", "aionode.rclpy.")
+ELSEWHERE = ("aionode.cli", "aionode.examples", "aionode.rclpy")
 
 
 @pytest.mark.parametrize("name", [name for name in PUBLIC if not name.startswith(ELSEWHERE)])
