@@ -230,7 +230,8 @@ if sys.argv[1] == "spin":
     except KeyboardInterrupt:
         print("interrupted")
     except rclpy.executors.ExternalShutdownException:
-        print("shut down")
+        pass  # it was waiting; between two callbacks, `spin` returns
+    print("ended", rclpy.ok())
 if sys.argv[1] == "fail":
     node.create_timer(0.02, fail)
     rclpy.spin(node)
@@ -241,8 +242,8 @@ if sys.argv[1] == "fail":
     ("how", "number", "said", "status"),
     [
         ("exit", None, "", 0),
-        ("spin", signal.SIGINT, "spins\ninterrupted\n", 0),
-        ("spin", signal.SIGTERM, "spins\nshut down\n", 0),
+        ("spin", signal.SIGINT, "spins\ninterrupted\nended False\n", 0),
+        ("spin", signal.SIGTERM, "spins\nended False\n", 0),
         ("fail", None, "spins\n", 1),
     ],
 )
