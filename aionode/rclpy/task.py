@@ -30,7 +30,7 @@ class Stepping(threading.local):
         in_loop: The event loop of asyncio that was running, or None; False outside of tasks.
     """
 
-    in_loop: asyncio.AbstractEventLoop | None | bool = False
+    in_loop: asyncio.AbstractEventLoop | bool | None = False
 
 
 stepping = Stepping()
