@@ -39,6 +39,7 @@ async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
 
 
 def take_timer(executor: ExecutorLike, timer: Any) -> Callable[[], Any] | None:
+    """Take a call of a timer that is due."""
     try:
         with timer.handle:
             called = timer.handle.call_timer_with_info()
@@ -55,6 +56,7 @@ def take_timer(executor: ExecutorLike, timer: Any) -> Callable[[], Any] | None:
 
 
 def take_subscription(executor: ExecutorLike, subscription: Any) -> Callable[[], Any] | None:
+    """Take the next message of a subscription."""
     try:
         with subscription.handle:
             taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
@@ -68,11 +70,13 @@ def take_subscription(executor: ExecutorLike, subscription: Any) -> Callable[[],
 
 
 def take_guard_condition(executor: ExecutorLike, guard: Any) -> Callable[[], Any] | None:
+    """Take the trigger of a guard condition."""
     guard.handle.take()
     return None if guard.callback is None else partial(run, guard.callback)
 
 
 def take_client(executor: ExecutorLike, client: Any) -> Callable[[], Any] | None:
+    """Take the next response of a client."""
     try:
         with client.handle:
             header, response = client.handle.take_response(client.srv_type.Response)
@@ -93,6 +97,7 @@ def take_client(executor: ExecutorLike, client: Any) -> Callable[[], Any] | None
 
 
 def take_service(executor: ExecutorLike, service: Any) -> Callable[[], Any] | None:
+    """Take the next request of a service."""
     try:
         with service.handle:
             request, header = service.handle.service_take_request(service.srv_type.Request)
@@ -114,6 +119,7 @@ def take_service(executor: ExecutorLike, service: Any) -> Callable[[], Any] | No
 
 
 def take_waitable(executor: ExecutorLike, waitable: Any) -> Callable[[], Any] | None:
+    """Take the data of a waitable."""
     data = waitable.take_data()
 
     async def execute() -> None:

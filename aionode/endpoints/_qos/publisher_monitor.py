@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from aionode.clock._silence import SilenceAlarm
 from aionode.endpoints._qos.event_hub import EventHub
 from aionode.endpoints._qos.matching import Matching
-from aionode.endpoints._qos.silence import SilenceAlarm
 from aionode.endpoints.events import (
     PublisherEventCallbacks,
     QoSLivelinessLostInfo,
@@ -52,7 +52,7 @@ class SignOfLife(Writer):
         self._note = note
 
     def write(self, msg: Any, sample_info: SampleInfo) -> None:  # noqa: ARG002  # as every writer
-        """Note a message."""
+        """Record a message."""
         if not any(writer.active for writer in self._writers):
             self._check(msg)
         self._note()

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Protocol
 
+from aionode.clock._silence import SilenceAlarm
 from aionode.endpoints._qos.event_hub import EventHub
 from aionode.endpoints._qos.lifespan import NEVER_NS, ExpiringItems
 from aionode.endpoints._qos.liveliness import PublisherLiveliness
 from aionode.endpoints._qos.matching import Matching
-from aionode.endpoints._qos.silence import SilenceAlarm
 from aionode.endpoints.events import (
     QoSMessageLostInfo,
     QoSRequestedDeadlineMissedInfo,
@@ -178,7 +178,7 @@ class SubscriptionMonitor:
     # Messages
 
     def _on_arrival(self, sample_info: SampleInfo) -> bool:
-        """Note a message; return whether it is to be delivered."""
+        """Record a message; return whether it is to be delivered."""
         if self._liveliness is not None:
             self._liveliness.note_message(sample_info.gid)
         if self._items is not None and not self._is_fresh(self._items, sample_info):
