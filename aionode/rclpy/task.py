@@ -7,13 +7,10 @@ import sys
 import threading
 import warnings
 import weakref
-from asyncio import _get_running_loop  # unlike the public function, it does not raise
-from contextlib import suppress
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 if TYPE_CHECKING:
-    import asyncio
     from collections.abc import Callable, Generator
 
     from aionode.rclpy._protocols import ExecutorLike
@@ -21,19 +18,6 @@ if TYPE_CHECKING:
 __all__ = ["Future", "FutureState", "Task"]
 
 T = TypeVar("T")
-
-
-class Stepping(threading.local):
-    """Where the task is stepped that this thread is stepping.
-
-    Attributes:
-        in_loop: The event loop of asyncio that was running, or None; False outside of tasks.
-    """
-
-    in_loop: asyncio.AbstractEventLoop | bool | None = False
-
-
-stepping = Stepping()
 
 
 class FutureState(Enum):
@@ -71,28 +55,8 @@ class Future(Generic[T]):
 
     def __await__(self) -> Generator[Any, None, T | None]:
         while self._pending():
-            loop = _get_running_loop()
-            if loop is None or stepping.in_loop is loop:
-                yield self
-            else:  # it is no task of an executor that awaits, but one of asyncio
-                yield from self._done_in(loop)
+            yield self
         return self.result()
-
-    def _done_in(self, loop: asyncio.AbstractEventLoop) -> Generator[Any, None, None]:
-        """Let a task of asyncio wait; any thread may complete this future."""
-        waiter = loop.create_future()
-
-        def wake() -> None:
-            if not waiter.done():
-                waiter.set_result(None)
-
-        def waker() -> None:
-            # A loop that is closed has no task left that could go on.
-            with suppress(RuntimeError):
-                loop.call_soon_threadsafe(wake)
-
-        self._wake_when_done(waker)
-        yield from waiter
 
     def _pending(self) -> bool:
         return self._state is FutureState.PENDING
@@ -237,11 +201,7 @@ class Task(Future[T]):
             self._executing = True
             try:
                 if inspect.iscoroutine(self._handler):
-                    outer, stepping.in_loop = stepping.in_loop, _get_running_loop()
-                    try:
-                        awaited = self._handler.send(None)
-                    finally:
-                        stepping.in_loop = outer
+                    awaited = self._handler.send(None)
                     self._wait_for(awaited if isinstance(awaited, Future) else None)
                     return
                 result = self._handler(*self._args, **self._kwargs)
