@@ -158,8 +158,9 @@ class ROSClock(Clock):
 
     def __new__(cls, **_: Any) -> ROSClock:  # noqa: PYI034  # as in Clock
         """Create a clock of ROS time."""
-        clock = Clock.__new__(cls, clock_type=ClockType.ROS_TIME)
-        assert isinstance(clock, ROSClock)  # noqa: S101
+        clock = object.__new__(cls)
+        clock._handle = ClockHandle(ClockType.ROS_TIME.value)
+        clock._clock_type = ClockType.ROS_TIME
         return clock
 
     @property

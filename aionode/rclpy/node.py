@@ -131,7 +131,7 @@ class Node(NodeParameters, NodeGraph):
                 as_profile(rosout_qos_profile),
             )
         self._logger = get_logger(self._handle.logger_name())
-        self._clock = ROSClock()
+        self._clock = self._make_clock()
         self._parameter_event_publisher = self.create_publisher(
             msg.ParameterEvent, "/parameter_events", qos_profile_parameter_events
         )
@@ -155,6 +155,10 @@ class Node(NodeParameters, NodeGraph):
             self._logger_service = LoggingService(self)
         self._type_description_service = TypeDescriptionService(self)
         self._context.track_node(self)
+
+    def _make_clock(self) -> ROSClock:
+        """Return the clock of a new node."""
+        return ROSClock()
 
     @property
     def context(self) -> Context:

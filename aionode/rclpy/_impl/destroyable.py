@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from _thread import allocate_lock
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Protocol, Self
 
 from aionode.rclpy._impl.errors import InvalidHandle
 
@@ -46,6 +46,13 @@ class Wakeup:
         return self._lock.acquire(timeout=min(timeout_sec, LONGEST_WAIT_S))
 
 
+class Wakeable(Protocol):
+    """What a `Signal` wakes."""
+
+    def wake(self) -> None:
+        """Look again."""
+
+
 class Signal:
     """Tells the threads that wait for an entity, or for any entity of a node, to look again."""
 
@@ -53,13 +60,13 @@ class Signal:
 
     def __init__(self) -> None:
         # Replaced, never changed: it is read without a lock.
-        self._wakeups: tuple[Wakeup, ...] = ()
+        self._wakeups: tuple[Wakeable, ...] = ()
 
-    def add(self, wakeup: Wakeup) -> None:
+    def add(self, wakeup: Wakeable) -> None:
         """Wake `wakeup` from now on, once more for each time it is added."""
         self._wakeups = (*self._wakeups, wakeup)
 
-    def remove(self, wakeup: Wakeup) -> None:
+    def remove(self, wakeup: Wakeable) -> None:
         """Undo one `add`; without one nothing happens."""
         rest = list(self._wakeups)
         if wakeup in rest:
