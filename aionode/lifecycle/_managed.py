@@ -6,7 +6,7 @@ import functools
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from aionode.errors import EntityInactiveError
-from aionode.lifecycle._states import TransitionCallbackReturn
+from aionode.lifecycle.states import TransitionCallbackReturn
 from aionode.message import Message
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from aionode.endpoints.publisher import Publisher
     from aionode.endpoints.stats import PublisherStats
     from aionode.endpoints.timer import Timer
-    from aionode.lifecycle._states import State
+    from aionode.lifecycle.states import State
     from aionode.qos import QoSProfile
 
 __all__ = ["LifecyclePublisher", "LifecycleTimer", "ManagedEntity", "SimpleManagedEntity"]

@@ -2,50 +2,30 @@
 
 from __future__ import annotations
 
+import threading
 from dataclasses import dataclass
-from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
+from aionode.clock import S_TO_NS
+from aionode.endpoints.actions.goal import (
+    GoalEvent,
+    GoalKey,
+    GoalStatus,
+    candidates,
+    next_status,
+)
+from aionode.errors import GoalTransitionError
 from aionode.rclpy._impl.destroyable import Destroyable
 from aionode.rclpy._impl.errors import RCLError
-from aionode.rclpy._impl.messages import CancelGoal, GoalInfo, GoalStatus
 from aionode.rclpy._impl.services import ClientHandle, ServiceHandle
 from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle
+from aionode.rclpy._impl.typesupport import message_like
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from aionode.rclpy._impl.node import NodeHandle
     from aionode.rclpy._impl.timers import ClockHandle
 
 __all__ = ["ActionClientHandle", "ActionServerHandle", "Expiry", "GoalEvent", "GoalState"]
-
-
-class GoalEvent(IntEnum):
-    """What can happen to a goal."""
-
-    EXECUTE = 0
-    CANCEL_GOAL = 1
-    SUCCEED = 2
-    ABORT = 3
-    CANCELED = 4
-
-
-ACTIVE = (GoalStatus.STATUS_ACCEPTED, GoalStatus.STATUS_EXECUTING, GoalStatus.STATUS_CANCELING)
-
-RUNNING = (GoalStatus.STATUS_EXECUTING, GoalStatus.STATUS_CANCELING)
-
-MOVES: dict[GoalEvent, tuple[Sequence[int], int]] = {
-    GoalEvent.EXECUTE: ((GoalStatus.STATUS_ACCEPTED,), GoalStatus.STATUS_EXECUTING),
-    GoalEvent.CANCEL_GOAL: (
-        (GoalStatus.STATUS_ACCEPTED, GoalStatus.STATUS_EXECUTING),
-        GoalStatus.STATUS_CANCELING,
-    ),
-    GoalEvent.SUCCEED: (RUNNING, GoalStatus.STATUS_SUCCEEDED),
-    GoalEvent.ABORT: (RUNNING, GoalStatus.STATUS_ABORTED),
-    GoalEvent.CANCELED: ((GoalStatus.STATUS_CANCELING,), GoalStatus.STATUS_CANCELED),
-}
-"""By event: the states in which it is possible, and the state that follows."""
 
 
 @dataclass(eq=False)
@@ -59,13 +39,13 @@ class GoalState:
     """
 
     info: Any
-    status: int = GoalStatus.STATUS_ACCEPTED
+    status: GoalStatus = GoalStatus.ACCEPTED
     ended_ns: int = 0
 
     @property
     def is_active(self) -> bool:
         """Whether it has not ended."""
-        return self.status in ACTIVE
+        return self.status.is_active
 
     def update(self, event: GoalEvent) -> None:
         """Change the state.
@@ -73,13 +53,16 @@ class GoalState:
         Raises:
             RCLError: that cannot happen in the present state.
         """
-        possible, following = MOVES[event]
-        if self.status not in possible:
-            raise RCLError(
-                "Failed to update goal state: goal_handle attempted invalid transition from state "
-                f"{self.status} with event {event.name}"
-            )
-        self.status = following
+        try:
+            self.status = next_status(self.status, event, bytes(self.info.goal_id.uuid).hex())
+        except GoalTransitionError as error:
+            raise RCLError(f"Failed to update goal state: {error}") from error
+
+
+def goal_key(info: Any, status: GoalStatus = GoalStatus.UNKNOWN) -> GoalKey:
+    """Return what cancel requests select a goal by."""
+    stamp_ns = info.stamp.sec * S_TO_NS + info.stamp.nanosec
+    return GoalKey(bytes(info.goal_id.uuid), stamp_ns, status)
 
 
 class Parts(Destroyable):
@@ -191,7 +174,10 @@ class ActionServerHandle(Parts):
         name = f"{node.resolve(action_name)}/_action"
         self._clock = clock
         self._timeout_ns = int(result_timeout * 1e9)
-        self._status_type = impl.GoalStatusMessage
+        self.action_type = action_type
+        self._status_message = message_like(action_type, "action_msgs/msg/GoalStatus")
+        # Held until the states are sent: none may arrive after a newer one.
+        self._status_lock = threading.Lock()
         self.goals: dict[bytes, GoalState] = {}
         self.goal = ServiceHandle(node, impl.SendGoalService, f"{name}/send_goal", goal_qos)
         self.parts.append(self.goal)
@@ -214,20 +200,20 @@ class ActionServerHandle(Parts):
         Raises:
             RCLError: there is one of this id.
         """
-        goal_id = bytes(info.goal_id.uuid)
-        if goal_id in self.goals:
+        state = GoalState(info)
+        if self.goals.setdefault(bytes(info.goal_id.uuid), state) is not state:
             raise RCLError("Failed to accept new goal: goal ID already exists")
-        state = self.goals[goal_id] = GoalState(info)
         return state
 
     def publish_status(self) -> None:
         """Publish the states of all goals."""
-        message = self._status_type()
-        message.status_list = [
-            GoalStatus(goal_info=goal.info, status=goal.status)
-            for goal in list(self.goals.values())
-        ]
-        self.status.publish(message)
+        with self._status_lock:
+            message = self.action_type.Impl.GoalStatusMessage()
+            message.status_list = [
+                self._status_message(goal_info=goal.info, status=int(goal.status))
+                for goal in list(self.goals.values())
+            ]
+            self.status.publish(message)
 
     def notify_goal_done(self) -> None:
         """Note which goals have ended, to forget them after the time for results."""
@@ -254,42 +240,20 @@ class ActionServerHandle(Parts):
         return [goal.info for _, goal in over]
 
     def process_cancel_request(self, request: Any) -> Any:
-        """Return the response to a request to cancel: the goals that it concerns.
+        """Return the response to a request to cancel: the goals that its id and time select.
 
-        An id alone means that goal; a time alone all goals accepted until then; both together
-        either; none of them all goals.
+        The rules are those of `aionode.endpoints.actions.goal.candidates`.
         """
-        response = CancelGoal.Response()
-        wanted = bytes(request.goal_info.goal_id.uuid)
-        stamp = request.goal_info.stamp
-        until = (stamp.sec, stamp.nanosec)
-        has_id, has_stamp = any(wanted), any(until)
-        if has_id and not has_stamp:
-            goal = self.goals.get(wanted)
-            if goal is None:
-                response.return_code = CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID
-                return response
-            if not is_cancelable(goal):
-                response.return_code = CancelGoal.Response.ERROR_GOAL_TERMINATED
-                return response
-        concerned = []
-        for goal_id, goal in self.goals.items():
-            accepted = (goal.info.stamp.sec, goal.info.stamp.nanosec)
-            if is_cancelable(goal) and (
-                not (has_id or has_stamp)
-                or (has_id and goal_id == wanted)
-                or (has_stamp and accepted <= until)
-            ):
-                concerned.append(GoalInfo(goal_id=goal.info.goal_id, stamp=goal.info.stamp))
-        response.goals_canceling = concerned
+        code, selected = candidates(
+            [goal_key(goal.info, goal.status) for goal in list(self.goals.values())],
+            goal_key(request.goal_info),
+        )
+        response = self.action_type.Impl.CancelGoalService.Response()
+        response.return_code = int(code)
+        response.goals_canceling = [self.goals[goal_id].info for goal_id in selected]
         return response
 
     def configure_introspection(self, clock: ClockHandle, qos_profile: Any, state: Any) -> None:
         """Tell of the calls of the three services."""
         for service in (self.goal, self.result, self.cancel):
             service.configure_introspection(clock, qos_profile, state)
-
-
-def is_cancelable(goal: GoalState) -> bool:
-    """Whether a goal can be cancelled now."""
-    return goal.status in MOVES[GoalEvent.CANCEL_GOAL][0]

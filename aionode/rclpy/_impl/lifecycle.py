@@ -2,96 +2,34 @@
 
 from __future__ import annotations
 
-from enum import IntEnum
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
+from aionode.lifecycle.states import STATES, TRANSITIONS, StateMachine, TransitionCallbackReturn
 from aionode.rclpy._impl import messages as msg
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._impl.services import ServiceHandle
 from aionode.rclpy._impl.topics import PublisherHandle
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
+    from aionode.lifecycle.states import Transition
     from aionode.rclpy._impl.node import NodeHandle
 
-__all__ = ["LifecycleStateMachine", "Transition", "TransitionCallbackReturn"]
+__all__ = ["LifecycleStateMachine", "TransitionCallbackReturn"]
 
-STATES = {
-    0: "unknown",
-    1: "unconfigured",
-    2: "inactive",
-    3: "active",
-    4: "finalized",
-    10: "configuring",
-    11: "cleaningup",
-    12: "shuttingdown",
-    13: "activating",
-    14: "deactivating",
-    15: "errorprocessing",
-}
-
-UNCONFIGURED, INACTIVE, ACTIVE, FINALIZED = 1, 2, 3, 4
-CONFIGURING, CLEANINGUP, SHUTTINGDOWN, ACTIVATING, DEACTIVATING, ERRORPROCESSING = range(10, 16)
-
-OUTCOMES = ("transition_success", "transition_failure", "transition_error")
+Description = tuple[int, str, int, str, int, str]
 
 
-class TransitionCallbackReturn(IntEnum):
-    """What a callback of a transition returns."""
-
-    SUCCESS = 97
-    FAILURE = 98
-    ERROR = 99
-
-    def to_label(self) -> str:
-        """Return the label of the transition that follows."""
-        return f"transition_{self.name.lower()}"
-
-
-class Transition(NamedTuple):
-    """One transition.
-
-    Attributes:
-        id: Its number.
-        label: Its name.
-        start: The state in which it begins.
-        goal: The state that follows.
-    """
-
-    id: int
-    label: str
-    start: int
-    goal: int
-
-    def described(self) -> tuple[int, str, int, str, int, str]:
-        """Return it with the names of its states, as rclpy's extension does."""
-        return (self.id, self.label, self.start, STATES[self.start], self.goal, STATES[self.goal])
-
-
-def transitions() -> Iterator[Transition]:
-    """Yield all transitions, in rcl's order."""
-    # For each: how it begins, and the states that follow success, failure and error.
-    for number, label, start, between, outcomes in (
-        (1, "configure", UNCONFIGURED, CONFIGURING, (INACTIVE, UNCONFIGURED, ERRORPROCESSING)),
-        (2, "cleanup", INACTIVE, CLEANINGUP, (UNCONFIGURED, INACTIVE, ERRORPROCESSING)),
-        (3, "activate", INACTIVE, ACTIVATING, (ACTIVE, INACTIVE, ERRORPROCESSING)),
-        (4, "deactivate", ACTIVE, DEACTIVATING, (INACTIVE, ACTIVE, ERRORPROCESSING)),
-    ):
-        yield Transition(number, label, start, between)
-        for offset, (outcome, goal) in enumerate(zip(OUTCOMES, outcomes, strict=True)):
-            yield Transition(10 * number + offset, outcome, between, goal)
-    for number, start in ((5, UNCONFIGURED), (6, INACTIVE), (7, ACTIVE)):
-        yield Transition(number, "shutdown", start, SHUTTINGDOWN)
-    for first, between, outcomes in (
-        (50, SHUTTINGDOWN, (FINALIZED, FINALIZED, ERRORPROCESSING)),
-        (60, ERRORPROCESSING, (UNCONFIGURED, FINALIZED, FINALIZED)),
-    ):
-        for offset, (outcome, goal) in enumerate(zip(OUTCOMES, outcomes, strict=True)):
-            yield Transition(first + offset, outcome, between, goal)
-
-
-TRANSITIONS = tuple(transitions())
+def described(transition: Transition) -> Description:
+    """Return a transition as rclpy's extension does: numbers and names."""
+    start, goal = transition.start, transition.goal
+    return (
+        transition.transition_id,
+        transition.label,
+        start.state_id,
+        start.label,
+        goal.state_id,
+        goal.label,
+    )
 
 
 class LifecycleStateMachine:
@@ -117,7 +55,7 @@ class LifecycleStateMachine:
                 f"{type(enable_communication_interface).__name__}"
             )
         self.initialized = True
-        self._state = UNCONFIGURED
+        self._machine = StateMachine()
         self._events = PublisherHandle(
             node, msg.TransitionEvent, "~/transition_event", msg.TEN_MESSAGES
         )
@@ -140,22 +78,23 @@ class LifecycleStateMachine:
     @property
     def current_state(self) -> tuple[int, str]:
         """The state: number and name."""
-        return self._state, STATES[self._state]
+        state = self._machine.state
+        return state.state_id, state.label
 
     @property
     def available_states(self) -> list[tuple[int, str]]:
         """All states."""
-        return list(STATES.items())
+        return [(state.state_id, state.label) for state in STATES]
 
     @property
-    def available_transitions(self) -> list[tuple[int, str, int, str, int, str]]:
+    def available_transitions(self) -> list[Description]:
         """The transitions that are possible now."""
-        return [each.described() for each in TRANSITIONS if each.start == self._state]
+        return [described(each) for each in self._machine.available()]
 
     @property
-    def transition_graph(self) -> list[tuple[int, str, int, str, int, str]]:
+    def transition_graph(self) -> list[Description]:
         """All transitions."""
-        return [each.described() for each in TRANSITIONS]
+        return [described(each) for each in TRANSITIONS]
 
     def get_transition_by_label(self, label: str) -> int:
         """Return the number of the transition of this name that is possible now.
@@ -163,12 +102,12 @@ class LifecycleStateMachine:
         Raises:
             RCLError: there is none.
         """
-        for transition in TRANSITIONS:
-            if transition.start == self._state and transition.label == label:
-                return transition.id
-        raise RCLError(
-            f"Transition with label '{label}' is not possible in state {STATES[self._state]}"
-        )
+        transition = self._machine.find(label)
+        if transition is None:
+            raise RCLError(
+                f"Transition with label '{label}' is not possible in state {self._machine.state}"
+            )
+        return transition.transition_id
 
     def trigger_transition_by_id(self, transition_id: int, publish: bool) -> None:
         """Change the state.
@@ -176,21 +115,19 @@ class LifecycleStateMachine:
         Raises:
             RCLError: the transition is not possible now.
         """
-        for transition in TRANSITIONS:
-            if transition.start == self._state and transition.id == transition_id:
-                break
-        else:
+        transition = self._machine.find(transition_id=transition_id)
+        if transition is None:
             raise RCLError(
-                f"Transition {transition_id} is not possible in state {STATES[self._state]}"
+                f"Transition {transition_id} is not possible in state {self._machine.state}"
             )
-        self._state = transition.goal
+        self._machine.state = transition.goal
         if publish:
             event = msg.TransitionEvent()
-            event.start_state.id, event.start_state.label = (
-                transition.start,
-                STATES[transition.start],
-            )
-            event.goal_state.id, event.goal_state.label = transition.goal, STATES[transition.goal]
+            for state, message in (
+                (transition.start, event.start_state),
+                (transition.goal, event.goal_state),
+            ):
+                message.id, message.label = state.state_id, state.label
             self._events.publish(event)
 
     def trigger_transition_by_label(self, label: str, publish: bool) -> None:

@@ -17,6 +17,7 @@ __all__ = [
     "ServiceSupport",
     "aionode_class",
     "expect_message",
+    "message_like",
     "message_support",
     "ros_name",
     "service_support",
@@ -64,6 +65,12 @@ def ros_name(cls: Any) -> str:
 def aionode_class(cls: Any) -> Any:
     """Return aionode's class of the same type."""
     return cls if is_own(cls) else _rosidl.aionode_class(cls)
+
+
+def message_like(cls: Any, name: str) -> Any:
+    """Return the message class with a ROS name that is of the same family as `cls`."""
+    found = _rosidl.message_class(name)
+    return _rosidl.aionode_class(found) if is_own(cls) else found
 
 
 @cache

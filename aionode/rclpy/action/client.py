@@ -5,12 +5,12 @@ from __future__ import annotations
 import threading
 import uuid
 import weakref
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic
 
 from aionode.clock import MachineTime
+from aionode.endpoints.actions.goal import GoalStatus
 from aionode.rclpy._impl.actions import ActionClientHandle
 from aionode.rclpy._impl.destroyable import Wakeup
-from aionode.rclpy._impl.messages import UUID, CancelGoal, GoalStatus
 from aionode.rclpy.executors import await_or_execute
 from aionode.rclpy.qos import (
     QoSProfile,
@@ -18,7 +18,7 @@ from aionode.rclpy.qos import (
     qos_profile_services_default,
 )
 from aionode.rclpy.task import Future
-from aionode.rclpy.type_support import check_for_type_support
+from aionode.rclpy.type_support import FeedbackT, GoalT, ResultT, check_for_type_support
 from aionode.rclpy.waitable import NumberOfEntities, Waitable
 
 if TYPE_CHECKING:
@@ -39,19 +39,24 @@ FEEDBACK_QOS = QoSProfile(depth=10)
 CHECK_S = 0.05
 """How often `wait_for_server` looks."""
 
-ENDED = (GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED, GoalStatus.STATUS_ABORTED)
+ENDED = (GoalStatus.SUCCEEDED, GoalStatus.CANCELED, GoalStatus.ABORTED)
 
 steady_ns = MachineTime().steady_ns
 
 
-class ClientGoalHandle:
+class ClientGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
     """A goal that was sent, and the server's answer to it."""
 
-    def __init__(self, action_client: ActionClient, goal_id: Any, goal_response: Any) -> None:
+    def __init__(
+        self,
+        action_client: ActionClient[GoalT, ResultT, FeedbackT],
+        goal_id: Any,
+        goal_response: Any,
+    ) -> None:
         self._action_client = action_client
         self._goal_id = goal_id
         self._goal_response = goal_response
-        self._status: int = GoalStatus.STATUS_UNKNOWN
+        self._status = int(GoalStatus.UNKNOWN)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, ClientGoalHandle) and self._goal_id == other._goal_id
@@ -110,7 +115,7 @@ def blocked(future: Future[Any]) -> Any:
     return future.result()
 
 
-class ActionClient(Waitable[dict[str, Any]]):
+class ActionClient(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT]):
     """Sends goals to an action server.
 
     Args:
@@ -151,7 +156,7 @@ class ActionClient(Waitable[dict[str, Any]]):
                 feedback_sub_qos_profile,
                 status_sub_qos_profile,
             )
-        self._goal_handles: dict[bytes, weakref.ref[ClientGoalHandle]] = {}
+        self._goal_handles: dict[bytes, weakref.ref[ClientGoalHandle[Any, Any, Any]]] = {}
         # Of each service: the futures by the number of the request.
         self._pending_goal_requests: dict[int, Future[Any]] = {}
         self._pending_cancel_requests: dict[int, Future[Any]] = {}
@@ -194,7 +199,10 @@ class ActionClient(Waitable[dict[str, Any]]):
                 f"Expected goal type ({self._action_type.Goal}) but received ({type(goal)})"
             )
         request = self._action_type.Impl.SendGoalService.Request()
-        request.goal_id = self._generate_random_uuid() if goal_uuid is None else goal_uuid
+        if goal_uuid is None:
+            request.goal_id.uuid = list(uuid.uuid4().bytes)
+        else:
+            request.goal_id = goal_uuid
         request.goal = goal
         if feedback_callback is not None:
             self._feedback_callbacks[bytes(request.goal_id.uuid)] = feedback_callback
@@ -206,13 +214,13 @@ class ActionClient(Waitable[dict[str, Any]]):
         self._track(future, self._pending_goal_requests, sequence)
         return future
 
-    def _cancel_goal_async(self, goal_handle: ClientGoalHandle) -> Future[Any]:
+    def _cancel_goal_async(self, goal_handle: ClientGoalHandle[Any, Any, Any]) -> Future[Any]:
         expect_goal_handle(goal_handle)
-        request = CancelGoal.Request()
+        request = self._action_type.Impl.CancelGoalService.Request()
         request.goal_info.goal_id = goal_handle.goal_id
         return self._send(self._client_handle.cancel, request, self._pending_cancel_requests)
 
-    def _get_result_async(self, goal_handle: ClientGoalHandle) -> Future[Any]:
+    def _get_result_async(self, goal_handle: ClientGoalHandle[Any, Any, Any]) -> Future[Any]:
         expect_goal_handle(goal_handle)
         request = self._action_type.Impl.GetResultService.Request()
         request.goal_id = goal_handle.goal_id
@@ -242,9 +250,6 @@ class ActionClient(Waitable[dict[str, Any]]):
                     self._goal_ids.pop(sequence, None)
 
         future.add_done_callback(forget)
-
-    def _generate_random_uuid(self) -> Any:
-        return UUID(uuid=list(uuid.uuid4().bytes))
 
     # What executors call
 
@@ -301,8 +306,10 @@ class ActionClient(Waitable[dict[str, Any]]):
             self._warn_of_unexpected("goal")
             return
         handle = ClientGoalHandle(self, self._goal_ids[sequence], response)
-        if handle.accepted:
-            goal_id = bytes(handle.goal_id.uuid)
+        goal_id = bytes(handle.goal_id.uuid)
+        if not handle.accepted:
+            self._feedback_callbacks.pop(goal_id, None)
+        else:
             if goal_id in self._goal_handles:
                 raise RuntimeError(f"Two goals were accepted with the same ID ({handle})")
             self._goal_handles[goal_id] = weakref.ref(handle)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import threading
 import traceback as tracebacks
-from enum import Enum
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic
 
-from aionode.rclpy._impl.actions import ActionServerHandle, GoalEvent, GoalState
+from aionode.endpoints.actions.goal import CancelResponse, GoalEvent, GoalResponse, GoalStatus
+from aionode.rclpy._impl.actions import ActionServerHandle, GoalState
 from aionode.rclpy._impl.errors import RCLError
-from aionode.rclpy._impl.messages import GoalInfo, GoalStatus
+from aionode.rclpy._impl.typesupport import message_like
 from aionode.rclpy.executors import await_or_execute
 from aionode.rclpy.qos import (
     QoSProfile,
@@ -18,7 +18,7 @@ from aionode.rclpy.qos import (
     qos_profile_services_default,
 )
 from aionode.rclpy.task import Future
-from aionode.rclpy.type_support import check_for_type_support
+from aionode.rclpy.type_support import FeedbackT, GoalT, ResultT, check_for_type_support
 from aionode.rclpy.waitable import NumberOfEntities, Waitable
 
 if TYPE_CHECKING:
@@ -46,24 +46,15 @@ __all__ = [
 FEEDBACK_QOS = QoSProfile(depth=10)
 
 
-class GoalResponse(Enum):
-    """What a goal callback answers."""
-
-    REJECT = 1
-    ACCEPT = 2
-
-
-class CancelResponse(Enum):
-    """What a cancel callback answers."""
-
-    REJECT = 1
-    ACCEPT = 2
-
-
-class ServerGoalHandle:
+class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
     """A goal that was accepted."""
 
-    def __init__(self, action_server: ActionServer, goal_info: Any, goal_request: Any) -> None:
+    def __init__(
+        self,
+        action_server: ActionServer[GoalT, ResultT, FeedbackT],
+        goal_info: Any,
+        goal_request: Any,
+    ) -> None:
         self._goal_handle: GoalState | None = action_server._handle.add_goal(goal_info)
         self._action_server = action_server
         self._goal_info = goal_info
@@ -95,16 +86,14 @@ class ServerGoalHandle:
     @property
     def is_cancel_requested(self) -> bool:
         """Whether it is to be cancelled."""
-        return bool(self.status == GoalStatus.STATUS_CANCELING)
+        return self.status == GoalStatus.CANCELING
 
     @property
     def status(self) -> int:
         """Its state."""
         with self._lock:
-            if self._goal_handle is None:
-                unknown: int = GoalStatus.STATUS_UNKNOWN
-                return unknown
-            return self._goal_handle.status
+            state = self._goal_handle
+            return int(GoalStatus.UNKNOWN if state is None else state.status)
 
     def _update_state(self, event: GoalEvent) -> None:
         with self._lock:
@@ -115,7 +104,7 @@ class ServerGoalHandle:
             if not self._goal_handle.is_active:
                 self._action_server.notify_goal_done()
 
-    def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
+    def execute(self, execute_callback: Callable[[AnyGoalHandle], Any] | None = None) -> None:
         """Have an executor call the execute callback; by default that of the server."""
         if not self.is_cancel_requested:  # else the callback itself finds out
             self._update_state(GoalEvent.EXECUTE)
@@ -155,7 +144,10 @@ class ServerGoalHandle:
             self._goal_handle = None
 
 
-def default_handle_accepted_callback(goal_handle: ServerGoalHandle) -> None:
+AnyGoalHandle = ServerGoalHandle[Any, Any, Any]
+
+
+def default_handle_accepted_callback(goal_handle: AnyGoalHandle) -> None:
     """Execute the goal at once."""
     goal_handle.execute()
 
@@ -170,7 +162,7 @@ def default_cancel_callback(cancel_request: Any) -> CancelResponse:
     return CancelResponse.REJECT
 
 
-class ActionServer(Waitable[dict[str, Any]]):
+class ActionServer(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT]):
     """Executes goals.
 
     Args:
@@ -193,14 +185,14 @@ class ActionServer(Waitable[dict[str, Any]]):
         node: Node,
         action_type: Any,
         action_name: str,
-        execute_callback: Callable[[ServerGoalHandle], Any],
+        execute_callback: Callable[[AnyGoalHandle], Any],
         *,
         callback_group: CallbackGroup | None = None,
         goal_callback: Callable[[Any], Any] | None = default_goal_callback,
         handle_accepted_callback: (
-            Callable[[ServerGoalHandle], Any] | None
+            Callable[[AnyGoalHandle], Any] | None
         ) = default_handle_accepted_callback,
-        cancel_callback: Callable[[ServerGoalHandle], Any] | None = default_cancel_callback,
+        cancel_callback: Callable[[AnyGoalHandle], Any] | None = default_cancel_callback,
         goal_service_qos_profile: QoSProfile = qos_profile_services_default,
         result_service_qos_profile: QoSProfile = qos_profile_services_default,
         cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
@@ -230,7 +222,7 @@ class ActionServer(Waitable[dict[str, Any]]):
                 status_pub_qos_profile,
                 result_timeout,
             )
-        self._goal_handles: dict[bytes, ServerGoalHandle] = {}
+        self._goal_handles: dict[bytes, AnyGoalHandle] = {}
         self._result_futures: dict[bytes, Future[Any]] = {}
         self._logger = node.get_logger().get_child("action_server")
         node.add_waitable(self)
@@ -244,7 +236,7 @@ class ActionServer(Waitable[dict[str, Any]]):
 
     async def _execute_goal_request(self, header: Any, request: Any) -> None:
         goal_id = request.goal_id
-        info = GoalInfo()
+        info = message_like(self._action_type, "action_msgs/msg/GoalInfo")()
         info.goal_id = goal_id
         accepted = False
         if bytes(goal_id.uuid) not in self._handle.goals:
@@ -264,11 +256,11 @@ class ActionServer(Waitable[dict[str, Any]]):
             self._handle.publish_status()
             await await_or_execute(self._handle_accepted_callback, goal_handle)
 
-    def _accept(self, info: Any, goal: Any) -> ServerGoalHandle | None:
+    def _accept(self, info: Any, goal: Any) -> AnyGoalHandle | None:
         info.stamp = self._node.get_clock().now().to_msg()
         try:
             with self._lock:
-                goal_handle = ServerGoalHandle(self, info, goal)
+                goal_handle: AnyGoalHandle = ServerGoalHandle(self, info, goal)
         except RCLError as error:
             self._logger.error(  # noqa: TRY400  # as above
                 f"Failed to accept new goal with ID {info.goal_id.uuid}: {error}"
@@ -282,9 +274,13 @@ class ActionServer(Waitable[dict[str, Any]]):
         return goal_handle
 
     async def _execute_goal(
-        self, execute_callback: Callable[[ServerGoalHandle], Any], goal_handle: ServerGoalHandle
+        self,
+        execute_callback: Callable[[AnyGoalHandle], Any],
+        goal_handle: AnyGoalHandle,
     ) -> None:
         goal_id = goal_handle.goal_id.uuid
+        # Kept, as the goal may expire before the callback returns, while clients wait.
+        future = self._result_futures[bytes(goal_id)]
         try:
             result = await await_or_execute(execute_callback, goal_handle)
         except Exception as error:  # noqa: BLE001  # the client gets an empty result
@@ -299,9 +295,7 @@ class ActionServer(Waitable[dict[str, Any]]):
         response = self._action_type.Impl.GetResultService.Response()
         response.status = goal_handle.status
         response.result = result
-        future = self._result_futures.get(bytes(goal_id))
-        if future is not None:  # it may have expired
-            future.set_result(response)
+        future.set_result(response)
 
     async def _execute_cancel_request(self, header: Any, request: Any) -> None:
         with self._lock:
@@ -331,7 +325,7 @@ class ActionServer(Waitable[dict[str, Any]]):
                 f"Sending result response for unknown or expired goal ID: {request.goal_id.uuid}"
             )
             response = self._action_type.Impl.GetResultService.Response()
-            response.status = GoalStatus.STATUS_UNKNOWN
+            response.status = int(GoalStatus.UNKNOWN)
             self._handle.result.service_send_response(response, header.request_id)
             return
         future.add_done_callback(partial(self._send_result_response, header))
@@ -379,10 +373,16 @@ class ActionServer(Waitable[dict[str, Any]]):
 
     async def execute(self, taken_data: dict[str, Any]) -> None:
         """Answer requests, and forget goals."""
-        if "goal" in taken_data:
-            await self._execute_goal_request(*taken_data["goal"])
-        if "cancel" in taken_data:
-            await self._execute_cancel_request(*taken_data["cancel"])
+        for name, service, answer in (
+            ("goal", self._handle.goal, self._execute_goal_request),
+            ("cancel", self._handle.cancel, self._execute_cancel_request),
+        ):
+            if name in taken_data:
+                header, request = taken_data[name]
+                try:
+                    await answer(header, request)
+                finally:  # a callback of the user's may have failed
+                    service.give_up(header.request_id)
         if "result" in taken_data:
             self._execute_get_result_request(*taken_data["result"])
         if "expired" in taken_data:
@@ -411,8 +411,8 @@ class ActionServer(Waitable[dict[str, Any]]):
 
     def notify_execute(
         self,
-        goal_handle: ServerGoalHandle,
-        execute_callback: Callable[[ServerGoalHandle], Any] | None,
+        goal_handle: AnyGoalHandle,
+        execute_callback: Callable[[AnyGoalHandle], Any] | None,
     ) -> None:
         """Have the executor call a callback with a goal; by default that of the server."""
         executor = self._node.executor
@@ -429,7 +429,7 @@ class ActionServer(Waitable[dict[str, Any]]):
     # Callbacks
 
     def register_handle_accepted_callback(
-        self, handle_accepted_callback: Callable[[ServerGoalHandle], Any] | None
+        self, handle_accepted_callback: Callable[[AnyGoalHandle], Any] | None
     ) -> None:
         """Call this with each accepted goal; None for the default."""
         self._handle_accepted_callback = (
@@ -441,14 +441,12 @@ class ActionServer(Waitable[dict[str, Any]]):
         self._goal_callback = goal_callback or default_goal_callback
 
     def register_cancel_callback(
-        self, cancel_callback: Callable[[ServerGoalHandle], Any] | None
+        self, cancel_callback: Callable[[AnyGoalHandle], Any] | None
     ) -> None:
         """Ask this whether a goal may be cancelled; None for the default."""
         self._cancel_callback = cancel_callback or default_cancel_callback
 
-    def register_execute_callback(
-        self, execute_callback: Callable[[ServerGoalHandle], Any]
-    ) -> None:
+    def register_execute_callback(self, execute_callback: Callable[[AnyGoalHandle], Any]) -> None:
         """Call this to execute goals.
 
         Raises:
@@ -472,9 +470,9 @@ class ActionServer(Waitable[dict[str, Any]]):
 
     def destroy(self) -> None:
         """Destroy it; what it executes goes on, without effect on clients."""
-        for goal_handle in self._goal_handles.values():
+        for goal_handle in list(self._goal_handles.values()):
             goal_handle.destroy()
-        for result in self._result_futures.values():
+        for result in list(self._result_futures.values()):
             self.remove_future(result)
         self._handle.destroy_when_not_in_use()
         self._node.remove_waitable(self)
