@@ -11,13 +11,22 @@ from enum import Enum
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator
+    from collections.abc import Callable, Coroutine, Generator
 
     from aionode.rclpy._protocols import ExecutorLike
 
 __all__ = ["Future", "FutureState", "Task"]
 
 T = TypeVar("T")
+
+
+class Stepping(threading.local):
+    """Which task this thread takes one step on."""
+
+    task: Task[Any] | None = None
+
+
+stepping = Stepping()
 
 
 class FutureState(Enum):
@@ -55,7 +64,10 @@ class Future(Generic[T]):
 
     def __await__(self) -> Generator[Any, None, T | None]:
         while self._pending():
-            yield self
+            task = stepping.task
+            if task is not None:
+                task._awaited = self
+            yield  # whatever else steps coroutines, such as asyncio, comes back at once
         return self.result()
 
     def _pending(self) -> bool:
@@ -201,8 +213,7 @@ class Task(Future[T]):
             self._executing = True
             try:
                 if inspect.iscoroutine(self._handler):
-                    awaited = self._handler.send(None)
-                    self._wait_for(awaited if isinstance(awaited, Future) else None)
+                    self._step(self._handler)
                     return
                 result = self._handler(*self._args, **self._kwargs)
             except StopIteration as stop:
@@ -217,13 +228,20 @@ class Task(Future[T]):
             self._executing = False
             self._task_lock.release()
 
-    def _wait_for(self, awaited: Future[Any] | None) -> None:
-        """Note what the coroutine waits for, so that nobody steps it before that is done."""
-        if awaited is not self._awaited or awaited is None:
-            self._awaited = awaited
-            executor = self._get_executor()
-            if awaited is not None and executor is not None:
-                awaited._wake_when_done(executor.wake)
+    def _step(self, coroutine: Coroutine[Any, Any, T]) -> None:
+        """Take a coroutine to its next wait, and have the executor come back when that is over."""
+        self._awaited = None
+        outer, stepping.task = stepping.task, self
+        try:
+            coroutine.send(None)
+        finally:
+            stepping.task = outer
+        self._have_executor_woken()
+
+    def _have_executor_woken(self) -> None:
+        executor = self._get_executor()
+        if self._awaited is not None and executor is not None:
+            self._awaited._wake_when_done(executor.wake)
 
     def _can_go_on(self) -> bool:
         """Whether a step would get the task on."""
