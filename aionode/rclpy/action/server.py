@@ -264,7 +264,8 @@ class ActionServer(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT])
             await await_or_execute(self._handle_accepted_callback, goal_handle)
 
     def _accept(self, info: Any, goal: Any) -> AnyGoalHandle | None:
-        info.stamp = self._node.get_clock().now().to_msg()
+        now = self._node.get_clock().now().to_msg()  # its class may be of the other family
+        info.stamp.sec, info.stamp.nanosec = now.sec, now.nanosec
         try:
             with self._lock:
                 goal_handle: AnyGoalHandle = ServerGoalHandle(self, info, goal)
