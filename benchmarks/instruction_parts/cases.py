@@ -369,7 +369,7 @@ async def zenoh_receive(count: Count) -> AsyncIterator[Callable[[], Any]]:
 async def timer_tick(count: Count) -> AsyncIterator[Callable[[], Any]]:
     """Call the callback of a timer that is due."""
     async with Context(transport="local") as context, node_of("one", context) as node:
-        timer = node.create_timer(0.02, count.take)
+        timer = node.create_timer(0.05, count.take)
 
         def until_due() -> None:
             time.sleep(max(timer.time_until_next_call() or 0, 0) / 1e9 + 0.001)
