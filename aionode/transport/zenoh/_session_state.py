@@ -72,6 +72,7 @@ class SessionState:
         own_gids: The gids of this context's publishers, lingering ones included.
         cancellations: The requests that clients have given up.
         assertions: The liveliness that publishers assert.
+        time_base: The time of the context.
         now_ns: Returns the time of the context, in nanoseconds since 1970.
         content_filters: What subscriptions of other contexts want.
         has_unannounced_peers: Whether there may be subscriptions that nothing announces.
@@ -96,7 +97,8 @@ class SessionState:
         self.own_gids: set[bytes] = set()
         self.cancellations = Cancellations(participant, domain_id, self.waker, self.note_malformed)
         self.assertions = Assertions(participant, domain_id, self.waker, self.note_malformed)
-        self.now_ns = (MachineTime() if time_base is None else time_base).system_ns
+        self.time_base = MachineTime() if time_base is None else time_base
+        self.now_ns = self.time_base.system_ns
         self.on_reader: dict[str, list[Callable[[], None]]] = {}
         self.content_filters = ContentFilters()
         self.content_filters.on_change.append(self._readers_changed)
