@@ -6,6 +6,7 @@
 #   make check     style, types, layers and structure, the documentation and its code
 #   make coverage  how much of aionode the tests reach that start no process; fails below 92 %
 #   make bench     the benchmarks; tables, JSON and pictures in benchmarks/results/
+#   make profile   instructions and cache lines for one message, by valgrind: docs/performance.md
 #   make docs      the documentation as pages, in site/
 #   make fuzz      damaged input for every parser: by property tests, and guided by coverage
 #   make faults    processes that freeze, lag and die, FAULTS_TIMES times: writes docs/reliability.md
@@ -25,10 +26,10 @@ FAULTS_TIMES ?= 3
 WORKERS ?= auto
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test stress check coverage bench docs fuzz faults live soak quotes clean
+.PHONY: help demo test stress check coverage bench profile docs fuzz faults live soak quotes clean
 
 help:
-	@sed -n '3,15s/^# *//p' Makefile
+	@sed -n '3,16s/^# *//p' Makefile
 
 demo: .venv/installed
 	$(BIN)/python -m aionode.examples.pubsub
@@ -57,6 +58,9 @@ coverage: .venv/installed-dev
 
 bench: .venv/installed-dev
 	for program in benchmarks/*.py; do $(BIN)/python $$program || exit 1; done
+
+profile: .venv/installed-dev
+	$(BIN)/python benchmarks/instructions.py --write docs/performance.md
 
 docs: .venv/installed-dev
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs site
