@@ -21,8 +21,9 @@ from aionode.endpoints._core.loop_affinity import LoopAffinity
 from aionode.endpoints._core.mismatch_report import MismatchReport
 from aionode.errors import ConfigurationError, EntityDestroyedError, ForkedProcessError, brief
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
+from aionode.logging import get_logger
 from aionode.message import type_name
-from aionode.transport._zenoh_config import network_from
+from aionode.transport._zenoh_config import network_from, unheard_middleware
 from aionode.transport.base import Transport
 from aionode.transport.local import LocalTransport
 from aionode.wire._liveliness import endpoint_token, gid_of
@@ -159,6 +160,7 @@ class Context:
         )
         if transport is None:
             transport = transport_of(os.environ)
+        self._is_on_zenoh = transport == "zenoh"
         self._transports = self._make_transports(transport, link)
         self._usage: Usage | None = None  # of arguments that were set for this context alone
         self._nodes: dict[ContextNode, None] = {}  # from construction until destroyed
@@ -346,10 +348,19 @@ class Context:
             for transport in self._transports:
                 opened.append(transport)
                 await transport.open(self.graph)
+            self._hint_at_rcl()
         except BaseException:
             for transport in reversed(opened):
                 await to_the_end(transport.close())
             raise
+
+    def _hint_at_rcl(self) -> None:
+        """Log what reaches the other ROS 2 nodes of this environment, if no node is heard."""
+        if not self._is_on_zenoh:
+            return
+        hint = unheard_middleware(os.environ)
+        if hint and all(one.participant == self.participant for one in self.graph.nodes()):
+            get_logger("aionode.context").warning(hint)
 
     async def _release(self) -> None:
         """Undo one `_acquire`; the last user closes the transports.

@@ -5,8 +5,12 @@ from __future__ import annotations
 import functools
 import importlib.util
 import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 
-__all__ = ["ros_domain", "ros_missing"]
+__all__ = ["ros_domain", "ros_missing", "ros_peer"]
 
 
 @functools.cache
@@ -24,3 +28,27 @@ def ros_missing() -> str:
 def ros_domain() -> int:
     """Return a domain of this process alone, below 102, from where on ports are ephemeral."""
     return 1 + os.getpid() % 100
+
+
+@contextmanager
+def ros_peer() -> Iterator[subprocess.Popen[str]]:
+    """Run `tests.support.ros_peer` in a domain of this process."""
+    environ = {
+        **os.environ,
+        "ROS_DOMAIN_ID": str(ros_domain()),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+    }
+    program = [sys.executable, "-W", "ignore", "-m", "tests.support.ros_peer"]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(program, env=environ, stdin=pipe, stdout=pipe, text=True) as peer:
+        try:
+            if peer.stdout is None or peer.stdout.readline() != "ready\n":
+                raise RuntimeError("the peer has not started; its output is above")
+            yield peer
+        finally:
+            if peer.stdin is not None:
+                peer.stdin.close()
+            try:
+                peer.wait(5)
+            except subprocess.TimeoutExpired:
+                peer.kill()

@@ -119,6 +119,7 @@ class RclState:
         self.watcher = self.loop = self.graph = None
         context.shutdown()
         context.destroy()
+        self.bulk.close()
         self.waker.close()
         self.own_gids.clear()
         self._prefixes.clear()
