@@ -25,17 +25,17 @@ def ros_missing() -> str:
     return ""
 
 
-def ros_domain() -> int:
+def ros_domain(offset: int = 0) -> int:
     """Return a domain of this process alone, below 102, from where on ports are ephemeral."""
-    return 1 + os.getpid() % 100
+    return 1 + (os.getpid() + offset) % 100
 
 
 @contextmanager
-def ros_peer() -> Iterator[subprocess.Popen[str]]:
-    """Run `tests.support.ros_peer` in a domain of this process."""
+def ros_peer(domain_id: int) -> Iterator[subprocess.Popen[str]]:
+    """Run `tests.support.ros_peer` in a domain."""
     environ = {
         **os.environ,
-        "ROS_DOMAIN_ID": str(ros_domain()),
+        "ROS_DOMAIN_ID": str(domain_id),
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
     }
     program = [sys.executable, "-W", "ignore", "-m", "tests.support.ros_peer"]

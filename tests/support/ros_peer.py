@@ -5,6 +5,7 @@ Commands are strings on ``/commands``, such as ``call 7``; the results go to ``/
 
 from __future__ import annotations
 
+import os
 import sys
 from functools import partial
 from typing import Any
@@ -128,13 +129,17 @@ def main() -> None:
     """Spin until stdin is closed."""
     rclpy.init()
     executor = MultiThreadedExecutor(4)
-    executor.add_node(Peer())
+    peer = Peer()
+    executor.add_node(peer)
     executor.create_task(partial(print, "ready", flush=True))
     import threading
 
     threading.Thread(target=executor.spin, daemon=True).start()
     sys.stdin.read()
+    executor.shutdown(0)
+    peer.destroy_node()
     rclpy.shutdown()
+    os._exit(0)  # whatever callbacks wait for
 
 
 if __name__ == "__main__":
