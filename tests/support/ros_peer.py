@@ -136,9 +136,10 @@ def main() -> None:
 
     threading.Thread(target=executor.spin, daemon=True).start()
     sys.stdin.read()
-    executor.shutdown(0)
+    executor.shutdown(3)
     peer.destroy_node()
     rclpy.shutdown()
+    peer.context.destroy()
     os._exit(0)  # whatever callbacks wait for
 
 
