@@ -66,7 +66,7 @@ if TYPE_CHECKING:
         QoSProfile,
         ReliabilityPolicy,
     )
-    from aionode.runner import run
+    from aionode.runner import freeze_objects, run
     from aionode.supervisor import Health, Supervisor
 
 __all__ = [
@@ -115,6 +115,7 @@ __all__ = [
     "Time",
     "Timer",
     "TimerInfo",
+    "freeze_objects",
     "run",
 ]
 
@@ -164,6 +165,7 @@ _EXPORTS = {
     "Time": "aionode.clock",
     "Timer": "aionode.endpoints.timer",
     "TimerInfo": "aionode.endpoints.timer",
+    "freeze_objects": "aionode.runner",
     "run": "aionode.runner",
 }
 """Where each name is defined; it is imported when it is first used, so that ``aionode --help`` and

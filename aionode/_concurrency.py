@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import selectors
 from contextvars import copy_context
 from functools import partial
 from types import coroutine
@@ -16,6 +17,7 @@ __all__ = [
     "SLICE_NS",
     "checkpoint",
     "run_in_thread",
+    "spin_before_blocking",
     "thread_calls",
     "to_the_end",
 ]
@@ -100,3 +102,47 @@ async def to_the_end(work: Coroutine[Any, Any, T]) -> T:
     if cancelled is not None:
         raise cancelled
     return result
+
+
+def spin_before_blocking(
+    loop: asyncio.AbstractEventLoop, spin_ns: int, now_ns: Callable[[], int], subject: str
+) -> Callable[[], None]:
+    """Have `loop` ask for events again and again for a while, before it lets the thread sleep.
+
+    Args:
+        loop: An event loop of asyncio's own.
+        spin_ns: How long, in nanoseconds.
+        now_ns: A monotonic clock, in nanoseconds.
+        subject: What errors name.
+
+    Returns:
+        A function that undoes it.
+
+    Raises:
+        RuntimeError: the loop is of another kind, or spins already.
+    """
+    selector = getattr(loop, "_selector", None)
+    if not isinstance(selector, selectors.BaseSelector):
+        raise RuntimeError(  # noqa: TRY004  # no argument has a wrong type
+            f"{subject}: the event loop {type(loop).__module__}.{type(loop).__name__} cannot spin; "
+            "use asyncio's own, as in aionode.run(..., loop_factory=asyncio.SelectorEventLoop), or "
+            "leave out spin_us"
+        )
+    if "select" in vars(selector):
+        raise RuntimeError(f"{subject}: another context of this event loop spins already")
+    block = selector.select
+
+    def select(timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
+        ready = block(0)
+        if ready or (timeout is not None and timeout <= 0):
+            return ready
+        began_ns = now_ns()
+        ends_ns = began_ns + (spin_ns if timeout is None else min(spin_ns, int(timeout * 1e9)))
+        while now_ns() < ends_ns:
+            ready = block(0)
+            if ready:
+                return ready
+        return block(None if timeout is None else max(timeout - (now_ns() - began_ns) / 1e9, 0))
+
+    vars(selector)["select"] = select
+    return lambda: vars(selector).pop("select", None)

@@ -74,6 +74,7 @@ from benchmarks.ipc_parts.common import (
     SETTLE,
     SMALL_OF,
     SOCKET,
+    SPIN,
     ZENOH,
     Plan,
     Run,
@@ -302,6 +303,11 @@ def main() -> None:
     )
     parser.add_argument("--quick", action="store_true", help="a first look within a minute")
     parser.add_argument("--loop", choices=["asyncio", "uvloop"], help="only this event loop")
+    parser.add_argument(
+        "--spin-us",
+        default="",
+        help="let the event loops spin so long before they block (all rows; only asyncio)",
+    )
     for hidden in ("--part", "--folder", "--kind", "--cores"):
         parser.add_argument(hidden, default="", help=argparse.SUPPRESS)
     # Below the ports that the system gives away, and seldom those of another run beside this one.
@@ -313,6 +319,9 @@ def main() -> None:
             part_of(args)
         return
     tables: dict[str, list[dict[str, Any]]] = {}
+    if args.spin_us:
+        args.loop = "asyncio"
+        os.environ[SPIN] = args.spin_us
     for loop in [args.loop] if args.loop else ["asyncio", "uvloop"]:
         for cores in placements():
             for name, rows in tables_of(args, loop, cores).items():
@@ -328,7 +337,9 @@ def main() -> None:
         **tables,
         "targets": checked,
     }
-    (RESULTS / "ipc.json").write_text(json.dumps(result, indent=1) + "\n")
+    (RESULTS / ("ipc_spinning.json" if args.spin_us else "ipc.json")).write_text(
+        json.dumps(result, indent=1) + "\n"
+    )
 
 
 if __name__ == "__main__":

@@ -1,9 +1,16 @@
-"""What many nodes in one process cost: time to make, memory, and what they do while idle.
+"""What many nodes, endpoints and processes cost, and whether all is known in the end.
+
+First many nodes in one process: time to make, memory, and what they do while idle.
 
 Every node has its parameter services and its log topic, as a node has unless told otherwise, and
 half as many publishers and subscriptions as it has topics. Each size runs in a process of its own,
 so that the memory of one is not what another gave back. Wake-ups are turns of the event loop in one
 second in which nothing happens, beyond those that end the second itself.
+
+Then publishers with as many subscriptions in another process, over links and over Zenoh, and many
+processes that start at once. Each row says how its cost has grown beside the row before, and what
+is missing: in the graph, on the route, or in the answer of ``aionode topic list``. The program
+fails if anything is.
 
 Run it with ``python benchmarks/scale.py``; ``--quick`` leaves out the largest size. It prints a
 table and writes ``scale.json`` to ``benchmarks/results/``.
@@ -24,9 +31,12 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Final
 
+sys.path.insert(0, str(Path(__file__).parents[1]))  # run as a program, it finds its own parts
+
 from aionode import Context, Node
 from aionode.interfaces.std_msgs.msg import String
 from aionode.testing import settle
+from benchmarks.scale_parts.transports import measure_transports
 
 RESULTS: Final = Path(__file__).parent / "results"
 NODES: Final = (100, 300, 1000)
@@ -212,8 +222,17 @@ def main() -> None:
     print_table(rows)
     options.results.mkdir(parents=True, exist_ok=True)
     path = options.results / "scale.json"
-    path.write_text(json.dumps([asdict(row) for row in rows], indent=2), encoding="utf-8")
+    pairs, processes = measure_transports(quick=options.quick)
+    result = {
+        "nodes": [asdict(row) for row in rows],
+        "pairs": [asdict(row) for row in pairs],
+        "processes": [asdict(row) for row in processes],
+    }
+    path.write_text(json.dumps(result, indent=2), encoding="utf-8")
     print(f"Written: {path}")
+    missing = [row.missing for row in pairs] + [row.missing for row in processes]
+    if any(missing):
+        sys.exit(f"incomplete: {'; '.join(filter(None, missing))}")
 
 
 if __name__ == "__main__":

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+import selectors
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 import pytest
+import uvloop
 
 from aionode._concurrency import checkpoint
 from aionode.context import Context
@@ -214,3 +216,89 @@ def test_a_loop_that_was_closed_over_a_node_does_not_hold_the_context() -> None:
             assert node.is_running
 
     asyncio.run(use())
+
+
+class CountingSelector(selectors.DefaultSelector):
+    """Counts how often it is asked for events without waiting, and with."""
+
+    polls = 0
+    waits = 0
+
+    def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
+        """Wait as the selector of the system does."""
+        if timeout is not None and timeout <= 0:
+            self.polls += 1
+        else:
+            self.waits += 1
+        return super().select(timeout)
+
+
+def polls_and_waits(spin_us: float) -> tuple[int, int]:
+    """Return how often a loop asked for events during a wait of 20 ms in a context."""
+    selector = CountingSelector()
+    with asyncio.Runner(loop_factory=lambda: asyncio.SelectorEventLoop(selector)) as runner:
+
+        async def main() -> tuple[int, int]:
+            async with Context(transport="local", spin_us=spin_us):
+                await checkpoint()
+                polls, waits = selector.polls, selector.waits
+                event = asyncio.Event()
+                asyncio.get_running_loop().call_later(0.02, event.set)
+                await event.wait()
+                return selector.polls - polls, selector.waits - waits
+
+        return runner.run(main())
+
+
+def test_a_loop_that_spins_asks_again_and_again_before_it_sleeps() -> None:
+    """Waking a thread takes longer than the message."""
+    polls, waits = polls_and_waits(spin_us=1_000)
+    assert polls > 5
+    assert waits > 0  # the rest of the time
+    assert polls_and_waits(spin_us=0)[0] <= 1  # off by default
+
+
+def test_a_spinning_loop_is_on_time_for_a_timer() -> None:
+    """It spins no longer than until the next timer."""
+    polls, waits = polls_and_waits(spin_us=1e6)
+    assert polls > 5
+    assert waits == 0
+
+
+def test_a_loop_spins_only_while_its_context_is_open() -> None:
+    """And for one context."""
+    selector = selectors.DefaultSelector()
+
+    async def main() -> None:
+        async with Context(transport="local", spin_us=10):
+            assert "select" in vars(selector)
+            with pytest.raises(RuntimeError, match="another context of this event loop spins"):
+                async with Context(transport="local", spin_us=10):
+                    pass
+            assert "select" in vars(selector)
+        assert "select" not in vars(selector)
+
+    with asyncio.Runner(loop_factory=lambda: asyncio.SelectorEventLoop(selector)) as runner:
+        runner.run(main())
+
+
+def test_a_loop_that_cannot_spin_says_so() -> None:
+    """Uvloop waits in C, where nothing can be put in between."""
+
+    async def main() -> None:
+        async with Context(transport="local", spin_us=10):
+            pass
+
+    with (
+        asyncio.Runner(loop_factory=uvloop.new_event_loop) as runner,
+        pytest.raises(RuntimeError, match=r"uvloop\.Loop cannot spin.*SelectorEventLoop"),
+    ):
+        runner.run(main())
+
+
+def test_how_long_to_spin_is_a_number_of_microseconds() -> None:
+    """Said where the context is made, not when it opens."""
+    with pytest.raises(ValueError, match="spin_us=-1 is not 0 or more microseconds"):
+        Context(transport="local", spin_us=-1)
+    with pytest.raises(TypeError, match="spin_us=True is not a number of microseconds"):
+        Context(transport="local", spin_us=True)

@@ -415,6 +415,35 @@ def test_the_search_for_garbage_leaves_out_what_a_running_program_keeps(
     assert bool(before) is bool(after) is is_frozen_before
 
 
+async def test_frozen_objects_are_left_out_of_collections() -> None:
+    """A full collection looks at all others, and the loop stands still meanwhile."""
+    kept: list[list[int]] = [[] for _ in range(1000)]
+    try:
+        aionode.freeze_objects()
+        assert gc.get_freeze_count() >= len(kept)
+        assert not any(each is kept for each in gc.get_objects())
+    finally:
+        gc.unfreeze()
+
+
+def test_a_program_without_garbage_collector_is_not_collected(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """It has its reasons."""
+    monkeypatch.setattr("aionode.runner.STARTED_SEC", 0.0)
+    monkeypatch.setattr("aionode.runner.freeze_objects", pytest.fail)
+
+    async def main() -> None:
+        for _ in range(3):
+            await checkpoint()
+
+    gc.disable()
+    try:
+        run_in_this_process(main)
+    finally:
+        gc.enable()
+
+
 def test_a_failing_node_ends_the_others() -> None:
     """With the status 1."""
     context = local_context()

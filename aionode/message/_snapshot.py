@@ -13,7 +13,16 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from aionode.errors import MessageError
 from aionode.message._field_types import INT_RANGES, FieldType
 from aionode.message._message import Message, fields, message_class, type_name
-from aionode.message._validation import check_length, fit, fit_array, fit_bytes, given, listed
+from aionode.message._serialized import unserialized
+from aionode.message._validation import (
+    check_length,
+    dtype_of,
+    fit,
+    fit_array,
+    fit_bytes,
+    given,
+    listed,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -46,6 +55,8 @@ def snapshotter(cls: type[MessageT]) -> Callable[[MessageT], MessageT]:
     Raises:
         TypeError: `cls` is not a message class, or has no ROS name.
     """
+    if unserialized(cls) is not cls:
+        return expecting(cls)
     function: Callable[[MessageT], MessageT] = generated(cls, copying=True)
     return function
 
@@ -56,8 +67,21 @@ def checker(cls: type[MessageT]) -> Callable[[MessageT], None]:
     Raises:
         TypeError: `cls` is not a message class, or has no ROS name.
     """
+    if unserialized(cls) is not cls:
+        return expecting(cls)
     function: Callable[[MessageT], None] = generated(cls, copying=False)
     return function
+
+
+def expecting(cls: type[Any]) -> Callable[[Any], Any]:
+    """Return a function that returns a serialized message, whose bytes never change, as it is."""
+
+    def take(message: Any) -> Any:
+        if message.__class__ is not cls:
+            refuse(cls, message, type_name(cls))
+        return message
+
+    return take
 
 
 def snapshot(message: MessageT) -> MessageT:
@@ -92,7 +116,7 @@ class Unrolling:
             "refuse": refuse,
             "messages": messages,
             "strings": strings,
-            "frozen": frozen_copy,
+            "frozen": frozen_array,
             "fixed": fixed_bytes,
         }
 
@@ -140,11 +164,12 @@ class Unrolling:
         elif type_.form == "list":
             self.lines.append(f"{value} = strings({known}, {value}, path, {path!r})")
         else:
-            own, rule = (
-                ("frozen", "fit_array") if type_.form == "ndarray" else ("fixed", "fit_bytes")
-            )
-            fitting = fitting.replace("fit(", f"{rule}(", 1)
-            line = f"{value} = {own}({fitting})" if self.copying else fitting
+            rule = "fit_array" if type_.form == "ndarray" else "fit_bytes"
+            line = fitting.replace("fit(", f"{rule}(", 1)
+            if self.copying and type_.form == "ndarray":
+                line = f"{value} = frozen({known}, {value}, path, {path!r})"
+            elif self.copying:
+                line = f"{value} = fixed({line})"
             if type_.form == "bytes" and type_.container == "unbounded":
                 line = f"if {value}.__class__ is not bytes: {line}"
             elif not self.copying and type_.container != "array":
@@ -215,11 +240,34 @@ def strings(type_: FieldType, values: Any, path: str, field: str) -> list[str]:
     return fit(type_, values, path + field)  # type: ignore[no-any-return] # a list
 
 
-def frozen_copy(array: Any) -> Any:
-    """Return an array if it is read-only, else a read-only copy."""
-    flags = array.flags
-    if not flags.writeable:
+@cache
+def numpy_for(kind: str) -> tuple[Any, Any, Any]:
+    """Return ``ndarray``, ``frombuffer`` and the dtype of an element type.
+
+    Numpy is imported on first use, and looking for it each time would cost as much as a copy.
+    """
+    import numpy as np
+
+    return np.ndarray, np.frombuffer, dtype_of(kind)
+
+
+def frozen_array(type_: FieldType, value: Any, path: str, field: str) -> Any:
+    """Return the array of a field if it is read-only, else a read-only copy.
+
+    Bytes are copied and then read in place, as that takes a third of the time of copying an array
+    and marking it. Subclasses, such as masked arrays, know more than their bytes.
+    """
+    ndarray, frombuffer, dtype = numpy_for(type_.kind)
+    if value.__class__ is ndarray and value.dtype is dtype and value.ndim == 1:
+        if type_.container != "unbounded":
+            check_length(type_, len(value), path + field)
+        array = value
+    else:
+        array = fit_array(type_, value, path + field)
+    if not array.flags.writeable:
         return array
+    if array.__class__ is ndarray and len(array):  # there is no buffer of no bytes
+        return frombuffer(array.tobytes(), dtype)
     array = array.copy()
     array.flags.writeable = False
     return array

@@ -164,7 +164,8 @@ class LocalWriter(Writer):
         qos = endpoint.qos
         if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL:
             self._history = deque(maxlen=depth_of(qos))
-        self._update()
+        self.active = self._history is not None
+        self.bounded = False
 
     def meet(self, reader: LocalReader) -> None:
         """Match with `reader` if both fit, and give it what it missed."""
@@ -176,7 +177,10 @@ class LocalWriter(Writer):
             for msg, sample_info in list(self._history)[-depth_of(wanted) :]:
                 deliver(msg, sample_info)
         self._matched[reader] = deliver
-        self._update()
+        # Not `_update`, which looks at all: many may meet many.
+        self._deliveries += (deliver,)
+        self.active = True
+        self.bounded = self.bounded or reader.bounded
 
     def part(self, reader: LocalReader) -> None:
         """Forget `reader`, whether it was matched or not."""
@@ -186,7 +190,7 @@ class LocalWriter(Writer):
     def _update(self) -> None:
         self._deliveries = tuple(self._matched.values())
         self.active = bool(self._deliveries) or self._history is not None
-        self.bounded = any(reader.bounded for reader in self._matched)
+        self.bounded = self.bounded and any(reader.bounded for reader in self._matched)
 
     def write(self, msg: Any, sample_info: SampleInfo) -> None:
         """Give one snapshot of `msg` to all."""

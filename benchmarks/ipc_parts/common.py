@@ -108,6 +108,10 @@ def zenoh_pair(
     return lambda: (publisher.put(bytes(32), attachment=bytes(33)), subscriber)
 
 
+SPIN = "AIONODE_BENCHMARK_SPIN_US"
+"""How long the linked contexts spin, for the processes that `ipc.py --spin-us` starts."""
+
+
 @dataclass(frozen=True)
 class Run:
     """What the processes of one measurement share: a folder, and ports from `port` on.
@@ -130,7 +134,7 @@ class Run:
         first = self.port + 2 + 3 * number
         os.environ["AIONODE_ROUTER_PORT"] = str(self.port + 1)
         os.environ["AIONODE_MEETING_PORTS"] = f"{first},{first + 1},{first + 2}"
-        return Context(link=link)
+        return Context(link=link, spin_us=float(os.environ.get(SPIN, "0")) if link else 0)
 
 
 def node_of(name: str, context: Context) -> Node:

@@ -20,7 +20,7 @@ pexpect = pytest.importorskip("pexpect", reason="pseudo-terminals are of Unix")
 ROOT = Path(__file__).parents[2]
 ROBOT = Path(__file__).with_name("robot.py")
 AIONODE = [sys.executable, "-m", "aionode"]
-STARTED_S = 20.0
+STARTED_S = 40.0
 
 pytestmark = pytest.mark.filterwarnings("ignore:This process .* is multi-threaded")
 

@@ -91,9 +91,9 @@ class TwoHosts:
         ends = list(zip(self.names, self._devices, reversed(ADDRESSES), strict=True))
 
         async def strike(stage: Stage) -> None:
-            for name, device, other in ends:  # to a hardware address that nobody has
-                nobody = ("lladdr", "02:00:00:00:00:01", "nud", "permanent")
-                ip("-n", name, "neigh", "replace", other, "dev", device, *nobody)
+            for name, device, other in ends:  # to a hardware address that no host has
+                unused = ("lladdr", "02:00:00:00:00:01", "nud", "permanent")
+                ip("-n", name, "neigh", "replace", other, "dev", device, *unused)
             await asyncio.sleep(seconds)
             for name, device, other in ends:
                 ip("-n", name, "neigh", "delete", other, "dev", device)

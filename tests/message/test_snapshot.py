@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given, settings, strategies
 
 from aionode.errors import MessageError
 from aionode.interfaces.geometry_msgs.msg import Point, Polygon, Pose, Quaternion, Twist, Vector3
@@ -31,7 +31,7 @@ from aionode.interfaces.std_msgs.msg import (
     UInt64,
     UInt64MultiArray,
 )
-from aionode.interfaces.test_msgs.msg import Arrays, BoundedSequences
+from aionode.interfaces.test_msgs.msg import Arrays, BoundedSequences, UnboundedSequences
 from aionode.interfaces.unique_identifier_msgs.msg import UUID
 from aionode.message import (
     DEFAULT,
@@ -324,6 +324,43 @@ def test_arrays_of_a_snapshot_are_read_only() -> None:
     for values in (taken.position, taken.velocity):
         with pytest.raises(ValueError, match="read-only"):
             values[0] = 1.0
+
+
+@settings(suppress_health_check=[HealthCheck.too_slow], deadline=None)
+@given(
+    data=strategies.data(),
+    field=strategies.sampled_from(
+        ["bool", "int8", "int16", "uint32", "int64", "float32", "float64"]
+    ),
+    step=strategies.sampled_from([1, 2, 3, -1, -2]),
+    count=strategies.integers(0, 20),
+)
+def test_a_snapshot_of_any_array_has_its_values_and_no_memory_of_it(
+    data: strategies.DataObject, field: str, step: int, count: int
+) -> None:
+    """Of every type, empty ones and those with gaps or backwards included."""
+    dtype = np.dtype(field)
+    memory = np.frombuffer(data.draw(strategies.binary(min_size=60 * 8, max_size=60 * 8)), np.uint8)
+    values = (memory[:60] & 1).astype(bool) if field == "bool" else memory.view(dtype)[:60].copy()
+    given_array = values[::step][:count]
+    assert given_array.flags.writeable
+
+    taken = snapshot(UnboundedSequences(**{f"{field}_values": given_array}))
+    copy = getattr(taken, f"{field}_values")
+
+    assert copy.dtype == dtype
+    assert copy.tobytes() == given_array.tobytes()
+    assert not copy.flags.writeable
+    assert not np.shares_memory(copy, values)
+
+
+def test_a_snapshot_of_a_masked_array_keeps_its_values() -> None:
+    """The bytes of one are filled in where it is masked."""
+    masked = np.ma.MaskedArray([1.0, 2.0], mask=[False, True])
+    taken = snapshot(JointState(position=masked))
+
+    assert np.asarray(taken.position).tolist() == [1.0, 2.0]
+    assert not taken.position.flags.writeable
 
 
 def test_an_array_that_is_not_contiguous_is_copied_in_order() -> None:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["ROOT", "Process", "member"]
 
 ROOT = Path(__file__).parent.parent.parent
-PATIENCE_S = 20.0
+PATIENCE_S = 40.0
 
 
 class Process:

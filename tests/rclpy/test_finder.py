@@ -195,7 +195,7 @@ def ros(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_an_installed_rclpy_is_not_passed_over_in_silence(
     ros: Path, caplog: pytest.LogCaptureFixture, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Whoever has ROS 2 as well sees which of the two runs."""
+    """Users who have ROS 2 as well see which of the two runs."""
     aionode.rclpy.install()
     sys.meta_path.remove(_finder.FINDER)
 

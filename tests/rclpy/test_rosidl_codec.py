@@ -29,7 +29,7 @@ Arrays = message_class("test_msgs/msg/Arrays")
 
 @given(any_messages())
 def test_bytes_are_those_of_aionode(message: Message) -> None:
-    """There is one encoding, whoever writes it."""
+    """There is one encoding, whichever library writes it."""
     assert encode(from_aionode(message)) == cdr.encode(message)
 
 

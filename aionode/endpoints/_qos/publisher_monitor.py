@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from aionode.clock._silence import SilenceAlarm
 from aionode.endpoints._qos.event_hub import EventHub
 from aionode.endpoints._qos.matching import Matching
-from aionode.endpoints._qos.silence import SilenceAlarm
 from aionode.endpoints.events import (
     PublisherEventCallbacks,
     QoSLivelinessLostInfo,
@@ -52,7 +52,7 @@ class SignOfLife(Writer):
         self._note = note
 
     def write(self, msg: Any, sample_info: SampleInfo) -> None:  # noqa: ARG002  # as every writer
-        """Note a message."""
+        """Record a message."""
         if not any(writer.active for writer in self._writers):
             self._check(msg)
         self._note()
@@ -75,6 +75,21 @@ class PublisherMonitor:
     Raises:
         TypeError: `event_callbacks` is of another class, or a function in it takes other arguments.
     """
+
+    __slots__ = (
+        "_alarms",
+        "_graph_entry",
+        "_heartbeat",
+        "_hub",
+        "_lease_alarm",
+        "_lease_ns",
+        "_lost",
+        "_manual",
+        "_missed",
+        "_time_base",
+        "_watches_matches",
+        "writers",
+    )
 
     def __init__(
         self,

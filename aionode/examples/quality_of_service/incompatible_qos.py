@@ -49,7 +49,7 @@ POLICIES = {
 
 
 class Talker(Node):
-    """Publishes to nobody."""
+    """Publishes, and reports subscriptions that its profile does not match."""
 
     def __init__(self, profile: QoSProfile) -> None:
         super().__init__("qos_talker")

@@ -263,7 +263,7 @@ class LinkManager:
 
     def _on_unannounced_peers(self, _: bool) -> None:
         for writer in self.writers.values():
-            writer.update()
+            writer.reconsider()
 
     def on_endpoint(self, endpoint: EndpointInfo) -> None:
         """Take a new endpoint, of this context or another."""
@@ -273,7 +273,7 @@ class LinkManager:
         if endpoint.node.participant != self.participant:
             if endpoint.kind is EndpointKind.SUBSCRIPTION:
                 for writer in self.writers.named(endpoint.name):
-                    writer.update()
+                    writer.reconsider()
             self._consider(endpoint.node.participant, endpoint, readers)
             return
         new = [reader for reader in readers if reader.endpoint is endpoint]

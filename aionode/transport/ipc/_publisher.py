@@ -166,7 +166,7 @@ class IpcWriter(Writer):
     def has_room(self) -> bool:
         """Whether one more message could be sent without dropping any."""
         return all(send_queue.has_room() for send_queue in self._send_queues.values()) and (
-            not self._needs_zenoh or self._zenoh.has_room()
+            not (self._needs_zenoh and self.update()) or self._zenoh.has_room()
         )
 
     async def drain(self) -> None:
@@ -213,15 +213,14 @@ class IpcWriter(Writer):
         )
         self.update_filters()
         connection.send(Opened(self._gid, asked.subscription, self._sequence))
-        self.update()
+        self.reconsider()
 
     def switched(self, connection: Connection, reader: bytes) -> None:
         """Stop sending to `reader` over Zenoh."""
         send_queue = self._send_queues.get(connection)
         if send_queue is not None and reader in send_queue.readers:
             send_queue.readers[reader].switched = True
-            self._asked_at = -1
-            self.update()
+            self.reconsider()
 
     def credit(self, connection: Connection, credit: Credit) -> None:
         """Take the credit of a subscription."""
@@ -238,20 +237,27 @@ class IpcWriter(Writer):
         self.update_filters()
         if not send_queue.readers:
             self._forget(connection)
-        self.update()
+        self.reconsider()
 
     def broken(self, connection: Connection) -> Iterator[bytes]:
         """Stop using `connection`, which is closed; yield the frames that may not have arrived."""
         send_queue = self._forget(connection)
-        self.update()
+        self.reconsider()
         return iter(()) if send_queue is None else send_queue.unacked()
 
     def _forget(self, connection: Connection) -> IpcSendQueue | None:
         send_queue = self._send_queues.pop(connection, None)
         if send_queue is not None:
             self._dropped += send_queue.dropped
-        self._asked_at = -1
         return send_queue
+
+    def reconsider(self) -> None:
+        """Have the next message find out whether a subscription needs Zenoh.
+
+        Not now: with many subscriptions to one topic, each of them would look at all.
+        """
+        self._needs_zenoh = True
+        self._asked_at = -1
 
     def update(self) -> bool:
         """Return whether a subscription needs Zenoh: it has not switched, or is not announced."""

@@ -125,9 +125,10 @@ class ZenohReader(Declaration, ReaderRegistration):
     def declare_data(self, session: zenoh.Session) -> None:
         """Declare the subscriber; a transient local one gets the history."""
         self._announce_filter(session)
-        put = direct(self._queue.put)
+        put = self._queue.put
         if self._transient:
             reliable = is_reliable(self.endpoint.qos)
+            # Not `direct`: Zenoh calls with a lock held, for which undeclaring would wait as well.
             subscriber: Any = ext.declare_advanced_subscriber(
                 session,
                 self._key,
@@ -145,7 +146,7 @@ class ZenohReader(Declaration, ReaderRegistration):
             return
         for key in (self._key, buffer_key(self._key)) if self._second_key else (self._key,):
             self._subscribers.append(
-                session.declare_subscriber(key, put, allowed_origin=zenoh.Locality.REMOTE)
+                session.declare_subscriber(key, direct(put), allowed_origin=zenoh.Locality.REMOTE)
             )
 
     def undeclare_data(self) -> None:

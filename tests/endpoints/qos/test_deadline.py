@@ -72,7 +72,7 @@ async def test_the_periods_of_a_stall_are_all_counted(pair: Pair) -> None:
 
 
 async def test_a_subscription_goes_on_counting_without_a_publisher(pair: Pair) -> None:
-    """Whoever relies on data must learn that there is none; Fast DDS does the same."""
+    """A node that relies on data must learn that there is none; Fast DDS does the same."""
     publisher, subscription = await pair.joined(DEADLINE, DEADLINE)
     await pair.send(publisher, subscription)
     publisher.destroy()
@@ -82,7 +82,7 @@ async def test_a_subscription_goes_on_counting_without_a_publisher(pair: Pair) -
 
 
 async def test_any_publisher_keeps_the_deadline_of_a_subscription(pair: Pair) -> None:
-    """A topic without keys is one instance, whoever publishes to it."""
+    """A topic without keys is one instance, however many publishers it has."""
     first, subscription = await pair.joined(DEADLINE, DEADLINE)
     second = pair.talker.create_publisher(Int32, "n", DEADLINE)
     await second.wait_for_subscribers()

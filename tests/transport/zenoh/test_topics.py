@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 import zenoh  # noqa: TID251  # plays the other participants, without aionode
 
+from aionode._concurrency import checkpoint
 from aionode.context import Context
 from aionode.errors import QueueFullError
 from aionode.graph import EndpointInfo, EndpointKind
@@ -361,6 +362,8 @@ async def test_strange_tokens_are_counted_and_the_graph_goes_on(
                 )
             ):
                 await node.graph.until(lambda: "fine" in {n.name for n in node.graph.nodes()})
+                while transport_of(node).malformed.total() < 3:  # they may come after it
+                    await checkpoint()
             await node.graph.until(lambda: [n.name for n in node.graph.nodes()] == ["watcher"])
 
         assert transport_of(node).malformed.total() == 3
@@ -547,3 +550,13 @@ async def test_without_a_hash_every_definition_of_a_type_is_heard() -> None:
             listener.undeclare()
         announcement.close()
         announcement.close()
+
+
+async def test_subscriptions_start_no_threads() -> None:
+    """Zenoh would start one for each subscriber, unless it may call in its own thread."""
+    async with quiet_node("many") as node:
+        before = threading.active_count()
+        for number in range(20):
+            node.create_subscription(String, f"t{number}", None, 10)
+            node.create_subscription(Image, f"i{number}", None, 10)
+        assert threading.active_count() == before

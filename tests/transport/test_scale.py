@@ -1,0 +1,85 @@
+"""What an endpoint costs does not depend on how many others there are."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from typing import TYPE_CHECKING, Any
+
+from aionode.interfaces.std_msgs.msg import Int32
+from aionode.node import Node
+from aionode.testing import local_context
+from tests.support.links import folder, two_nodes
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["folder"]  # a fixture
+
+
+def calls_of(work: Callable[[], Any]) -> int:
+    """Return how many functions are called, those in C included."""
+    count = 0
+
+    def note(_frame: object, event: str, _arg: object) -> None:
+        nonlocal count
+        count += event in ("call", "c_call")
+
+    sys.setprofile(note)
+    try:
+        work()
+    finally:
+        sys.setprofile(None)
+    return count
+
+
+def costs(node: Node, count: int) -> tuple[list[int], list[int]]:
+    """Return how many calls it takes to make each of many pairs, and to destroy each."""
+    pairs: list[tuple[Any, Any]] = []
+
+    def make() -> None:
+        number = len(pairs)
+        publisher = node.create_publisher(Int32, f"t{number}", 10)
+        pairs.append((publisher, node.create_subscription(Int32, f"t{number}", lambda _: None, 10)))
+
+    def destroy() -> None:
+        for endpoint in pairs.pop():
+            endpoint.destroy()
+
+    return [calls_of(make) for _ in range(count)], [calls_of(destroy) for _ in range(count)]
+
+
+async def test_making_and_destroying_endpoints_of_one_process_is_linear() -> None:
+    """Of many others, none is looked at."""
+    async with Node("n", context=local_context()) as node:
+        made, destroyed = costs(node, 200)
+
+    assert made[-1] <= made[10] + 10  # numbers with more digits
+    assert destroyed[0] <= destroyed[-10] + 10
+
+
+async def test_making_and_destroying_endpoints_beside_links_is_linear() -> None:
+    """Of the others in this process, none is looked at."""
+    async with asyncio.timeout(30), two_nodes() as nodes:
+        made, destroyed = costs(nodes.a, 100)
+
+    assert made[-1] <= made[10] + 20
+    assert destroyed[0] <= destroyed[-10] + 20
+
+
+async def test_a_subscription_of_another_process_concerns_publishers_of_its_name_only() -> None:
+    """Otherwise it would cost more the more publishers there are here."""
+    async with asyncio.timeout(30), two_nodes() as nodes:
+        near = nodes.a.create_publisher(Int32, "near", 10)
+        far = [nodes.a.create_publisher(Int32, f"far{number}", 10) for number in range(20)]
+        asked: list[str] = []
+
+        def note(name: str) -> Callable[[], None]:
+            return lambda: asked.append(name)
+
+        for publisher in (near, *far):
+            writer: Any = publisher._writers[1]
+            writer.reconsider = note(publisher.topic_name)
+        nodes.b.create_subscription(Int32, "near", None, 10)
+        await near.wait_for_subscribers()
+        assert set(asked) == {near.topic_name}
