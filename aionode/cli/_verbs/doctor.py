@@ -76,7 +76,8 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
         lines += [f"  {pair.text()}" for pair in pairs]
     output.item("\n".join(lines), record)
     found = diagnose(nodes, endpoints)
-    hint = other_distribution(node.context.ros_distro, {one.type_hash for one in endpoints})
+    hashes = {one.type_hash for one in endpoints if not one.node.bridged}
+    hint = other_distribution(node.context.ros_distro, hashes)
     if hint is not None:
         problem, remedy = hint.split(": ")
         found.insert(0, Finding("problem", "ROS_DISTRO", problem, remedy))

@@ -6,7 +6,7 @@ import asyncio
 import logging
 from collections import deque
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import zenoh
 from zenoh import ext
@@ -43,8 +43,6 @@ from aionode.wire import _acknack as acknack
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
 from aionode.wire._acknack import SubmessageKind
-from aionode.wire._key_expression import data_key
-from aionode.wire._liveliness import endpoint_token
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -68,11 +66,13 @@ class ZenohWriter(Declaration, Writer):
     not acknowledge and must not lose it, by a thread of this publisher that waits for them.
     """
 
+    recovers: ClassVar[bool] = True  # whether its readers ask again for what they miss
+
     def __init__(self, state: SessionState, endpoint: EndpointInfo, msg_type: type[Any]) -> None:
-        super().__init__(state, endpoint_token(state.domain_id, endpoint))
+        self._key, token, gid = state.names_of(endpoint)
+        super().__init__(state, token, gid)
         self.endpoint = endpoint
         qos = endpoint.qos
-        self._key = data_key(state.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
         self._msg_type = msg_type
         # None until it is needed, as it takes a while to make; `_update` does that, so that no
         # callback has to.
@@ -99,7 +99,7 @@ class ZenohWriter(Declaration, Writer):
         self.bounded = keeps_all(qos)
         # A transient local publisher has none: there Zenoh sends lost messages again.
         self._history: WriterHistory | None = None
-        if self._reliable and not self._transient:
+        if self._reliable and not self._transient and self.recovers:
             self._history = WriterHistory(
                 self._depth, keep_all=self.bounded, side=self, now_ns=perf_ns
             )
@@ -147,14 +147,13 @@ class ZenohWriter(Declaration, Writer):
                 allowed_destination=zenoh.Locality.REMOTE,
                 cache=ext.CacheConfig(max_samples=self._depth),
                 publisher_detection=True,
-                # Samples are numbered, so that readers ask again for what is missing between two.
-                # No heartbeat, which would tell of a missing last one too: undeclaring waits for
-                # its task with the GIL held, and for 10 s if that task's thread needs the GIL for
-                # a callback just then (zenoh-python 1.10).
+                # Samples are numbered, so readers ask again for what is missing between two. No
+                # heartbeat, which would tell of a missing last one: undeclaring waits for its task
+                # with the GIL held, 10 s if that needs the GIL just then (zenoh-python 1.10).
                 sample_miss_detection=ext.MissDetectionConfig(
                     heartbeat=None, sporadic_heartbeat=None
                 )
-                if reliable
+                if reliable and self.recovers
                 else None,
             )
             while self._early:
@@ -167,11 +166,12 @@ class ZenohWriter(Declaration, Writer):
                 reliability=reliability,
                 allowed_destination=zenoh.Locality.REMOTE,
             )
-            self._matching = self._publisher.declare_matching_listener(
-                direct(self._matching_changed.put)
-            )
-            # Here only: Zenoh looks through all subscribers of all topics for an answer.
-            self._is_matching = bool(self._publisher.matching_status.matching)  # type: ignore[attr-defined]  # no bool, as the stub says
+            if self.recovers:  # else a bridge has announced every reader
+                self._matching = self._publisher.declare_matching_listener(
+                    direct(self._matching_changed.put)
+                )
+                # Here only: Zenoh looks through all subscribers of all topics for an answer.
+                self._is_matching = bool(self._publisher.matching_status.matching)  # type: ignore[attr-defined]  # no bool, as the stub says
         self._update()
 
     def undeclare_data(self) -> None:
@@ -268,7 +268,7 @@ class ZenohWriter(Declaration, Writer):
         return [
             reader
             for reader in graph.endpoints(EndpointKind.SUBSCRIPTION, name=self.endpoint.name)
-            if reader.node.participant != self.state.participant and self.endpoint.matches(reader)
+            if self.state.reaches(reader.node) and self.endpoint.matches(reader)
         ]
 
     def _filter_of(self, readers: list[EndpointInfo]) -> Callable[[Any], bool] | None:
@@ -579,7 +579,7 @@ class ZenohWriter(Declaration, Writer):
 
     def route_of(self, reader: EndpointInfo) -> str | None:
         """Return ``zenoh`` for subscriptions of other contexts."""
-        return "zenoh" if reader.node.participant != self.state.participant else None
+        return "zenoh" if self.state.reaches(reader.node) else None
 
     def close(self) -> None:
         """Undeclare the publisher for good, after it has lingered."""
