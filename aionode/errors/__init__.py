@@ -477,10 +477,14 @@ class FrameError(TransportError):
 
 FAST_DDS_SILENCE = (
     "there are nodes on Fast DDS behind the zenoh-bridge-ros2dds, whose services, actions and "
-    "parameters time out (topics work): start them with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp, or "
-    "run aionode on the robot with AIONODE_TRANSPORT=rcl"
+    "parameters time out (topics work)"
 )
-"""Why services behind a bridge do not answer, and the way out."""
+"""Why services behind a bridge do not answer."""
+
+FAST_DDS_REMEDY = (
+    "start them with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp, or run aionode on the robot with "
+    "AIONODE_TRANSPORT=rcl"
+)
 
 
 def silence(servers: int) -> str:

@@ -197,7 +197,7 @@ class StandIn:
         return received
 
     def serve(
-        self, name: str, type_name: str, answer: Callable[[bytes], bytes | None], token: str = "SS"
+        self, name: str, type_name: str, answer: Callable[[bytes], bytes | None], kind: str = "SS"
     ) -> None:
         """Have a DDS node serve; None is no answer, as from one on Fast DDS."""
 
@@ -217,8 +217,8 @@ class StandIn:
         held: list[zenoh.Query] = []
         route = self.session.declare_queryable(self.key(name), take, allowed_origin=REMOTE)
         declared = [route]
-        if token:
-            declared.insert(0, self.announce(token, name, type_name))
+        if kind:
+            declared.insert(0, self.announce(kind, name, type_name))
         self._declared[f"server {name}"] = declared
 
     def call(self, name: str, request: bytes, timeout_s: float = 5.0) -> list[bytes]:
@@ -254,13 +254,14 @@ def add(request: bytes) -> bytes:
 
 
 @contextmanager
-def stand_in(namespace: str = "/") -> Iterator[StandIn]:
-    """A stand-in that dials the first meeting port, and stays with those who meet there."""
+def stand_in(namespace: str = "/", *, first: bool = True) -> Iterator[StandIn]:
+    """A stand-in on the port of routers, or beside one there, that also dials who is there."""
+    listen = os.environ["AIONODE_ROUTER_PORT"] if first else "0"
     port = os.environ["AIONODE_MEETING_PORTS"].split(",")[0]
     config = zenoh.Config()
     for key, value in {
         "mode": "router",
-        "listen/endpoints": ["tcp/127.0.0.1:0"],
+        "listen/endpoints": [f"tcp/127.0.0.1:{listen}"],
         "connect/endpoints": [f"tcp/127.0.0.1:{port}"],
         "connect/timeout_ms": -1,
         "connect/exit_on_failure": False,
@@ -287,7 +288,7 @@ async def main() -> None:
         while True:
             publish(string(str(number)))
             number += 1
-            await asyncio.sleep(0.1)
+            await asyncio.sleep(0.1)  # noqa: TID251  # a bridge has no clock of aionode
 
 
 if __name__ == "__main__":

@@ -209,7 +209,7 @@ class BridgeWatcher:
                 self._show(bridge, key, token)
         self._note_vendor(zid)
         self._state.add_bridge(zid, prefix)
-        logger.info("zenoh-bridge-ros2dds %s: its nodes on DDS are reached from now on", zid)
+        logger.debug("zenoh-bridge-ros2dds %s: its nodes on DDS are reached from now on", zid)
 
     def _remove_bridge(self, zid: str) -> None:
         bridge = self._bridges.pop(zid, None)

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import zenoh
 
-from aionode.errors import FAST_DDS_SILENCE
+from aionode.errors import FAST_DDS_REMEDY, FAST_DDS_SILENCE
 from aionode.transport.base import SampleInfo
 from aionode.transport.zenoh._bridge_state import BridgeDeclaration
 from aionode.transport.zenoh._delivery import UNKNOWN_GID, sample_info_of
@@ -52,7 +52,9 @@ class BridgeRequester(BridgeDeclaration, ZenohRequester):
     @property
     def caveat(self) -> str:
         """Why the matched servers may not answer: those on Fast DDS never do."""
-        return FAST_DDS_SILENCE if self.participants() & self.bridges.fast_dds else ""
+        if self.participants() & self.bridges.fast_dds:
+            return f"{FAST_DDS_SILENCE}: {FAST_DDS_REMEDY}"
+        return ""
 
     def tell_cancelled(self, sequence: int) -> None:
         """Do nothing: DDS servers cannot be told."""
