@@ -36,6 +36,9 @@ __all__ = ["ContentFilterOptions", "compile_filter"]
 MAX_PARAMETERS: Final = 100
 """The number of parameters that the grammar has names for."""
 
+MAX_DIGITS: Final = 400
+"""How long a number may be; Python refuses much longer ones with an error of its own."""
+
 MAX_DEPTH: Final = 50
 """How deep parentheses and NOT may be nested."""
 
@@ -371,6 +374,8 @@ def literal(token: Token) -> Operand | None:
     """Return the operand of a literal; None if the token is not a literal."""
     value: object
     if token.kind == "number":
+        if len(token.text) > MAX_DIGITS:
+            return None
         text = token.text.lower()
         is_int = "x" in text or not set(text) & set(".e")
         value = int(text, 0 if "x" in text else 10) if is_int else float(text)

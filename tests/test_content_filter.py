@@ -227,3 +227,9 @@ def test_like_agrees_with_a_plain_definition(text: str, pattern: str) -> None:
         return bool(text) and pattern[0] in ("_", text[0]) and like(text[1:], pattern[1:])
 
     assert passes(String(data=text), f"data LIKE '{pattern}'") is like(text, pattern)
+
+
+def test_a_number_of_a_thousand_digits_is_refused() -> None:
+    """As what it is, an expression that cannot be used."""
+    with pytest.raises(ContentFilterError, match="expected a field or a literal"):
+        passes(Int32(), f"data = {'9' * 5000}")

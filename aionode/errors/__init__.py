@@ -428,7 +428,10 @@ class ContentFilterError(AionodeError, ValueError):
 
     def __init__(self, expression: str, position: int, problem: str) -> None:
         self.expression, self.position, self.problem = expression, position, problem
-        super().__init__(f"content filter {expression!r}: {problem} (at character {position + 1})")
+        super().__init__(
+            f"content filter {brief(expression)}: {shortened(problem, 300)} "
+            f"(at character {position + 1})"
+        )
 
 
 class NodeNameNonExistentError(AionodeError, LookupError, RuntimeError):

@@ -308,13 +308,20 @@ class Stage:
         return marks + [(child, "goal") for child in living if child.role.send]
 
     def wrong_graphs(self) -> list[str]:
-        """Return what processes see of the nodes that is not so."""
-        living = [child for child in self.children.values() if child.runs]
-        nodes = sorted(child.role.name for child in living if not child.role.router)
+        """Return which processes see other nodes than there are."""
+        nodes = [
+            child
+            for child in self.children.values()
+            if child.runs and not (child.role.router or child.role.control)
+        ]
+        names = sorted(child.role.name for child in nodes)
         return [
             f"{child.role.name}: sees {', '.join(child.last.nodes)}"
-            for child in living
-            if not (child.role.router or child.role.ros) and child.last.nodes != nodes
+            for child in nodes
+            if not child.role.ros
+            # One whose output is not read tells nothing more.
+            and not (child.role.noisy or child.role.output == "unread")
+            and child.last.nodes != names
         ]
 
     async def until_working(self, since_s: float, limit_s: float) -> list[str]:

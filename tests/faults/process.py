@@ -105,7 +105,7 @@ class CoreWait:
             with suppress(OSError):  # the thread has just ended
                 if stat.parent.name != str(os.getpid()):
                     self._others_s[stat.parent.name] = int(stat.read_bytes().split()[1]) / 1e9
-        waited = (each - before_s.get(name, each) for name, each in self._others_s.items())
+        waited = (each - before_s.get(name, 0.0) for name, each in self._others_s.items())
         return max(waited, default=0.0)
 
 

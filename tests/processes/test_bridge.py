@@ -30,4 +30,6 @@ async def test_topics_and_services_come_back_with_a_killed_bridge(
                 await subscription.receive()
                 bridge.send(signal.SIGKILL)
                 await node.graph.until(lambda: not client.service_is_ready())
-            assert node.graph.count(EndpointKind.PUBLISHER, "/chatter") == 0
+                await node.graph.until(
+                    lambda: not node.graph.count(EndpointKind.PUBLISHER, "/chatter")
+                )

@@ -24,7 +24,8 @@ from aionode.endpoints.actions._common import (
     seconds_to_ns,
     stamp_ns,
 )
-from aionode.endpoints.actions._goal import (
+from aionode.endpoints.actions._server_goal import ServerGoalHandle
+from aionode.endpoints.actions.goal import (
     CancelCode,
     CancelResponse,
     GoalKey,
@@ -33,7 +34,6 @@ from aionode.endpoints.actions._goal import (
     candidates,
     is_cancelable,
 )
-from aionode.endpoints.actions._server_goal import ServerGoalHandle
 from aionode.endpoints.stats import CallbackStats
 from aionode.errors import CallbackCancelledError, QueueFullError, brief
 from aionode.message import Message, snapshotter, type_name

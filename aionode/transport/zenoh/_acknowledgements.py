@@ -109,7 +109,8 @@ class Acknowledgements:
         on_participant: Called when another context is known to acknowledge.
 
     Attributes:
-        participants: The other contexts that acknowledge.
+        participants: The other contexts that acknowledge, those that have gone included.
+        present: Those of them whose tokens are there.
         writers: The publishers of this context that want acknowledgements, by gid.
         readers: The subscriptions of this context that acknowledge, by gid.
     """
@@ -123,6 +124,7 @@ class Acknowledgements:
         on_participant: Callable[[], None],
     ) -> None:
         self.participants: set[str] = set()
+        self.present: set[str] = set()
         self.writers: dict[bytes, StatefulWriter] = {}
         self.readers: dict[bytes, StatefulReader] = {}
         self._participant = participant
@@ -160,6 +162,7 @@ class Acknowledgements:
         self._queue.clear()
         self._tokens.clear()
         self.participants.clear()
+        self.present.clear()
         self._ticks.clear()
         self._probes.clear()
 
@@ -208,6 +211,10 @@ class Acknowledgements:
             return
         # A participant stays in the set when its token goes: its endpoints have tokens of their
         # own, and it may come back.
-        if sample.kind == zenoh.SampleKind.PUT and participant not in self.participants:
+        if sample.kind == zenoh.SampleKind.DELETE:
+            self.present.discard(participant)
+            return
+        self.present.add(participant)
+        if participant not in self.participants:
             self.participants.add(participant)
             self._on_participant()

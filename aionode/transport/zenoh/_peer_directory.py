@@ -160,7 +160,9 @@ class ZenohPeerDirectory:
         session = self._session
         if session is not None:
             key = self._retransmit_key(participant)
-            self._state.peer_senders.submit(participant, lambda: send(session, key, data))
+            self._state.peer_senders.submit(
+                participant, len(data), lambda: send(session, key, data)
+            )
 
     def announce_link(self, participant: str, on: bool) -> None:
         """Declare or undeclare a token for a link to another context.

@@ -4,11 +4,17 @@ They are sent with congestion control BLOCK, since none may be lost, so sending 
 peer reads nothing. The event loop sends them itself while the peer has shown signs of life, or has
 been sent so little that the queues on the way hold it. Otherwise one thread for each such peer
 sends them.
+
+That thread waits too before Zenoh would. When the lease of a peer ends while Zenoh waits for it,
+the thread of Zenoh that ends the connection waits as well, for ten seconds and with all that it has
+to do for others; if the peer returns meanwhile, its new connection may never work (zenoh 1.10).
 """
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterable
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from aionode.transport._send_thread import SendThread
@@ -24,6 +30,13 @@ ALLOWANCE_BYTES: Final = 128 * 1024
 OVERHEAD_BYTES: Final = 512
 """What a request or reply takes besides its payload, approximately: its key and headers."""
 
+UNSEEN_BYTES: Final = 256 * 1024
+"""How much a thread sends before it looks again whether the peer takes it; with what the loop has
+sent less than Zenoh's queue holds."""
+
+LOOK_S: Final = 0.05
+"""The interval of looks while it does not."""
+
 REMEMBERED: Final = 1_000
 """How many peers are remembered before idle ones are dropped."""
 
@@ -33,13 +46,17 @@ class PeerSender:
 
     Attributes:
         spent_bytes: How much was sent since its last sign of life.
+        unseen_bytes: How much the thread has sent since it saw that the peer takes it.
+        written_bytes: How much was written to the connection by then.
         send_thread: The thread for it, once it was needed.
     """
 
-    __slots__ = ("send_thread", "spent_bytes")
+    __slots__ = ("send_thread", "spent_bytes", "unseen_bytes", "written_bytes")
 
     def __init__(self) -> None:
         self.spent_bytes = 0
+        self.unseen_bytes = UNSEEN_BYTES
+        self.written_bytes = 0
         self.send_thread: SendThread | None = None
 
 
@@ -48,10 +65,14 @@ class PeerSenders:
 
     Args:
         waker: Wakes the event loop from threads.
+        look: Tells in a thread whether the connection to a participant has room, and how many bytes
+            were written to it so far; None if that is not known.
     """
 
-    def __init__(self, waker: LoopWaker) -> None:
+    def __init__(self, waker: LoopWaker, look: Callable[[str], tuple[bool, int] | None]) -> None:
         self._waker = waker
+        self._look = look
+        self._stopped = threading.Event()
         # By participant.
         self._peers: dict[str, PeerSender] = {}
 
@@ -63,7 +84,7 @@ class PeerSenders:
 
     def send(self, participants: Iterable[str], size_bytes: int, job: Callable[[], None]) -> None:
         """Run `job`, which sends to some peers: at once if it cannot block, else in a thread."""
-        slow: PeerSender | None = None
+        slow = ""
         size_bytes += OVERHEAD_BYTES
         for participant in participants:
             peer = self._peers.get(participant)
@@ -72,26 +93,58 @@ class PeerSenders:
             peer.spent_bytes += size_bytes
             busy = peer.send_thread is not None and peer.send_thread.busy
             if busy or peer.spent_bytes > ALLOWANCE_BYTES:
-                slow = peer
+                slow = participant
                 if busy:
                     break
-        if slow is None:
-            job()
+        if slow:
+            self.submit(slow, size_bytes, job)
         else:
-            self._submit(slow, job)
+            job()
 
-    def submit(self, participant: str, job: Callable[[], None]) -> None:
-        """Run `job`, which sends to one peer, in the thread for it."""
+    def submit(self, participant: str, size_bytes: int, job: Callable[[], None]) -> None:
+        """Run `job`, which sends to a peer, in the thread for it."""
         peer = self._peers.get(participant)
         if peer is None:
             peer = self._peers[participant] = PeerSender()
-        self._submit(peer, job)
-
-    def _submit(self, peer: PeerSender, job: Callable[[], None]) -> None:
         if peer.send_thread is None:
             self._tidy()
             peer.send_thread = SendThread("aionode-peer", self._waker)
-        peer.send_thread.submit(job)
+        peer.send_thread.submit(
+            partial(self._run, participant, peer, size_bytes, job, self._stopped)
+        )
+
+    def _run(
+        self,
+        participant: str,
+        peer: PeerSender,
+        size_bytes: int,
+        job: Callable[[], None],
+        stopped: threading.Event,
+    ) -> None:
+        """Run `job` as soon as the peer takes what was sent before; in its thread."""
+        if peer.unseen_bytes + size_bytes > UNSEEN_BYTES:
+            self._wait_for_room(participant, peer, stopped)
+            peer.unseen_bytes = 0
+        peer.unseen_bytes += size_bytes
+        if not stopped.is_set():
+            job()
+
+    def _wait_for_room(self, participant: str, peer: PeerSender, stopped: threading.Event) -> None:
+        """Wait until Zenoh has sent what it has, and could send more.
+
+        A connection has room also if Zenoh had no time yet to fill it. So what was given to Zenoh
+        has to be written, or there has to be room twice in a row.
+        """
+        had_room = False
+        while (seen := self._look(participant)) is not None:
+            has_room, written_bytes = seen
+            is_sent = written_bytes - peer.written_bytes >= peer.unseen_bytes
+            if has_room and (is_sent or had_room):
+                peer.written_bytes = written_bytes
+                return
+            had_room = has_room
+            if stopped.wait(LOOK_S):
+                return
 
     def _tidy(self) -> None:
         """End idle threads, and forget idle peers if there are many."""
@@ -112,6 +165,8 @@ class PeerSenders:
 
     def clear(self) -> None:
         """Forget all peers; jobs that wait in a thread are dropped."""
+        self._stopped.set()
+        self._stopped = threading.Event()
         for send_thread in self.send_threads():
             send_thread.abandon()
         self._peers.clear()

@@ -12,6 +12,7 @@ import zenoh
 from zenoh import ext
 
 from aionode.clock import perf_ns
+from aionode.clock._silence import SilenceAlarm
 from aionode.errors import TransportError
 from aionode.graph import EndpointKind
 from aionode.qos import depth_of, is_unlimited, keeps_all
@@ -19,7 +20,6 @@ from aionode.transport._reliability import WriterHistory
 from aionode.transport._send_thread import SendQueue, SendThread
 from aionode.transport.base import Writer
 from aionode.transport.zenoh._delivery import (
-    BLOCK,
     BULK_BYTES,
     DROP,
     FLUSH_NS,
@@ -37,6 +37,11 @@ from aionode.transport.zenoh._handlers import (
     PATIENT_PRIORITY,
     direct,
     reason,
+)
+from aionode.transport.zenoh._kept_history import (
+    declare_keeping,
+    declare_plain,
+    unless_expired,
 )
 from aionode.transport.zenoh._session_state import Declaration
 from aionode.wire import _acknack as acknack
@@ -93,6 +98,9 @@ class ZenohWriter(Declaration, Writer):
         self._reliable = is_reliable(qos)
         lifespan = qos.lifespan
         self._lifespan_ns = 0 if is_unlimited(lifespan) else lifespan.nanoseconds
+        self._expiry: SilenceAlarm | None = None
+        if self._transient and self._lifespan_ns:
+            self._expiry = SilenceAlarm(state.time_base, self._lifespan_ns, self._forget_expired)
         # Messages for late readers that were published before the session is open.
         self._early: deque[tuple[bytes, bytes]] = deque(maxlen=self._depth)
         self.active = self._transient
@@ -134,37 +142,18 @@ class ZenohWriter(Declaration, Writer):
     def declare_data(self, session: zenoh.Session) -> None:
         """Declare the publisher, and send what was published before."""
         self._is_watched = False
-        reliable = self._reliable
-        reliability = zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT
         if self._transient:
-            priority = BULK_PRIORITY if self._bulk_only else LOOP_PRIORITY
-            self._publisher = ext.declare_advanced_publisher(
-                session,
-                self._key,
-                congestion_control=BLOCK if self.bounded else DROP,
-                priority=PATIENT_PRIORITY if self.bounded else priority,
-                reliability=reliability,
-                allowed_destination=zenoh.Locality.REMOTE,
-                cache=ext.CacheConfig(max_samples=self._depth),
-                publisher_detection=True,
-                # Samples are numbered, so readers ask again for what is missing between two. No
-                # heartbeat, which would tell of a missing last one: undeclaring waits for its task
-                # with the GIL held, 10 s if that needs the GIL just then (zenoh-python 1.10).
-                sample_miss_detection=ext.MissDetectionConfig(
-                    heartbeat=None, sporadic_heartbeat=None
-                )
-                if reliable and self.recovers
-                else None,
-            )
+            self._publisher = self._declare_keeping(session)
+            if self._expiry is not None:
+                self._expiry.start()
             while self._early:
-                self.put(*self._early.popleft())
+                payload, extra = self._early.popleft()
+                self._unless_expired(extra, partial(self.put, payload, extra))()
+                if self._expiry is not None:
+                    self._expiry.note()
         else:
-            self._publisher = session.declare_publisher(
-                self._key,
-                congestion_control=DROP,
-                priority=LOOP_PRIORITY,
-                reliability=reliability,
-                allowed_destination=zenoh.Locality.REMOTE,
+            self._publisher = declare_plain(
+                session, self._key, LOOP_PRIORITY, reliable=self._reliable, waits=False
             )
             if self.recovers:  # else a bridge has announced every reader
                 self._matching = self._publisher.declare_matching_listener(
@@ -173,6 +162,30 @@ class ZenohWriter(Declaration, Writer):
                 # Here only: Zenoh looks through all subscribers of all topics for an answer.
                 self._is_matching = bool(self._publisher.matching_status.matching)  # type: ignore[attr-defined]  # no bool, as the stub says
         self._update()
+
+    def _declare_keeping(self, session: zenoh.Session) -> ext.AdvancedPublisher:
+        priority = BULK_PRIORITY if self._bulk_only else LOOP_PRIORITY
+        return declare_keeping(
+            session,
+            self._key,
+            self._depth,
+            PATIENT_PRIORITY if self.bounded else priority,
+            reliable=self._reliable,
+            waits=self.bounded,
+            numbered=self.recovers,
+        )
+
+    def _forget_expired(self, periods: int) -> bool:  # noqa: ARG002  # one lifespan is enough
+        """Replace the publisher by a new one: all that Zenoh keeps of it has expired."""
+        if self.state.session is not None and self._publisher is not None:
+            if not self.is_done():
+                return True  # once more, after another lifespan
+            before, self._publisher = self._publisher, self._declare_keeping(self.state.session)
+            if self._patient is None:
+                withdraw(before)
+            else:
+                self._patient_sender.submit(partial(withdraw, before))
+        return False
 
     def undeclare_data(self) -> None:
         """Undeclare the publisher as soon as its messages are acknowledged or given up."""
@@ -201,6 +214,8 @@ class ZenohWriter(Declaration, Writer):
 
     def finish(self) -> None:
         """Undeclare the publisher, and count the messages that were not delivered."""
+        if self._expiry is not None:
+            self._expiry.stop()
         self.state.has_lingered(self)
         if self._history is not None and (missing := self._history.give_up()):
             self.lost(missing)
@@ -320,6 +335,8 @@ class ZenohWriter(Declaration, Writer):
                 self._early.append((payload, extra))
         elif history is None:
             self.put(payload, extra)
+            if self._expiry is not None:
+                self._expiry.note()
         else:
             history.write(sample_info.sequence, payload, extra)
             if not self._is_watched and history.entries:
@@ -387,32 +404,15 @@ class ZenohWriter(Declaration, Writer):
             self._patient = self._send_queue(self._patient_sender, keep_all=self.bounded)
             self._update_route()
             if not self._transient and self.state.session is not None:
-                self._patient_publisher = self.state.session.declare_publisher(
-                    self._key,
-                    congestion_control=BLOCK,
-                    priority=PATIENT_PRIORITY,
-                    reliability=zenoh.Reliability.RELIABLE,
-                    allowed_destination=zenoh.Locality.REMOTE,
+                self._patient_publisher = declare_plain(
+                    self.state.session, self._key, PATIENT_PRIORITY, reliable=True, waits=True
                 )
         patient = self._patient_publisher or publisher
         send = partial(self._send_patiently, patient, payload, extra)
         self._patient.put(self._unless_expired(extra, send))
 
     def _unless_expired(self, extra: bytes, send: Callable[[], None]) -> Callable[[], None]:
-        """Return `send`, or with a lifespan what does nothing if the message expires before it.
-
-        Only readers of aionode look at the age of what arrives.
-        """
-        fields = attachment.unpack_fields(extra)
-        if not self._lifespan_ns or fields is None:
-            return send
-        expires_ns = fields[1] + self._lifespan_ns
-
-        def send_if_fresh() -> None:
-            if self.state.now_ns() < expires_ns:
-                send()
-
-        return send_if_fresh
+        return unless_expired(extra, self._lifespan_ns, self.state.now_ns, send)
 
     def _send_patiently(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes

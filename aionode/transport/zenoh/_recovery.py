@@ -15,6 +15,10 @@ The same is done once after the start, and when a peer is connected that announc
 many processes start at the same moment, Zenoh gives dialling up before a busy process has answered,
 and of two connections made at once it may keep one on which the other end has announced nothing
 (zenoh 1.10). Such a connection is cut as well.
+
+A process that returns may still read what came over its old connection when the new one is made.
+Then Zenoh takes the new one for another link of the old one, and announces nothing on it either. A
+participant of aionode always has a token, so for one that returns no look is needed.
 """
 
 from __future__ import annotations
@@ -25,6 +29,7 @@ import os
 import secrets
 import socket
 import threading
+from collections import Counter
 from contextlib import closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -53,6 +58,9 @@ LOOK_IDS: Final = "a10de10c"
 
 FIRST_S: Final = 0.5
 """The first look is so long after a connection was lost or made; Zenoh needs milliseconds."""
+
+DECLARED_S: Final = 1.0
+"""How long after a participant has returned its tokens may take; they take some milliseconds."""
 
 START_S: Final = 20.0
 """For so long after the start looks are repeated, until one finds nothing missing."""
@@ -124,6 +132,8 @@ class Recovery:
         self._lost: set[str] = set()
         # How often the connection was cut for each missing participant.
         self._attempts: dict[str, int] = {}
+        # How often the connection to each participant was cut that declared nothing.
+        self._cuts: Counter[str] = Counter()
 
     def start(self, session: zenoh.Session) -> None:
         """Start watching the connections of a session."""
@@ -152,6 +162,7 @@ class Recovery:
         self._until_s = 0.0
         self._starting_until_s = 0.0
         self._attempts.clear()
+        self._cuts.clear()
         self._lost.clear()
 
     def _take_change(self, event: zenoh.TransportEvent) -> None:
@@ -166,11 +177,27 @@ class Recovery:
             self._until_s = now_s + WATCH_S
             self._lost.add(zid)
         else:
+            if zid in self._lost:
+                asyncio.get_running_loop().call_later(DECLARED_S, self._check_returned, zid)
             self._lost.discard(zid)
         if self._timer is None:
             self._changing_since_s = now_s
         if now_s - self._changing_since_s < POSTPONED_S:
             self._look_in(FIRST_S)
+
+    def _check_returned(self, zid: str) -> None:
+        """Cut the connection to a participant that has returned, but has not declared anything."""
+        session, acknowledgements = self._session, self._state.acknowledgements
+        if (
+            session is not None
+            and zid in acknowledgements.participants - acknowledgements.present - self._lost
+            and self._cuts[zid] < ATTEMPTS
+        ):
+            self._cuts[zid] += 1
+            logger.info("process %s is connected, but declares nothing: connected anew", zid)
+            threading.Thread(
+                target=cut_participant, args=(session, zid), name="aionode-zenoh"
+            ).start()
 
     def _look_in(self, delay_s: float) -> None:
         """Look in a while; processes that saw the same end do not all look at once."""
@@ -320,6 +347,12 @@ def addresses_of(endpoint: str) -> Iterator[tuple[str, int]]:
         with suppress(OSError):
             for *_, found in socket.getaddrinfo(*address, type=socket.SOCK_STREAM):
                 yield str(found[0]), int(found[1])
+
+
+def cut_participant(session: zenoh.Session, zid: str) -> None:
+    """Cut the connections to a participant."""
+    with suppress(zenoh.ZError):  # the session was closed meanwhile
+        cut(connections_to(session, {zid}))
 
 
 def cut(connections: Iterable[Connection]) -> None:

@@ -22,6 +22,7 @@ from aionode.transport.zenoh._assertions import Assertions
 from aionode.transport.zenoh._cancellations import Cancellations
 from aionode.transport.zenoh._handlers import translated
 from aionode.transport.zenoh._peer_senders import PeerSenders
+from aionode.transport.zenoh._sockets import look
 from aionode.wire._key_expression import data_key
 from aionode.wire._liveliness import endpoint_token, gid_of
 
@@ -92,6 +93,7 @@ class SessionState:
         own_gids: The gids of this context's publishers, lingering ones included.
         cancellations: The requests that clients have given up.
         assertions: The liveliness that publishers assert.
+        time_base: The time of the context.
         now_ns: Returns the time of the context, in nanoseconds since 1970.
         content_filters: What subscriptions of other contexts want.
         has_unannounced_peers: Whether there may be subscriptions that nothing announces.
@@ -112,7 +114,7 @@ class SessionState:
         self.waker = LoopWaker() if waker is None else waker
         self.bulk = SendThread("aionode-bulk", self.waker)
         self.send_threads = {self.bulk}
-        self.peer_senders = PeerSenders(self.waker)
+        self.peer_senders = PeerSenders(self.waker, self._look)
         self.burst = Burst()
         self.acknowledgements = Acknowledgements(
             participant, domain_id, self.waker, self.note_malformed, self._readers_changed
@@ -122,7 +124,8 @@ class SessionState:
         self.own_gids: set[bytes] = set()
         self.cancellations = Cancellations(participant, domain_id, self.waker, self.note_malformed)
         self.assertions = Assertions(participant, domain_id, self.waker, self.note_malformed)
-        self.now_ns = (MachineTime() if time_base is None else time_base).system_ns
+        self.time_base = MachineTime() if time_base is None else time_base
+        self.now_ns = self.time_base.system_ns
         self.on_reader: dict[str, list[Callable[[], None]]] = {}
         self.content_filters = ContentFilters()
         self.content_filters.on_change.append(self._readers_changed)
@@ -186,6 +189,16 @@ class SessionState:
         for declaration in list(self._declarations):
             if declaration.needs_graph and self.session is not None:
                 declaration.declare(self.session)
+
+    def _look(self, participant: str) -> tuple[bool, int] | None:
+        """Return the state of the connection to a participant, as `look`; called in a thread."""
+        session = self.session
+        if session is None:
+            return None
+        try:
+            return look(session, participant)
+        except zenoh.ZError:  # the session was closed meanwhile
+            return None
 
     async def flush(self) -> None:
         """Wait until all messages were sent and acknowledged, for `FLUSH_S` at most.

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import select
 import socket
 import struct
 import sys
@@ -32,7 +33,7 @@ from aionode.transport.zenoh._handlers import direct
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["LingerSwitch", "cut_stuck", "give_up_unreachable"]
+__all__ = ["LingerSwitch", "cut_stuck", "give_up_unreachable", "look"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
@@ -49,6 +50,9 @@ RESET: Final = struct.pack("ii", 1, 0)
 
 NO_LINGER: Final = struct.pack("ii", 0, 0)
 """SO_LINGER for all others: closing returns at once, and the system goes on sending."""
+
+ACKED: Final = slice(120, 128)
+"""Where ``struct tcp_info`` says how many bytes the peer's system has acknowledged."""
 
 SETTLE_S: Final = 0.5
 """How long after a new connection its socket is looked for; several are made at once."""
@@ -97,26 +101,46 @@ def give_up_unreachable(session: zenoh.Session) -> None:
     held.append(listener)
 
 
-def waiting_bytes(session: zenoh.Session) -> dict[str, int]:
-    """Return how many bytes wait in the socket of each peer of a session; not those with none."""
+def queued_bytes(one: socket.socket) -> int:
+    """Return how many bytes wait in a socket; 0 where the system does not tell."""
     try:
         import fcntl
         import termios
     except ImportError:  # Windows
-        return {}
+        return 0
+    return int.from_bytes(fcntl.ioctl(one, termios.TIOCOUTQ, bytes(4)), sys.byteorder)
+
+
+def waiting_bytes(session: zenoh.Session) -> dict[str, int]:
+    """Return how many bytes wait in the socket of each peer of a session; not those with none."""
     peers = {address_of(link) for link in session.info.links()}
     with connections() as found:
-        waiting = {
-            peer: int.from_bytes(fcntl.ioctl(one, termios.TIOCOUTQ, bytes(4)), sys.byteorder)
-            for peer, one in found
-            if peer in peers
-        }
+        waiting = {peer: queued_bytes(one) for peer, one in found if peer in peers}
     return {peer: size for peer, size in waiting.items() if size}
 
 
 def address_of(link: zenoh.Link) -> str:
     """Return the address of the peer, such as ``127.0.0.1:7447``."""
     return str(link.dst).partition("/")[2].partition("?")[0]
+
+
+def look(session: zenoh.Session, participant: str) -> tuple[bool, int] | None:
+    """Return whether the socket to a peer has room, and how many bytes were written to it so far.
+
+    None if there is no such socket, or the system does not tell.
+    """
+    if not sys.platform.startswith("linux"):
+        return None
+    peers = {address_of(link) for link in session.info.links() if str(link.zid) == participant}
+    with connections() as found:
+        for peer, one in found:
+            if peer in peers:
+                poll = select.poll()
+                poll.register(one, select.POLLOUT)
+                info = one.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, ACKED.stop)
+                acked = int.from_bytes(info[ACKED], sys.byteorder)
+                return bool(poll.poll(0)), acked + queued_bytes(one)
+    return None
 
 
 def switch_linger_off(peers: set[str]) -> None:
@@ -170,7 +194,7 @@ class LingerSwitch:
 
 
 def cut(peers: set[str]) -> None:
-    """Cut the connections to some peers."""
+    """Cut the connections to some peers, named by `address_of`."""
     with connections() as found:
         for peer, one in found:
             if peer in peers:

@@ -66,7 +66,7 @@ async def until(condition: Callable[[], bool]) -> None:
 
 
 async def test_another_process_takes_the_place_of_one_that_ended() -> None:
-    """Nobody is cut off for longer than a moment."""
+    """No process is cut off for longer than a moment."""
     async with AsyncExitStack() as stack:
         first = await stack.enter_async_context(Context(static_peers=[FAR]))
         async with AsyncExitStack() as rest:

@@ -10,15 +10,26 @@ from functools import partial
 import pytest
 
 from aionode.transport._loop_waker import LoopWaker
-from aionode.transport.zenoh._peer_senders import ALLOWANCE_BYTES, PeerSenders
+from aionode.transport.zenoh._peer_senders import (
+    ALLOWANCE_BYTES,
+    OVERHEAD_BYTES,
+    UNSEEN_BYTES,
+    PeerSenders,
+)
 
 
 @pytest.fixture
-async def peers() -> AsyncIterator[PeerSenders]:
+def full() -> set[str]:
+    """Peers whose connections have no room."""
+    return set()
+
+
+@pytest.fixture
+async def peers(full: set[str]) -> AsyncIterator[PeerSenders]:
     """PeerSenders whose threads wake the running loop."""
     waker = LoopWaker()
     waker.open(asyncio.get_running_loop())
-    peers = PeerSenders(waker)
+    peers = PeerSenders(waker, lambda participant: (participant not in full, 0))
     yield peers
     for send_thread in peers.send_threads():
         await send_thread.flush()
@@ -90,3 +101,70 @@ async def test_the_threads_of_peers_that_are_done_end(peers: PeerSenders) -> Non
             while send_thread.busy:
                 await asyncio.to_thread(lambda: None)
     assert len(peers.send_threads()) == 1
+
+
+async def test_nothing_is_sent_to_a_peer_that_takes_nothing_until_it_does(
+    peers: PeerSenders, full: set[str]
+) -> None:
+    """Zenoh would wait for it with a lock that the end of the peer's lease needs."""
+    full.add("frozen")
+    sent = Sent()
+    for _ in range(50):
+        peers.send(("frozen",), UNSEEN_BYTES // 10, sent)
+    assert sent.direct * UNSEEN_BYTES // 10 <= ALLOWANCE_BYTES
+    assert len(sent.threads) == sent.direct
+
+    full.clear()
+    (send_thread,) = peers.send_threads()
+    await send_thread.flush()
+    assert len(sent.threads) == 50
+
+
+async def test_a_thread_looks_now_and_then_whether_its_peer_takes_what_it_sends() -> None:
+    """Each look goes through all descriptors of the process."""
+    waker = LoopWaker()
+    waker.open(asyncio.get_running_loop())
+    looks = 0
+
+    def look(_: str) -> tuple[bool, int]:
+        nonlocal looks
+        looks += 1
+        return True, looks * UNSEEN_BYTES
+
+    peers = PeerSenders(waker, look)
+    for _ in range(1000):
+        peers.send(("slow",), 1000, Sent())
+    (send_thread,) = peers.send_threads()
+    await send_thread.flush()
+    waker.close()
+
+    assert 1 <= looks <= 2 + 1000 * (1000 + OVERHEAD_BYTES) // UNSEEN_BYTES
+
+
+async def test_a_connection_that_zenoh_had_no_time_to_fill_is_looked_at_again() -> None:
+    """It has room, but what was sent before still waits in Zenoh's queue."""
+    waker = LoopWaker()
+    waker.open(asyncio.get_running_loop())
+    seen = iter([(True, 0), (False, 0), (True, 0), (True, 0)])
+    peers = PeerSenders(waker, lambda _: next(seen))
+    sent = Sent()
+    peers.submit("busy", 1, sent)
+    (send_thread,) = peers.send_threads()
+    await send_thread.flush()
+    waker.close()
+
+    assert len(sent.threads) == 1
+    assert next(seen, None) is None
+
+
+async def test_what_waits_for_a_peer_ends_with_the_session(
+    peers: PeerSenders, full: set[str]
+) -> None:
+    """A program that ends does not wait for a frozen peer."""
+    full.add("frozen")
+    sent = Sent()
+    peers.submit("frozen", 1, sent)
+    (send_thread,) = peers.send_threads()
+    peers.clear()
+    await send_thread.flush()
+    assert not sent.threads

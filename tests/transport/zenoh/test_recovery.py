@@ -357,3 +357,23 @@ def test_a_look_is_known_by_its_id() -> None:
     assert not is_look("a1")
     with closing(ros_session()) as session:
         assert not is_look(str(session.zid()))
+
+
+async def test_a_participant_that_is_connected_and_declares_nothing_is_connected_anew(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Zenoh took its new connection for another link of the one that is lost."""
+    monkeypatch.setattr(recovery, "DECLARED_S", 0.05)
+    async with asyncio.timeout(4 * LIMIT_S), context("a1") as first, context("b2"):
+        acknowledgements = first._state.acknowledgements
+        while "b2" not in acknowledgements.present:
+            await checkpoint()
+        first._recovery._check_returned("b2")
+        assert not first._recovery._cuts
+
+        acknowledgements.present.clear()
+        first._recovery._check_returned("b2")
+        while "b2" not in acknowledgements.present:
+            await checkpoint()
+
+        assert first._recovery._cuts == {"b2": 1}

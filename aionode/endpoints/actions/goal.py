@@ -74,14 +74,14 @@ class GoalStatus(IntEnum):
         return self in {GoalStatus.ACCEPTED, GoalStatus.EXECUTING, GoalStatus.CANCELING}
 
 
-class GoalEvent(Enum):
-    """What can happen to a goal."""
+class GoalEvent(IntEnum):
+    """What can happen to a goal, with the numbers of rcl_action."""
 
-    EXECUTE = 1
-    CANCEL_GOAL = 2
-    SUCCEED = 3
-    ABORT = 4
-    CANCELED = 5
+    EXECUTE = 0
+    CANCEL_GOAL = 1
+    SUCCEED = 2
+    ABORT = 3
+    CANCELED = 4
 
 
 class GoalResponse(Enum):
