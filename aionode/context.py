@@ -204,10 +204,12 @@ class Context:
         if transport == "zenoh":
             # Imported on demand: it is large, and a local context does not need it.
             from aionode.transport.zenoh import ZenohTransport
+            from aionode.transport.zenoh.bridge import BridgeTransport
 
             zenoh = ZenohTransport(self.participant, self.network, self.time_base)
+            bridges = BridgeTransport(zenoh.session_state, self.time_base)
             if not wants_link(link, os.environ):
-                return (LocalTransport(), zenoh)
+                return (LocalTransport(), zenoh, bridges)
             from aionode.transport.ipc import IpcTransport
 
             linked = IpcTransport(
@@ -217,7 +219,7 @@ class Context:
                 zenoh.peer_directory,
                 self.time_base,
             )
-            return (LocalTransport(), linked)
+            return (LocalTransport(), linked, bridges)
         if transport == "rcl":
             from aionode.transport.rcl import RclTransport
 

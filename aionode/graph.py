@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias, TypeVar
 
 from aionode import names, qos
-from aionode._distribution import distribution_mismatch
+from aionode._distribution import NO_TYPE_HASH, distribution_mismatch
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -63,6 +63,8 @@ class NodeInfo:
         enclave: Its security enclave.
         over_rcl: Whether rcl has found it, over a middleware such as DDS. That connects endpoints
             only if their QoS fits, and may not tell the hashes of types.
+        bridged: Whether it is on DDS, behind a `zenoh-bridge-ros2dds`; then `participant` is the
+            Zenoh id of that bridge.
     """
 
     participant: str
@@ -71,6 +73,7 @@ class NodeInfo:
     namespace: str
     enclave: str = "/"
     over_rcl: bool = False
+    bridged: bool = False
 
     @property
     def fully_qualified_name(self) -> str:
@@ -130,29 +133,40 @@ class EndpointInfo:
         """Return the first difference to the opposite endpoint `other`; None if there is none.
 
         A difference in QoS matters within one context, and between contexts over DDS; rmw_zenoh
-        delivers between contexts whatever the QoS is.
+        delivers between contexts whatever the QoS is. A bridge adapts to both sides, but DDS
+        subscriptions that request what was published before may refuse a volatile publisher. A hash
+        that is not told, as of the services behind a bridge, differs from none.
         """
         different = self._compare_types(other)
         if different is not None or self.kind not in TOPIC_KINDS:
             return different  # services neither offer nor request QoS
         is_publisher = self.kind is EndpointKind.PUBLISHER
         publisher, subscription = (self, other) if is_publisher else (other, self)
-        reason = qos.mismatch(publisher.qos, subscription.qos)
-        if reason is None:
+        found = qos.incompatibilities(publisher.qos, subscription.qos)
+        if publisher.node.bridged or subscription.node.bridged:
+            refused = subscription.node.bridged and not publisher.node.bridged
+            found = [one for one in found if refused and one.kind is qos.QoSPolicyKind.DURABILITY]
+        if not found:
             return None
-        last = qos.incompatibilities(publisher.qos, subscription.qos)[-1]
-        return Mismatch("qos", reason, last.kind)
+        return Mismatch("qos", "; ".join(one.reason for one in found), found[-1].kind)
 
     def _compare_types(self, other: EndpointInfo) -> Mismatch | None:
         if self.type_name != other.type_name:
             return Mismatch("type", f"type: {self.type_name} here, {other.type_name} there")
-        if self.type_hash != other.type_hash and self.type_hash and other.type_hash:
+        if self._has_other_hash(other):
             reason = distribution_mismatch(self.type_hash, other.type_hash)
             if reason is not None:
                 return Mismatch("distribution", reason)
             hashes = f"{self.type_hash} here, {other.type_hash} there"
             return Mismatch("definition", f"definition of {self.type_name}: {hashes}")
         return None
+
+    def _has_other_hash(self, other: EndpointInfo) -> bool:
+        """Whether both tell the hash of their type, and they differ; DDS is without hashes."""
+        hashes = {self.type_hash, other.type_hash}
+        if self.node.bridged or other.node.bridged:
+            hashes -= {NO_TYPE_HASH}
+        return len(hashes - {""}) > 1
 
     def mismatch(self, other: EndpointInfo) -> str | None:
         """Return why this endpoint and its opposite `other` do not communicate; None if they do.
