@@ -114,8 +114,8 @@ def test_a_goal_has_feedback_and_a_result() -> None:
         result.sequence = [0, 1, goal_handle.request.order]
         return result
 
-    server = ActionServer(node, Fibonacci, "fibonacci", execute)
-    client = ActionClient(node, Fibonacci, "fibonacci")
+    server: ActionServer[Any, Any, Any] = ActionServer(node, Fibonacci, "fibonacci", execute)
+    client: ActionClient[Any, Any, Any] = ActionClient(node, Fibonacci, "fibonacci")
     assert client.wait_for_server(timeout_sec=LIMIT_S)
     feedback: list[list[int]] = []
 
@@ -151,7 +151,7 @@ def test_a_goal_that_waits_is_cancelled() -> None:
         return CancelResponse.ACCEPT
 
     ActionServer(node, Fibonacci, "fibonacci", execute, cancel_callback=accept)
-    client = ActionClient(node, Fibonacci, "fibonacci")
+    client: ActionClient[Any, Any, Any] = ActionClient(node, Fibonacci, "fibonacci")
     client.wait_for_server(timeout_sec=LIMIT_S)
     handle = spin_until(node, client.send_goal_async(Fibonacci.Goal(order=1)))
     result = handle.get_result_async()
