@@ -15,13 +15,14 @@ PROGRAM = """
 import aionode
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
+from aionode.qos import qos_profile_sensor_data
 
 class Robot(aionode.Node):
     def __init__(self):
         super().__init__("aionode_robot", namespace="/robot")
         self.declare_parameter("speed", 0.5)
         self.words = self.create_publisher(String, "words", 10)
-        self.create_subscription(String, "orders", print, aionode.qos_profile_sensor_data)
+        self.create_subscription(String, "orders", print, qos_profile_sensor_data)
         self.create_service(AddTwoInts, "add", lambda _, response: response)
         self.create_timer(0.05, lambda: self.words.publish(String(data="word")))
 

@@ -76,6 +76,21 @@ class PublisherMonitor:
         TypeError: `event_callbacks` is of another class, or a function in it takes other arguments.
     """
 
+    __slots__ = (
+        "_alarms",
+        "_graph_entry",
+        "_heartbeat",
+        "_hub",
+        "_lease_alarm",
+        "_lease_ns",
+        "_lost",
+        "_manual",
+        "_missed",
+        "_time_base",
+        "_watches_matches",
+        "writers",
+    )
+
     def __init__(
         self,
         graph_entry: GraphEntry,

@@ -64,6 +64,24 @@ class SubscriptionMonitor:
         TypeError: `event_callbacks` is of another class, or a function in it takes other arguments.
     """
 
+    __slots__ = (
+        "_deadline",
+        "_endpoint",
+        "_graph_entry",
+        "_hub",
+        "_items",
+        "_lifespans_ns",
+        "_liveliness",
+        "_matching",
+        "_missed",
+        "_now_ns",
+        "_own_lifespan_ns",
+        "_purge",
+        "_reader",
+        "_runs",
+        "_time_base",
+    )
+
     def __init__(
         self,
         graph_entry: GraphEntry,
