@@ -50,7 +50,9 @@ RESULTS: Final = Path(__file__).parent / "results"
 BEGIN: Final = "<!-- peers: made by benchmarks/peers.py -->\n"
 END: Final = "<!-- end of peers -->\n"
 OURS: Final = "aionode, link"
-LIMIT_S: Final = 60.0
+LIMIT_S: Final = 30.0
+DUTY_S: Final = 1.5
+BLOCKS: Final = 5  # round trips of blocks in a round
 COLUMNS: Final = {
     "tight": "tight, µs",
     "paced": "100 Hz, µs",
@@ -205,11 +207,11 @@ class Pair:
             "pyzmq",
         ):
             return None  # the other end has an address that it cannot have too
-        self.ping.send("duty 8")
+        self.ping.send("duty 5")
         began = time.perf_counter()
         hearer = Process(self.name, "hear", self.place, self.loop)
         try:
-            hearer.answer(8)
+            hearer.answer(5)
             return (time.perf_counter() - began) * 1e3
         except SilentError:
             return None
@@ -223,12 +225,12 @@ def import_ms(name: str) -> float:
 
     def run_ms(program: str) -> float:
         began = time.perf_counter()
-        subprocess.run([python_of(name), "-c", program], check=True, capture_output=True)  # noqa: S603  # of this file
+        command = [python_of(name), "-c", program]
+        subprocess.run(command, check=True, capture_output=True)  # noqa: S603  # of this file
         return (time.perf_counter() - began) * 1e3
 
-    return min(run_ms(f"import {MODULES[name]}") for _ in range(3)) - min(
-        run_ms("") for _ in range(3)
-    )
+    runs = [(run_ms(f"import {MODULES[name]}"), run_ms("")) for _ in range(2)]
+    return max(min(full for full, _ in runs) - min(empty for _, empty in runs), 0.0)
 
 
 class Comparison:
@@ -280,9 +282,9 @@ class Comparison:
             self.each("paced", lambda pair: pair.trips(max(count // 10, 8), 0.01))
             self.each("calls", lambda pair: pair.calls(count))
             for column, size in (("mb1", 1_000_000), ("mb4", 4_000_000)):
-                self.each(column, lambda pair, size=size: pair.trips(8, 0, size))  # type: ignore[misc]  # size is bound now
+                self.each(column, lambda pair, size=size: pair.trips(BLOCKS, 0, size))  # type: ignore[misc]  # size is bound now
             self.each("burst", lambda pair: pair.ping.ask("burst"))
-            self.each("sender receiver", lambda pair: pair.duty(2))
+            self.each("sender receiver", lambda pair: pair.duty(DUTY_S))
         self.each("first", Pair.first_ms)
         self.each("import", lambda pair: import_ms(pair.name))
 
@@ -378,7 +380,7 @@ def main() -> None:
     if args.station:
         station(args.station, args.side, (args.folder, args.port), args.loop)
         return
-    rounds, count = (2, 150) if args.quick else (5, 400)
+    rounds, count = (2, 100) if args.quick else (5, 400)
     tables, skipped = {}, {}
     for loop in [args.loop] if args.loop else ["asyncio", "uvloop"]:
         with tempfile.TemporaryDirectory(prefix="aio") as folder:
