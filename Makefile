@@ -10,6 +10,7 @@
 #   make docs      the documentation as pages, in site/
 #   make fuzz      damaged input for every parser: by property tests, and guided by coverage
 #   make faults    processes that freeze, lag and die, FAULTS_TIMES times: writes docs/reliability.md
+#   make ros-test  aionode over DDS, beside rclpy of PyPI; Linux x86-64
 #   make live      aionode beside a real ROS 2 on rmw_zenoh, where one is sourced
 #   make soak      everything at once, for SOAK_SECONDS seconds: nothing may grow
 #   make quotes    brings the code quoted in README.md and docs/ up to date
@@ -26,10 +27,11 @@ FAULTS_TIMES ?= 3
 WORKERS ?= auto
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test stress check coverage bench profile docs fuzz faults live soak quotes clean
+.PHONY: help demo test stress check coverage bench profile docs fuzz faults live ros-test soak \
+	quotes clean
 
 help:
-	@sed -n '3,16s/^# *//p' Makefile
+	@sed -n '3,17s/^# *//p' Makefile
 
 demo: .venv/installed
 	$(BIN)/python -m aionode.examples.pubsub
@@ -74,6 +76,10 @@ fuzz: .venv/installed-dev
 
 faults: .venv/installed-dev
 	$(BIN)/python -m tests.faults --times $(FAULTS_TIMES) --write docs/reliability.md
+
+ros-test: .venv/installed-dev
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[ros]'
+	$(BIN)/python -m pytest -q -rs tests/transport/rcl tests/transport/test_contract.py
 
 live: .venv/installed-dev
 	$(BIN)/python -m pytest -q -rs tests/live
