@@ -401,21 +401,21 @@ class Rclpy(Peer):
 
     def open(self) -> None:
         """Start a node, and wait for the other one."""
-        import rclpy  # type: ignore[import-not-found]
-        from rclpy.executors import SingleThreadedExecutor  # type: ignore[import-not-found]
-        from rclpy.task import Future  # type: ignore[import-not-found]
-        from std_msgs.msg import String, UInt8MultiArray  # type: ignore[import-not-found]
+        import rclpy
+        from rclpy.executors import SingleThreadedExecutor
+        from rclpy.task import Future
+        from std_msgs.msg import String, UInt8MultiArray
 
         try:
-            from example_interfaces.srv import AddTwoInts  # type: ignore[import-not-found]
+            from example_interfaces.srv import AddTwoInts
         except ImportError:  # PyPI has no other service
-            from test_msgs.srv import BasicTypes as AddTwoInts  # type: ignore[import-not-found]
+            from test_msgs.srv import BasicTypes as AddTwoInts
         os.environ["ROS_DOMAIN_ID"] = str(self.port % 100 + 1)
         rclpy.init()
         self.String, self.Block, self.Add, self.Future = String, UInt8MultiArray, AddTwoInts, Future
         self.node = rclpy.create_node(self.side)
         if self.events:
-            from rclpy.experimental.events_executor import (  # type: ignore[import-not-found]
+            from rclpy.experimental.events_executor import (
                 EventsExecutor,
             )
 
