@@ -139,7 +139,7 @@ def test_a_command_of_the_documentation_exists(command: str) -> None:
                 "export",
                 "python",
             }
-    assert words[0] in others, command
+            assert words[0] in others, command
 
 
 def command_exists(arguments: list[str]) -> bool:
