@@ -407,7 +407,7 @@ class Rclpy(Peer):
         from std_msgs.msg import String, UInt8MultiArray
 
         try:
-            from example_interfaces.srv import AddTwoInts
+            from example_interfaces.srv import AddTwoInts  # type: ignore[import-not-found]
         except ImportError:  # PyPI has no other service
             from test_msgs.srv import BasicTypes as AddTwoInts
         os.environ["ROS_DOMAIN_ID"] = str(self.port % 100 + 1)
