@@ -33,6 +33,7 @@ from typing import Any, Final
 sys.path.insert(0, str(Path(__file__).parents[1]))  # run as a program, it finds its own parts
 
 RESULTS: Final = Path(__file__).parent / "results"
+TRIES: Final = 4
 MESSAGES: Final = 64  # as many as are recorded, and confirmed, at once
 BEGIN: Final = "<!-- instructions: made by benchmarks/instructions.py -->\n"
 END: Final = "<!-- end of instructions -->\n"
@@ -44,27 +45,35 @@ CACHES: Final = ("--I1=128,1,64", "--D1=128,1,64", "--LL=1048576,16,64")
 
 def play(folder: str, only: str) -> None:
     """Run each case in forked processes of its own: their counts begin where this one's are."""
-    from benchmarks.instruction_parts.cases import CASES, calibrate
+    from benchmarks.instruction_parts.cases import CASES
 
     for number, name in enumerate(CASES):
         for times in (1, 2) if not number or only in name else ():
-            child = os.fork()
-            if child == 0:
-                os.environ["XDG_RUNTIME_DIR"] = folder
-                arrived = asyncio.run(calibrate(name, times * MESSAGES))
-                complete = arrived == times * MESSAGES
-                (Path(folder) / f"{os.getpid()}.case").write_text(f"{number} {times} {arrived}")
-                os._exit(0 if complete else 1)
-            _, status = os.waitpid(child, 0)
-            if status:
+            # On a very busy machine a timer may be so late that it leaves out a tick.
+            if not any(is_complete(folder, number, times) for _ in range(TRIES)):
                 raise SystemExit(f"{name}: not every message has arrived once")
+
+
+def is_complete(folder: str, number: int, times: int) -> bool:
+    """Run a case in a process of its own; return whether each message has arrived once."""
+    from benchmarks.instruction_parts.cases import CASES, calibrate
+
+    child = os.fork()
+    if child == 0:
+        os.environ["XDG_RUNTIME_DIR"] = folder
+        arrived = asyncio.run(calibrate(list(CASES)[number], times * MESSAGES))
+        complete = arrived == times * MESSAGES
+        if complete:
+            (Path(folder) / f"{os.getpid()}.case").write_text(f"{number} {times}")
+        os._exit(not complete)
+    return os.waitpid(child, 0)[1] == 0
 
 
 def counts(folder: Path) -> dict[tuple[int, int], dict[str, int]]:
     """Return what valgrind has counted, by case and run."""
     found = {}
     for case in folder.glob("*.case"):
-        number, times, _ = map(int, case.read_text().split())
+        number, times = map(int, case.read_text().split())
         lines = (folder / f"{case.stem}.out").read_text().splitlines()
         events = next(line for line in lines if line.startswith("events:")).split()[1:]
         totals = next(line for line in lines if line.startswith("summary:")).split()[1:]

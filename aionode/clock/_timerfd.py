@@ -133,7 +133,7 @@ class PeriodicAlarm:
         NotImplementedError: The loop cannot wait for files.
     """
 
-    __slots__ = ("_callback", "_fd", "_loop")
+    __slots__ = ("_callback", "_fd", "_loop", "_process")
 
     count = 0
 
@@ -144,6 +144,7 @@ class PeriodicAlarm:
         if PeriodicAlarm.count >= MAX_PERIODIC:
             raise OSError(errno.EMFILE, "the others share one file")
         self._loop = asyncio.get_running_loop()
+        self._process = os.getpid()
         self._callback = callback
         # On the system clock itself, as the distance between the two clocks changes all the time.
         fd = open_timer(CLOCK_REALTIME if system else CLOCK_MONOTONIC)
@@ -173,7 +174,8 @@ class PeriodicAlarm:
         fd, self._fd = self._fd, -1
         if fd >= 0:
             PeriodicAlarm.count -= 1
-            if not self._loop.is_closed():
+            # A forked child shares the parent's `epoll`, and would silence its timers.
+            if not self._loop.is_closed() and self._process == os.getpid():
                 self._loop.remove_reader(fd)
             os.close(fd)
 

@@ -230,7 +230,9 @@ async def test_setting_the_system_clock_leaves_a_timer_running(
 
     with monkeypatch.context() as patch:
         flags = {"O_NONBLOCK": os.O_NONBLOCK, "O_CLOEXEC": os.O_CLOEXEC}
-        patch.setattr(timerfd, "os", SimpleNamespace(read=read, close=os.close, **flags))
+        patch.setattr(
+            timerfd, "os", SimpleNamespace(read=read, close=os.close, getpid=os.getpid, **flags)
+        )
         await calls.have(len(calls.tasks) + 5)
     assert left < 0
     assert not timer.is_canceled()
@@ -257,3 +259,20 @@ async def test_a_timer_gives_its_file_back(node: Node, end: Any) -> None:
     end(timer)
     await settle()
     assert timerfd.PeriodicAlarm.count == before
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="timerfd is Linux's")
+async def test_a_forked_child_leaves_the_timers_of_its_parent_running() -> None:
+    """The two share what the loop waits with, and the child's end cancels what it has inherited."""
+    rung = asyncio.Event()
+    alarm = timerfd.PeriodicAlarm(1, 1_000_000, rung.set, system=False)
+    child = os.fork()
+    if not child:
+        alarm.cancel()
+        os._exit(0)
+    os.waitpid(child, 0)  # noqa: ASYNC222  # it ends at once
+    for _ in range(3):
+        rung.clear()
+        async with asyncio.timeout(20):
+            await rung.wait()
+    alarm.cancel()
