@@ -61,6 +61,8 @@ class NodeInfo:
         name: Its name without namespace.
         namespace: Its namespace, beginning with a slash.
         enclave: Its security enclave.
+        over_rcl: Whether rcl has found it, over a middleware such as DDS. That connects endpoints
+            only if their QoS fits, and may not tell the hashes of types.
         bridged: Whether it is on DDS, behind a `zenoh-bridge-ros2dds`; then `participant` is the
             Zenoh id of that bridge.
     """
@@ -70,6 +72,7 @@ class NodeInfo:
     name: str
     namespace: str
     enclave: str = "/"
+    over_rcl: bool = False
     bridged: bool = False
 
     @property
@@ -105,7 +108,8 @@ class EndpointInfo:
         endpoint_id: Number of the endpoint, unique in its context.
         name: Full name of its topic or service.
         type_name: ROS name of its type, such as ``std_msgs/msg/String``.
-        type_hash: RIHS01 hash of the type, as text; ``TypeHashNotSupported`` in ROS 2 Humble.
+        type_hash: RIHS01 hash of the type, as text; ``TypeHashNotSupported`` in ROS 2 Humble, and
+            empty if unknown, as those of services over DDS.
         qos: Its QoS.
         gid: 16 bytes that identify it.
     """
@@ -167,11 +171,16 @@ class EndpointInfo:
     def mismatch(self, other: EndpointInfo) -> str | None:
         """Return why this endpoint and its opposite `other` do not communicate; None if they do.
 
-        Between contexts only the types count: rmw_zenoh delivers whatever the QoS is.
+        Between contexts only the types count over rmw_zenoh, which delivers whatever the QoS is;
+        over DDS the QoS counts as well.
         """
-        in_one_context = self.node.participant == other.node.participant
-        found = self.compare(other) if in_one_context else self._compare_types(other)
+        found = self.compare(other) if self.needs_qos(other) else self._compare_types(other)
         return None if found is None else found.reason
+
+    def needs_qos(self, other: EndpointInfo) -> bool:
+        """Return whether the QoS of both has to fit."""
+        in_one_context = self.node.participant == other.node.participant
+        return in_one_context or self.node.over_rcl or other.node.over_rcl
 
     def matches(self, other: EndpointInfo) -> bool:
         """Whether this endpoint communicates with its opposite `other`."""
@@ -247,6 +256,31 @@ class Graph:
         self.unreported.pop(endpoint, None)
         self._tell_watchers(endpoint, present=False)
         self._wake()
+
+    def identify(self, endpoint: EndpointInfo, gid: bytes) -> None:
+        """Give an endpoint the gid that the middleware has chosen.
+
+        Watchers are told that it goes and returns; for listeners it is the same one.
+        """
+        is_known = endpoint in self._endpoints
+        if is_known:
+            self._tell_watchers(endpoint, present=False)
+            indices: tuple[dict[EndpointInfo, None], ...] = (
+                self._endpoints,
+                self._by_name[endpoint.kind, endpoint.name],
+                self._by_node[endpoint.node],
+            )
+            for index in indices:
+                del index[endpoint]
+        unreported = self.unreported.pop(endpoint, None)
+        object.__setattr__(endpoint, "gid", gid)  # frozen for everyone else
+        if unreported is not None:
+            self.unreported[endpoint] = unreported
+        if is_known:
+            for index in indices:
+                index[endpoint] = None
+            self.changes += 1
+            self._tell_watchers(endpoint, present=True)
 
     def remove_participant(self, participant: str) -> None:
         """Remove all nodes and endpoints of the context `participant`."""

@@ -13,7 +13,7 @@ from aionode.cli._support.routes import link_findings, pairs_of, query_links
 from aionode.clock import perf_ns
 from aionode.errors import FAST_DDS_REMEDY, FAST_DDS_SILENCE
 from aionode.graph import EndpointKind
-from aionode.transport._zenoh_config import DiscoveryRange
+from aionode.transport._zenoh_config import DiscoveryRange, unheard_middleware
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -84,13 +84,14 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
     if hint is not None:
         problem, remedy = hint.split(": ")
         found.insert(0, Finding("problem", "ROS_DISTRO", problem, remedy))
-    found += link_findings(pairs)
-    found += bridge_findings(bridges)
-    # What a bridge reaches is no matter of this environment's middleware.
-    environ = {} if bridges else os.environ
-    found += network_findings(
-        network, environ, has_router=has_router, domains=domains, alone=not nodes
-    )
+    if not any(hasattr(one, "middleware") for one in node.context.transports):  # not over rcl
+        found += link_findings(pairs)
+        found += bridge_findings(bridges)
+        # What a bridge reaches is no matter of this environment's middleware.
+        environ = {} if bridges else os.environ
+        found += network_findings(
+            network, environ, has_router=has_router, domains=domains, alone=not nodes
+        )
     for finding in found:
         output.item(
             f"\n{finding.severity}: {finding.subject}: {finding.text}\n  -> {finding.remedy}",
@@ -256,14 +257,15 @@ def network_findings(
 
 def rmw_findings(environ: Mapping[str, str]) -> list[Finding]:
     """Return a finding if ROS 2 nodes started from this environment use another RMW."""
-    rmw = environ.get("RMW_IMPLEMENTATION", "")
-    if rmw in {"", ZENOH}:
+    hint = unheard_middleware(environ)
+    if hint is None:
         return []
+    text, _, remedy = hint.partition("; ")
     return [
         Finding(
             "hint",
             "RMW_IMPLEMENTATION",
-            f"it is {rmw}, so ROS 2 nodes started in this environment cannot be reached",
-            f"set RMW_IMPLEMENTATION={ZENOH}",
+            text,
+            f"{remedy}, on this machine; or run ROS 2 with RMW_IMPLEMENTATION={ZENOH}",
         )
     ]

@@ -71,7 +71,7 @@ def mismatch_text(own: EndpointInfo, other: EndpointInfo) -> str | None:
             f"{where}: QoS of the {peer} is incompatible ({found.reason}). A bridge that knew this "
             "publisher first passes nothing on to it; publish with durability TRANSIENT_LOCAL"
         )
-    if own.node.participant != other.node.participant:
+    if not own.needs_qos(other):
         return (
             f"{where}: QoS of the {peer} is incompatible ({found.reason}). Messages pass all the "
             "same over rmw_zenoh, but would not over DDS"
