@@ -9,6 +9,7 @@
 #   make docs      the documentation as pages, in site/
 #   make fuzz      damaged input for every parser: by property tests, and guided by coverage
 #   make faults    processes that freeze, lag and die, FAULTS_TIMES times: writes docs/reliability.md
+#   make crowd     300 nodes come and go beside a router, which has to answer all the while
 #   make soak      everything at once, for SOAK_SECONDS seconds: nothing may grow
 #   make quotes    brings the code quoted in README.md and docs/ up to date
 #   make clean     removes what was made, .venv included
@@ -24,7 +25,7 @@ FAULTS_TIMES ?= 3
 WORKERS ?= auto
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test stress check coverage bench docs fuzz faults soak quotes clean
+.PHONY: help demo test stress check coverage bench docs fuzz faults crowd soak quotes clean
 
 help:
 	@sed -n '3,14s/^# *//p' Makefile
@@ -69,6 +70,9 @@ fuzz: .venv/installed-dev
 
 faults: .venv/installed-dev
 	$(BIN)/python -m tests.faults --times $(FAULTS_TIMES) --write docs/reliability.md
+
+crowd: .venv/installed-dev
+	$(BIN)/python -m tests.faults.crowd
 
 soak: .venv/installed-dev
 	$(BIN)/python benchmarks/soak.py --seconds $(SOAK_SECONDS)
