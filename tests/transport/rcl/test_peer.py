@@ -198,6 +198,7 @@ async def test_its_endpoints_are_in_the_graph(node: Node) -> None:
 
 
 @pytest.mark.one_loop
+@pytest.mark.stress
 async def test_a_process_that_ends_cleanly_ends_its_calls() -> None:
     """And its node leaves the graph."""
     alone = ros_domain(50)
