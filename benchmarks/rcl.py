@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import asyncio
+import importlib.util
 import os
 import resource
 import statistics
@@ -37,6 +38,8 @@ def main() -> None:
     if options.part:
         kind, role, value = options.part
         play(kind, role, value)
+    elif importlib.util.find_spec("rclpy") is None:
+        print("skipped: rclpy is not installed here; on Linux x86-64: pip install 'aionode[ros]'")
     elif options.stress:
         stress(options.stress)
     else:
