@@ -12,6 +12,7 @@
 #   make faults    processes that freeze, lag and die, FAULTS_TIMES times: writes docs/reliability.md
 #   make ros-test  aionode over DDS, beside rclpy of PyPI; Linux x86-64
 #   make live      aionode beside a real ROS 2 on rmw_zenoh, where one is sourced
+#   make crowd     300 nodes come and go beside a router, which has to answer all the while
 #   make soak      everything at once, for SOAK_SECONDS seconds: nothing may grow
 #   make quotes    brings the code quoted in README.md and docs/ up to date
 #   make clean     removes what was made, .venv included
@@ -27,11 +28,11 @@ FAULTS_TIMES ?= 3
 WORKERS ?= auto
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test stress check coverage bench profile docs fuzz faults live ros-test soak \
-	quotes clean
+.PHONY: help demo test stress check coverage bench profile docs fuzz faults live ros-test crowd \
+	soak quotes clean
 
 help:
-	@sed -n '3,17s/^# *//p' Makefile
+	@sed -n '3,18s/^# *//p' Makefile
 
 demo: .venv/installed
 	$(BIN)/python -m aionode.examples.pubsub
@@ -83,6 +84,9 @@ ros-test: .venv/installed-dev
 
 live: .venv/installed-dev
 	$(BIN)/python -m pytest -q -rs tests/live
+
+crowd: .venv/installed-dev
+	$(BIN)/python -m tests.faults.crowd
 
 soak: .venv/installed-dev
 	$(BIN)/python benchmarks/soak.py --seconds $(SOAK_SECONDS)

@@ -140,12 +140,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
                 await self._graph_entry.until(self.service_is_ready)
         except TimeoutError:
             return self.service_is_ready()
-        caveat = self._caveat()
-        if caveat and not self._has_told_caveat:
-            self._has_told_caveat = True
-            self._graph_entry.callbacks.logger.warning(
-                f"{self.srv_name}: a server is matched, but may not answer: {caveat}"
-            )
+        self._tell_caveat()
         return True
 
     async def call(self, request: RequestT, timeout_sec: float | None = None) -> ResponseT:
@@ -283,6 +278,15 @@ class Client(Entity, Generic[RequestT, ResponseT]):
     def _caveat(self) -> str:
         """Return why the matched servers may not answer, if a transport knows."""
         return next((caveat for one in self._requesters if (caveat := one.caveat)), "")
+
+    def _tell_caveat(self) -> None:
+        """Log once why the matched servers may not answer, if a transport knows."""
+        caveat = self._caveat()
+        if caveat and not self._has_told_caveat:
+            self._has_told_caveat = True
+            self._graph_entry.callbacks.logger.warning(
+                f"{self.srv_name}: a server is matched, but may not answer: {caveat}"
+            )
 
     def _warn_of_silence(self) -> None:
         if not self._warned:

@@ -151,7 +151,7 @@ def e02_everything_but_callbacks_works_without_spinning(trace: Trace) -> None:
 def e03_spin_once_calls_one_callback_in_the_order_of_rounds(trace: Trace) -> None:
     node = rclpy.create_node("e03")
     publisher, subscription = matched_pair(node, "e03", lambda msg: trace("sub", msg.data))
-    timer = node.create_timer(0.05, lambda: (trace("timer"), timer.cancel()))
+    timer = node.create_timer(0.5, lambda: (trace("timer"), timer.cancel()))
     guard = node.create_guard_condition(lambda: trace("guard"))
     executor = SingleThreadedExecutor()
     executor.add_node(node)
@@ -163,7 +163,7 @@ def e03_spin_once_calls_one_callback_in_the_order_of_rounds(trace: Trace) -> Non
     publisher.publish(Int32(data=1))
     publisher.publish(Int32(data=2))
     guard.trigger()
-    time.sleep(0.3)
+    time.sleep(1.0)  # until the timer is due
     for _ in range(6):
         trace("once")
         executor.spin_once(timeout_sec=0)

@@ -213,6 +213,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
                     await self._change()
         except TimeoutError:
             return self.server_is_ready()
+        self._send_goal._tell_caveat()
         return True
 
     async def _change(self) -> None:

@@ -272,6 +272,21 @@ async def test_a_call_that_fast_dds_leaves_unanswered_names_the_way_out(
     assert len(warnings) == 1
 
 
+async def test_an_action_server_on_fast_dds_is_warned_of(
+    node: Node, bridge: StandIn, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Its goals are requests, and would wait for ever."""
+    bridge.publisher("/chatter", qos=FAST)
+    token = bridge.announce("AS", "/fib", FIB)
+    client = node.create_action_client(Fibonacci, "/fib")
+    await node.graph.until(lambda: node.graph.count(EndpointKind.PUBLISHER, "/chatter") > 0)
+    with caplog.at_level(logging.WARNING):
+        assert await client.wait_for_server(timeout_sec=5)
+    token.undeclare()
+
+    assert sum("rmw_cyclonedds_cpp" in r.getMessage() for r in caplog.records) == 1
+
+
 async def test_a_client_on_cyclone_has_no_caveat(node: Node, bridge: StandIn) -> None:
     """The warning is for robots that need it."""
     bridge.publisher("/chatter")
