@@ -387,6 +387,8 @@ def main() -> None:
             comparison = Comparison(loop, folder)
             try:
                 comparison.measure(rounds, count)
+            except KeyboardInterrupt:  # what was measured by then is shown
+                comparison.skipped["the rest"] = "interrupted"
             finally:
                 comparison.end()
         tables[loop] = comparison.medians()

@@ -55,6 +55,10 @@ class Peer(ABC):
     def run(self, until: Callable[[], bool]) -> None:
         """Run callbacks until `until`, which is asked after each of them, or `wake`, is true."""
 
+    def soon(self, call: Callable[[], object]) -> None:
+        """Call it, within the event loop if there is one."""
+        call()
+
     @abstractmethod
     def wake(self) -> None:
         """End `run`, from a callback."""
@@ -100,6 +104,10 @@ class LoopPeer(Peer):
         if not until():
             self._done = self.loop.create_future()
             self.loop.run_until_complete(self._done)
+
+    def soon(self, call: Callable[[], object]) -> None:
+        """Call it within the loop."""
+        self.loop.call_soon(call)
 
     def wake(self) -> None:
         """End `run`."""

@@ -57,7 +57,7 @@ class Measuring:
 
     def _go(self, count: int) -> None:
         self._left = count
-        self._throw()
+        self._peer.soon(self._throw)
         self._peer.run(lambda: not self._left)
 
     def trips(self, count: int, pause_s: float, size: int) -> float:
@@ -77,10 +77,7 @@ class Measuring:
         """Return how many messages of a burst arrive in a second; negative if some are lost."""
         self._arrived = 0
         peer = self._peer
-        if peer.alone:
-            throw(peer)
-        else:
-            peer.say(BEGIN)
+        peer.soon(lambda: throw(peer) if peer.alone else peer.say(BEGIN))
         silent_s = 0.0
         while self._arrived < BURST and silent_s < SILENCE_S:
             before = self._arrived
