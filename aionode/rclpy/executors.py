@@ -320,12 +320,14 @@ class Executor:
                     self._wait(used, left_ns)
                     self._raise_if_over(never)
                     ready = self._ready(used)
+            # Before the calls, which may take longer than the limit.
+            over = ends_ns is not None and (timeout_sec == 0 or steady_ns() >= ends_ns)
             for entity, node, take in ready:
                 # A call of this round may have begun another one, of the same group.
                 if self.can_execute(entity):
                     yielded = True
                     yield self._make_handler(entity, node, take), entity, node
-            if ends_ns is not None and (timeout_sec == 0 or steady_ns() >= ends_ns):
+            if over:
                 raise TimeoutException
 
     def _raise_if_over(self, condition: Callable[[], bool]) -> None:

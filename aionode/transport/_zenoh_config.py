@@ -32,6 +32,7 @@ __all__ = [
     "probed_ports",
     "router_settings",
     "session_settings",
+    "unheard_middleware",
 ]
 
 MEETING_PORTS: Final = (17449, 17450, 17451)
@@ -60,6 +61,14 @@ BATCHES: Final = 16
 BURSTING: Final = ("control", "interactive_low", "data_high")
 """The priorities of what the loop sends: tokens, requests and replies, messages."""
 
+
+OPEN_MS: Final = 30_000
+"""How long making a connection may take, in milliseconds.
+
+Where many processes start at once it takes seconds, and Zenoh must not give up meanwhile: the end
+that gives up while it takes the connection into use keeps one for good which it sends on, but never
+reads (zenoh 1.10). It sees no token of that peer, and refuses further connections with it.
+"""
 
 RETRY: Final = {"period_init_ms": 100, "period_max_ms": 2000, "period_increase_factor": 2}
 """How often what does not answer is dialled again."""
@@ -360,8 +369,8 @@ def session_settings(network: Network, taken: Iterable[int]) -> dict[str, Any]:
         # mappings for each restart of a publisher (1.10). Links have shared memory of their own;
         # processes of other users cannot open Zenoh's, and ROS 2 nodes have it switched off.
         "transport/shared_memory/enabled": False,
-        # Bounds close() while a frozen peer does not answer; other machines may be slow to.
-        "transport/unicast/open_timeout": 3000 if network.near_peers else 700,
+        "transport/unicast/open_timeout": OPEN_MS,
+        "transport/unicast/accept_timeout": OPEN_MS,
         "scouting/multicast/enabled": subnet,
         "scouting/gossip/enabled": not off,
         # As rmw_zenoh: if both dialled, Zenoh might keep neither of the two connections.
@@ -408,3 +417,14 @@ def router_settings(
         # A query for its routing table can deadlock it: zenoh's pull request 2619.
         "adminspace/enabled": False,
     }
+
+
+def unheard_middleware(environ: Mapping[str, str]) -> str | None:
+    """Return what to do if the ROS 2 nodes of this environment are not heard; None if they are."""
+    middleware = environ.get("RMW_IMPLEMENTATION", "")
+    if middleware in {"", "rmw_zenoh_cpp"}:
+        return None
+    return (
+        f"RMW_IMPLEMENTATION={middleware}: nodes over DDS are not heard; AIONODE_TRANSPORT=rcl "
+        "reaches them"
+    )

@@ -40,8 +40,12 @@ async def serve(name: str, *, link: bool) -> None:
                 for number, subscription in enumerate(made):
                     subscription.destroy()
                     await pause(number)
-            if words[0] == "nodes":
-                say(len(node.get_node_names()))
+            elif words[0] == "join":
+                made.append(node.create_publisher(String, "everyone", 10))
+                made.append(node.create_subscription(String, "everyone", lambda _: None, 10))
+            if words[0] == "found":
+                links: Any = context.transports[-1]
+                say([len(node.get_node_names()), len(links.manager.links)])
             else:
                 say({"cpu_s": time.process_time(), "threads": threads()})
 

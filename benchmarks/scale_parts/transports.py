@@ -46,7 +46,10 @@ class PairsRow:
 
 @dataclass(frozen=True)
 class ProcessesRow:
-    """How long many processes take, all started at once, until each knows the nodes of all."""
+    """How long many processes take that start at once.
+
+    From the start of the last one until each knows the nodes of all, and is linked with all.
+    """
 
     processes: int
     known_s: float
@@ -168,30 +171,39 @@ async def measure_pairs(route: str, count: int, before: PairsRow | None) -> Pair
 
 async def measure_processes(count: int, before: ProcessesRow | None) -> ProcessesRow:
     """Return how long `count` processes take that start at once."""
-    began = time.perf_counter()
     async with asyncio.TaskGroup() as tasks:
 
-        async def one(number: int) -> tuple[float, int]:
+        async def one(number: int) -> tuple[float, float, list[int]]:
             async with other(f"node_{number}", "link") as process:
                 await process.answer()
-                ends = time.perf_counter() + WAIT_S
-                while (found := await process.ask("nodes")) < count:
-                    if time.perf_counter() > ends:
+                await process.ask("join")
+                started = time.perf_counter()
+                while (found := await process.ask("found")) != [count, count - 1]:
+                    if time.perf_counter() > started + WAIT_S:
                         break
                     await asyncio.sleep(0.05)
-                known_s = time.perf_counter() - began
+                known = time.perf_counter()
                 await everyone.wait()  # a process that leaves would be missing in the others
-                return known_s, found
+                return started, known, found
 
         everyone = asyncio.Barrier(count)
         running = [tasks.create_task(one(number)) for number in range(count)]
     results = [task.result() for task in running]
-    known_s = round(max(known_s for known_s, _ in results), 2)
+    last_started = max(started for started, _, _ in results)
+    known_s = round(max(known for _, known, _ in results) - last_started, 2)
     return ProcessesRow(
         count,
         known_s,
-        round(known_s / before.known_s, 2) if before is not None else 1.0,
-        lacking("nodes", min(found for _, found in results), count),
+        round(known_s / max(before.known_s, 0.01), 2) if before is not None else 1.0,
+        "; ".join(
+            filter(
+                None,
+                (
+                    lacking("nodes", min(found[0] for *_, found in results), count),
+                    lacking("links", min(found[1] for *_, found in results), count - 1),
+                ),
+            )
+        ),
     )
 
 

@@ -152,6 +152,13 @@ ONE_ROUTER = (
 )
 """A robot with its router and a ROS 2 node, and a laptop whose user names the robot."""
 
+KEEPING = (
+    ROUTER,
+    Role("here", publish=(Publish("/all", keep_all=True, period_s=0.05),)),
+    Role("there", hear=(Hear("/all", keep_all=True),), env=NAMING),
+)
+"""Nothing that may lose anything."""
+
 TWO_ROUTERS = (
     ROUTER,
     Role("router there", router=f"tcp/0.0.0.0:{PORT}", connect=f"tcp/{ADDRESSES[0]}:{PORT}"),
@@ -187,6 +194,16 @@ def host_cases() -> Iterator[Case]:
                 around=hosts,
                 short=how == -3 and roles is ONE_ROUTER,
             )
+    for seconds in (3, 14, 70):
+        hosts = TwoHosts(next(numbers))
+        yield Case(
+            f"two hosts, KEEP_ALL, the cable swallows everything for {seconds} s",
+            hosts.placed(KEEPING),
+            hosts.swallow(seconds),
+            loss="none",
+            lasts_s=seconds,
+            around=hosts,
+        )
     hosts = TwoHosts(next(numbers))
     yield Case(
         "two hosts, one router, the process that links them killed and replaced",

@@ -20,6 +20,13 @@ from typing import Any
 
 import rclpy
 import rclpy.executors
+from lifecycle_msgs.msg import TransitionEvent
+from lifecycle_msgs.srv import (
+    ChangeState,
+    GetAvailableStates,
+    GetAvailableTransitions,
+    GetState,
+)
 from rcl_interfaces.msg import ParameterDescriptor, ParameterType, SetParametersResult
 from rcl_interfaces.srv import ListParameters
 from rclpy.callback_groups import (
@@ -35,6 +42,12 @@ from rclpy.executors import (
     MultiThreadedExecutor,
     SingleThreadedExecutor,
     TimeoutException,
+)
+from rclpy.lifecycle import (
+    LifecycleNode,
+    ManagedEntity,
+    State,
+    TransitionCallbackReturn,
 )
 from rclpy.parameter import Parameter
 from rclpy.parameter_client import AsyncParameterClient
@@ -139,7 +152,7 @@ def e02_everything_but_callbacks_works_without_spinning(trace: Trace) -> None:
 def e03_spin_once_calls_one_callback_in_the_order_of_rounds(trace: Trace) -> None:
     node = rclpy.create_node("e03")
     publisher, subscription = matched_pair(node, "e03", lambda msg: trace("sub", msg.data))
-    timer = node.create_timer(0.05, lambda: (trace("timer"), timer.cancel()))
+    timer = node.create_timer(0.5, lambda: (trace("timer"), timer.cancel()))
     guard = node.create_guard_condition(lambda: trace("guard"))
     executor = SingleThreadedExecutor()
     executor.add_node(node)
@@ -151,7 +164,7 @@ def e03_spin_once_calls_one_callback_in_the_order_of_rounds(trace: Trace) -> Non
     publisher.publish(Int32(data=1))
     publisher.publish(Int32(data=2))
     guard.trigger()
-    time.sleep(0.3)
+    time.sleep(1.0)  # until the timer is due
     for _ in range(6):
         trace("once")
         executor.spin_once(timeout_sec=0)
@@ -917,6 +930,131 @@ def tasks_of_an_executor(trace: Trace) -> None:
     executor.spin_until_future_complete(forever, timeout_sec=0.1)
     trace("timeout", forever.done())
     trace("shutdown", executor.shutdown())
+
+
+@scene
+def managed_nodes_go_through_their_states(trace: Trace) -> None:
+    class Entity(ManagedEntity):
+        def on_activate(self, state: State) -> Any:
+            trace("entity", state)
+            return TransitionCallbackReturn.SUCCESS
+
+    class Talker(LifecycleNode):
+        def on_configure(self, state: State) -> Any:
+            trace("configure", type(state).__name__, state)
+            self.talk = self.create_lifecycle_publisher(String, "talk", 10)
+            self.add_managed_entity(Entity())
+            return super().on_configure(state)
+
+        def on_shutdown(self, state: State) -> Any:
+            trace("shutdown", state)
+            return TransitionCallbackReturn.FAILURE
+
+    talker = Talker("talker")
+    node = rclpy.create_node("listener")
+    heard: list[str] = []
+    node.create_subscription(String, "talk", lambda message: heard.append(message.data), 10)
+    attempt(trace, "activate", lambda: talker.trigger_activate().name)
+    trace("configured", talker.trigger_configure().name)
+    until(talker.talk.get_subscription_count)
+    trace("activated before", talker.talk.is_activated)
+    talker.talk.publish(String(data="inactive"))
+    trace("activated", talker.trigger_activate().name, talker.talk.is_activated)
+    talker.talk.publish(String(data="active"))
+    until(lambda: heard, lambda: rclpy.spin_once(node, timeout_sec=0.1))
+    trace("deactivated", talker.trigger_deactivate().name, talker.talk.is_activated)
+    talker.talk.publish(String(data="inactive again"))
+    rclpy.spin_once(node, timeout_sec=0.2)
+    trace("heard", heard)
+    attempt(trace, "entity", lambda: talker.add_managed_entity(Talker))
+    trace("destroyed", talker.destroy_lifecycle_publisher(talker.talk))
+    trace("shut down", talker.trigger_shutdown().name)
+    attempt(trace, "again", talker.trigger_shutdown)
+    attempt(trace, "after that", lambda: talker.trigger_configure().name)
+
+
+@scene
+def callbacks_of_managed_nodes_that_fail(trace: Trace) -> None:
+    class Failing(LifecycleNode):
+        outcome: Any = None
+        after_error: Any = TransitionCallbackReturn.SUCCESS
+
+        def on_configure(self, state: State) -> Any:
+            if isinstance(self.outcome, Exception):
+                raise self.outcome
+            return self.outcome
+
+        def on_error(self, state: State) -> Any:
+            trace("error", state)
+            return self.after_error
+
+        @property
+        def label(self) -> str:
+            return self._state_machine.current_state[1]
+
+    for number, (outcome, after_error) in enumerate(
+        (
+            (TransitionCallbackReturn.FAILURE, TransitionCallbackReturn.SUCCESS),
+            (TransitionCallbackReturn.ERROR, TransitionCallbackReturn.SUCCESS),
+            (TransitionCallbackReturn.ERROR, TransitionCallbackReturn.FAILURE),
+            (LookupError("gone"), TransitionCallbackReturn.ERROR),
+            (None, TransitionCallbackReturn.SUCCESS),
+        )
+    ):
+        node = Failing(f"failing{number}", enable_communication_interface=False)
+        node.outcome, node.after_error = outcome, after_error
+        attempt(trace, number, lambda node=node: node.trigger_configure().name)
+        trace(number, node.label)
+
+
+@scene
+def services_of_managed_nodes(trace: Trace) -> None:
+    events: list[tuple[str, str]] = []
+    managed = LifecycleNode("managed")
+    node = rclpy.create_node("manager")
+    executor = SingleThreadedExecutor()
+    executor.add_node(managed)
+    executor.add_node(node)
+    node.create_subscription(
+        TransitionEvent,
+        "managed/transition_event",
+        lambda event: events.append((event.start_state.label, event.goal_state.label)),
+        10,
+    )
+    until(lambda: node.count_publishers("managed/transition_event"))
+
+    def call(service: Any, name: str, request: Any) -> Any:
+        client = node.create_client(service, f"managed/{name}")
+        client.wait_for_service(PATIENCE_S)
+        future = client.call_async(request)
+        executor.spin_until_future_complete(future, timeout_sec=PATIENCE_S)
+        return future.result()
+
+    until(lambda: managed.count_subscribers("managed/transition_event"))
+    for id_, label in ((0, "activate"), (3, "configure"), (3, ""), (99, ""), (4, "no such")):
+        request = ChangeState.Request()
+        request.transition.id, request.transition.label = id_, label
+        trace(id_, label, call(ChangeState, "change_state", request).success)
+        state = call(GetState, "get_state", GetState.Request()).current_state
+        trace(state.id, state.label)
+    until(lambda: len(events) == 4, lambda: executor.spin_once(timeout_sec=0.1))
+    trace("events", events)
+    states = call(GetAvailableStates, "get_available_states", GetAvailableStates.Request())
+    trace([(state.id, state.label) for state in states.available_states])
+    for name in ("get_available_transitions", "get_transition_graph"):
+        found = call(GetAvailableTransitions, name, GetAvailableTransitions.Request())
+        trace(
+            name,
+            [
+                (
+                    each.transition.id,
+                    each.transition.label,
+                    each.start_state.label,
+                    each.goal_state.label,
+                )
+                for each in found.available_transitions
+            ],
+        )
 
 
 def main() -> None:

@@ -20,7 +20,6 @@ from aionode.endpoints.actions._common import (
     expect_action_type,
     in_event_loop,
     pass_reason,
-    reason_id,
     seconds_to_ns,
     stamp_ns,
 )
@@ -33,6 +32,7 @@ from aionode.endpoints.actions.goal import (
     GoalStatus,
     candidates,
     is_cancelable,
+    reason_id,
 )
 from aionode.endpoints.stats import CallbackStats
 from aionode.errors import CallbackCancelledError, QueueFullError, brief

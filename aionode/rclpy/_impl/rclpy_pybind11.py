@@ -10,6 +10,9 @@ from typing import Any
 from aionode.arguments import remove_ros_args
 from aionode.clock import ClockChange, ClockType
 from aionode.errors import NodeNameNonExistentError
+from aionode.rclpy._impl.actions import ActionClientHandle as ActionClient
+from aionode.rclpy._impl.actions import ActionServerHandle as ActionServer
+from aionode.rclpy._impl.actions import GoalEvent
 from aionode.rclpy._impl.context import ContextHandle as Context
 from aionode.rclpy._impl.destroyable import Destroyable
 from aionode.rclpy._impl.errors import (
@@ -37,6 +40,8 @@ from aionode.rclpy._impl.wait_set import WaitSet
 
 __all__ = [
     "RCL_DEFAULT_DOMAIN_ID",
+    "ActionClient",
+    "ActionServer",
     "Client",
     "Clock",
     "ClockChange",
@@ -44,6 +49,7 @@ __all__ = [
     "Context",
     "Destroyable",
     "EventHandle",
+    "GoalEvent",
     "GuardCondition",
     "InvalidHandle",
     "Node",

@@ -149,6 +149,12 @@ class ServiceHandle(Destroyable):
             response=response,
         )
 
+    def service_send_error(self, error_type: str, text: str, request_id: rmw_request_id_t) -> None:
+        """Send an error in place of a response; only clients of aionode learn of it."""
+        request = self._taken.pop(request_id, None)
+        if request is not None:
+            self._io.post(partial(request.fail, error_type, text))
+
     def configure_introspection(
         self, clock: ClockHandle, qos_profile: Any, state: ServiceIntrospectionState
     ) -> None:

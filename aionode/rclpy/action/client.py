@@ -163,6 +163,8 @@ class ActionClient(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT])
         self._pending_result_requests: dict[int, Future[Any]] = {}
         self._goal_ids: dict[int, Any] = {}  # of goal requests
         self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
+        # The states that were published last: they may be here before the response of a goal.
+        self._states: list[Any] = []
         self._lock = threading.Lock()
         self._logger = node.get_logger().get_child("action_client")
         node.add_waitable(self)
@@ -297,7 +299,8 @@ class ActionClient(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT])
             if callback is not None:
                 await await_or_execute(callback, feedback)
         if "status" in taken_data:
-            for status in taken_data["status"].status_list:
+            self._states = taken_data["status"].status_list
+            for status in self._states:
                 self._take_status(status)
 
     def _take_goal_response(self, sequence: int, response: Any) -> None:
@@ -313,6 +316,8 @@ class ActionClient(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT])
             if goal_id in self._goal_handles:
                 raise RuntimeError(f"Two goals were accepted with the same ID ({handle})")
             self._goal_handles[goal_id] = weakref.ref(handle)
+            for status in self._states:
+                self._take_status(status)
         future.set_result(handle)
 
     def _take_status(self, status: Any) -> None:

@@ -7,7 +7,13 @@ import traceback as tracebacks
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic
 
-from aionode.endpoints.actions.goal import CancelResponse, GoalEvent, GoalResponse, GoalStatus
+from aionode.endpoints.actions.goal import (
+    CancelResponse,
+    GoalEvent,
+    GoalResponse,
+    GoalStatus,
+    reason_id,
+)
 from aionode.rclpy._impl.actions import ActionServerHandle, GoalState
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._impl.typesupport import message_like
@@ -224,6 +230,7 @@ class ActionServer(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT])
             )
         self._goal_handles: dict[bytes, AnyGoalHandle] = {}
         self._result_futures: dict[bytes, Future[Any]] = {}
+        self._reasons: dict[bytes, str] = {}  # why goals were aborted
         self._logger = node.get_logger().get_child("action_server")
         node.add_waitable(self)
 
@@ -257,7 +264,8 @@ class ActionServer(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT])
             await await_or_execute(self._handle_accepted_callback, goal_handle)
 
     def _accept(self, info: Any, goal: Any) -> AnyGoalHandle | None:
-        info.stamp = self._node.get_clock().now().to_msg()
+        now = self._node.get_clock().now().to_msg()  # its class may be of the other family
+        info.stamp.sec, info.stamp.nanosec = now.sec, now.nanosec
         try:
             with self._lock:
                 goal_handle: AnyGoalHandle = ServerGoalHandle(self, info, goal)
@@ -285,6 +293,7 @@ class ActionServer(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT])
             result = await await_or_execute(execute_callback, goal_handle)
         except Exception as error:  # noqa: BLE001  # the client gets an empty result
             result = self._action_type.Result()
+            self._reasons[bytes(goal_id)] = f"{type(error).__name__}: {error}"
             self._logger.error(  # noqa: TRY400  # rclpy's loggers have no exception()
                 f"Error raised in execute callback: {error}"
             )
@@ -320,10 +329,14 @@ class ActionServer(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT])
     def _execute_get_result_request(self, header: Any, request: Any) -> None:
         goal_id = bytes(request.goal_id.uuid)
         future = self._result_futures.get(goal_id)
+        if reason_id(goal_id) in self._reasons:  # a client of aionode asks
+            reason = self._reasons[reason_id(goal_id)]
+            self._handle.result.service_send_error("AbortReason", reason, header.request_id)
+            return
         if goal_id not in self._goal_handles or future is None:
-            self._logger.warning(
-                f"Sending result response for unknown or expired goal ID: {request.goal_id.uuid}"
-            )
+            is_question = reason_id(goal_id) in self._goal_handles  # of a client of aionode
+            tell = self._logger.debug if is_question else self._logger.warning
+            tell(f"Sending result response for unknown or expired goal ID: {request.goal_id.uuid}")
             response = self._action_type.Impl.GetResultService.Response()
             response.status = int(GoalStatus.UNKNOWN)
             self._handle.result.service_send_response(response, header.request_id)
@@ -341,6 +354,7 @@ class ActionServer(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT])
             goal_handle = self._goal_handles.pop(goal_id, None)
             if goal_handle is not None:
                 goal_handle.destroy()
+            self._reasons.pop(goal_id, None)
             future = self._result_futures.pop(goal_id, None)
             if future is not None:
                 self.remove_future(future)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from traceback import format_exc
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from aionode.rclpy._impl import messages as msg
@@ -169,7 +170,10 @@ class LifecycleNodeMixin(ManagedEntity):
         )
         try:
             return callback(before)
-        except Exception:  # noqa: BLE001  # as rclpy; the state machine goes on with an error
+        except Exception as error:  # noqa: BLE001  # as rclpy; the state machine goes on with an error
+            self.get_logger().error(  # rclpy's loggers have no exception()
+                f"{CALLBACKS[label]}() raised {type(error).__name__}: {error}\n{format_exc()}"
+            )
             return TransitionCallbackReturn.ERROR
 
     def _check_is_initialized(self) -> None:

@@ -36,6 +36,7 @@ def declare_keeping(
     *,
     reliable: bool,
     waits: bool,
+    numbered: bool,
 ) -> ext.AdvancedPublisher:
     """Declare a publisher that keeps its last messages for late readers, expired or not.
 
@@ -44,8 +45,9 @@ def declare_keeping(
         key: Its key expression.
         depth: How many messages it keeps.
         priority: The Zenoh priority of its messages.
-        reliable: Whether readers may ask again for what they miss.
+        reliable: Whether no message may be lost on the way.
         waits: Whether it waits for slow readers instead of dropping messages.
+        numbered: Whether readers may ask again for what they miss.
     """
     return ext.declare_advanced_publisher(
         session,
@@ -61,7 +63,7 @@ def declare_keeping(
         # the GIL held, and for 10 s if that task's thread needs the GIL for a callback just then
         # (zenoh-python 1.10).
         sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=None)
-        if reliable
+        if reliable and numbered
         else None,
     )
 

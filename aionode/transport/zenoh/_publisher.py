@@ -6,7 +6,7 @@ import asyncio
 import logging
 from collections import deque
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import zenoh
 from zenoh import ext
@@ -48,8 +48,6 @@ from aionode.wire import _acknack as acknack
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
 from aionode.wire._acknack import SubmessageKind
-from aionode.wire._key_expression import data_key
-from aionode.wire._liveliness import endpoint_token
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -73,11 +71,13 @@ class ZenohWriter(Declaration, Writer):
     not acknowledge and must not lose it, by a thread of this publisher that waits for them.
     """
 
+    recovers: ClassVar[bool] = True  # whether its readers ask again for what they miss
+
     def __init__(self, state: SessionState, endpoint: EndpointInfo, msg_type: type[Any]) -> None:
-        super().__init__(state, endpoint_token(state.domain_id, endpoint))
+        self._key, token, gid = state.names_of(endpoint)
+        super().__init__(state, token, gid)
         self.endpoint = endpoint
         qos = endpoint.qos
-        self._key = data_key(state.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
         self._msg_type = msg_type
         # None until it is needed, as it takes a while to make; `_update` does that, so that no
         # callback has to.
@@ -107,7 +107,7 @@ class ZenohWriter(Declaration, Writer):
         self.bounded = keeps_all(qos)
         # A transient local publisher has none: there Zenoh sends lost messages again.
         self._history: WriterHistory | None = None
-        if self._reliable and not self._transient:
+        if self._reliable and not self._transient and self.recovers:
             self._history = WriterHistory(
                 self._depth, keep_all=self.bounded, side=self, now_ns=perf_ns
             )
@@ -155,11 +155,12 @@ class ZenohWriter(Declaration, Writer):
             self._publisher = declare_plain(
                 session, self._key, LOOP_PRIORITY, reliable=self._reliable, waits=False
             )
-            self._matching = self._publisher.declare_matching_listener(
-                direct(self._matching_changed.put)
-            )
-            # Here only: Zenoh looks through all subscribers of all topics for an answer.
-            self._is_matching = bool(self._publisher.matching_status.matching)  # type: ignore[attr-defined]  # no bool, as the stub says
+            if self.recovers:  # else a bridge has announced every reader
+                self._matching = self._publisher.declare_matching_listener(
+                    direct(self._matching_changed.put)
+                )
+                # Here only: Zenoh looks through all subscribers of all topics for an answer.
+                self._is_matching = bool(self._publisher.matching_status.matching)  # type: ignore[attr-defined]  # no bool, as the stub says
         self._update()
 
     def _declare_keeping(self, session: zenoh.Session) -> ext.AdvancedPublisher:
@@ -171,6 +172,7 @@ class ZenohWriter(Declaration, Writer):
             PATIENT_PRIORITY if self.bounded else priority,
             reliable=self._reliable,
             waits=self.bounded,
+            numbered=self.recovers,
         )
 
     def _forget_expired(self, periods: int) -> bool:  # noqa: ARG002  # one lifespan is enough
@@ -281,7 +283,7 @@ class ZenohWriter(Declaration, Writer):
         return [
             reader
             for reader in graph.endpoints(EndpointKind.SUBSCRIPTION, name=self.endpoint.name)
-            if reader.node.participant != self.state.participant and self.endpoint.matches(reader)
+            if self.state.reaches(reader.node) and self.endpoint.matches(reader)
         ]
 
     def _filter_of(self, readers: list[EndpointInfo]) -> Callable[[Any], bool] | None:
@@ -577,7 +579,7 @@ class ZenohWriter(Declaration, Writer):
 
     def route_of(self, reader: EndpointInfo) -> str | None:
         """Return ``zenoh`` for subscriptions of other contexts."""
-        return "zenoh" if reader.node.participant != self.state.participant else None
+        return "zenoh" if self.state.reaches(reader.node) else None
 
     def close(self) -> None:
         """Undeclare the publisher for good, after it has lingered."""

@@ -11,13 +11,8 @@ some milliseconds, queries them. If the introducer sees a participant that this 
 to which it has lost the connection, or does not see this session, the connection to the introducer
 is cut, and Zenoh makes it anew at once.
 
-The same is done once after the start, and when a peer is connected that announces nothing: where
-many processes start at the same moment, Zenoh gives dialling up before a busy process has answered,
-and of two connections made at once it may keep one on which the other end has announced nothing
-(zenoh 1.10). Such a connection is cut as well.
-
 A process that returns may still read what came over its old connection when the new one is made.
-Then Zenoh takes the new one for another link of the old one, and announces nothing on it either. A
+Then Zenoh takes the new one for another link of the old one, and announces nothing on it. A
 participant of aionode always has a token, so for one that returns no look is needed.
 """
 
@@ -61,9 +56,6 @@ FIRST_S: Final = 0.5
 
 DECLARED_S: Final = 1.0
 """How long after a participant has returned its tokens may take; they take some milliseconds."""
-
-START_S: Final = 20.0
-"""For so long after the start looks are repeated, until one finds nothing missing."""
 
 POSTPONED_S: Final = 3.0
 """For so long a look waits for connections that go on being made or lost."""
@@ -125,7 +117,6 @@ class Recovery:
         self._timer: asyncio.TimerHandle | None = None
         self._looking = False
         self._until_s = 0.0
-        self._starting_until_s = 0.0
         self._changing_since_s = 0.0  # when the first change was seen after the last look
         # Participants whose connection was lost and not made anew. A router may forward what they
         # send meanwhile, but not always what this session sends.
@@ -144,8 +135,6 @@ class Recovery:
             self._listener = session.info.declare_transport_events_listener(
                 direct(self._changes.put)
             )
-        self._starting_until_s = asyncio.get_running_loop().time() + START_S
-        self._look_in(FIRST_S)
 
     def stop(self) -> None:
         """Stop watching; a look that is under connection ends by itself."""
@@ -160,7 +149,6 @@ class Recovery:
             queue.clear()
         self._looking = False
         self._until_s = 0.0
-        self._starting_until_s = 0.0
         self._attempts.clear()
         self._cuts.clear()
         self._lost.clear()
@@ -168,7 +156,6 @@ class Recovery:
     def _take_change(self, event: zenoh.TransportEvent) -> None:
         if event.transport.whatami == zenoh.WhatAmI.CLIENT:
             return  # it dials by itself
-        self._checks = CHECKS
         now_s = asyncio.get_running_loop().time()
         zid = str(event.transport.zid)
         if event.kind == zenoh.SampleKind.DELETE:
@@ -180,6 +167,9 @@ class Recovery:
             if zid in self._lost:
                 asyncio.get_running_loop().call_later(DECLARED_S, self._check_returned, zid)
             self._lost.discard(zid)
+            if now_s >= self._until_s:
+                return  # nothing was lost
+        self._checks = CHECKS
         if self._timer is None:
             self._changing_since_s = now_s
         if now_s - self._changing_since_s < POSTPONED_S:
@@ -215,22 +205,15 @@ class Recovery:
             self._look_in(FIRST_S)
             return
         self._looking = True
-        now_s = asyncio.get_running_loop().time()
-        is_due = now_s < max(self._until_s, self._starting_until_s)
         threading.Thread(
-            target=self._look_in_thread,
-            args=(session, set(self._lost), is_due),
-            name="aionode-zenoh",
+            target=self._look_in_thread, args=(session, set(self._lost)), name="aionode-zenoh"
         ).start()
 
-    def _look_in_thread(self, session: zenoh.Session, lost: set[str], is_due: bool) -> None:
+    def _look_in_thread(self, session: zenoh.Session, lost: set[str]) -> None:
         missing: set[str] | None = None
         with suppress(zenoh.ZError, ConfigurationError):
             connection = introducer_connection(session, self._network)
-            if connection is None or not (is_due or silent_peers(session)):
-                missing = set()
-            else:
-                missing = self._reconnect(session, connection, lost)
+            missing = self._reconnect(session, connection, lost) if connection else set()
         self._looks.put(missing)
 
     def _reconnect(
@@ -281,13 +264,11 @@ class Recovery:
             self._checks -= 1
             self._on_change()
         now_s = asyncio.get_running_loop().time()
-        if missing is not None and not missing:
-            self._starting_until_s = 0.0
-        if self._timer is None and now_s < max(self._until_s, self._starting_until_s):
+        if self._timer is None and now_s < self._until_s:
             self._look_in(FIRST_S if missing else AGAIN_S)
 
 
-def tokens(session: zenoh.Session, domain_id: int | str) -> set[str]:
+def tokens(session: zenoh.Session, domain_id: int) -> set[str]:
     """Return the tokens of nodes and contexts in a domain that a session sees."""
     found = set()
     for keys in (f"{ROS_PREFIX}/{domain_id}/*/*/*/NN/**", f"@aionode/{domain_id}/*/link/**"):
@@ -300,12 +281,6 @@ def tokens(session: zenoh.Session, domain_id: int | str) -> set[str]:
 def participant_of(token: str) -> str:
     """Return the participant of a token of a node or context."""
     return token.split("/", 3)[2]
-
-
-def silent_peers(session: zenoh.Session) -> set[str]:
-    """Return the connected peers that announce nothing in any domain."""
-    peers = {str(zid) for zid in session.info.peers_zid()}
-    return peers - {participant_of(token) for token in tokens(session, "*")}
 
 
 def connections_to(session: zenoh.Session, zids: set[str]) -> Iterator[Connection]:

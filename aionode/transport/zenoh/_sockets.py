@@ -5,7 +5,8 @@ to ten seconds, and with it the thread of Zenoh that closes it, which may be the
 or connects for this process. That is switched off soon after a connection was made.
 
 In `close`, and in blocking sends, Zenoh waits until such a peer reads on or the connection is lost;
-shutting the socket down loses it at once (zenoh 1.10).
+in `close`, also until one has answered that it has just dialled, or that has just dialled. Shutting
+the socket down loses the connection at once (zenoh 1.10).
 
 On Linux only: elsewhere all of this takes as long as Zenoh waits.
 """
@@ -53,6 +54,15 @@ NO_LINGER: Final = struct.pack("ii", 0, 0)
 
 ACKED: Final = slice(120, 128)
 """Where ``struct tcp_info`` says how many bytes the peer's system has acknowledged."""
+
+RECEIVED: Final = slice(128, 136)
+"""Where it says how many bytes were received."""
+
+NOTHING: Final = bytes(8)
+"""What is there as long as nothing was."""
+
+ZENOH_LINGER: Final = struct.pack("ii", 1, 10)
+"""SO_LINGER as Zenoh sets it."""
 
 SETTLE_S: Final = 0.5
 """How long after a new connection its socket is looked for; several are made at once."""
@@ -122,6 +132,18 @@ def waiting_bytes(session: zenoh.Session) -> dict[str, int]:
 def address_of(link: zenoh.Link) -> str:
     """Return the address of the peer, such as ``127.0.0.1:7447``."""
     return str(link.dst).partition("/")[2].partition("?")[0]
+
+
+def unanswered() -> set[str]:
+    """Return the peers with which Zenoh has a connection on which nothing was received."""
+    with connections() as found:
+        return {
+            peer
+            for peer, one in found
+            if one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8) == ZENOH_LINGER
+            and one.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, RECEIVED.stop)[RECEIVED]
+            == NOTHING
+        }
 
 
 def look(session: zenoh.Session, participant: str) -> tuple[bool, int] | None:
@@ -204,17 +226,21 @@ def cut(peers: set[str]) -> None:
 
 
 async def cut_stuck(session: zenoh.Session) -> None:
-    """Cut those connections of a session that is about to be closed whose peers do not read."""
+    """Cut connections that a session about to be closed would wait for.
+
+    Those whose peers do not read, and those that are being made with peers that do not answer.
+    """
     if not sys.platform.startswith("linux"):
         return
-    before = waiting_bytes(session)
-    if not before:
+    before, silent = waiting_bytes(session), unanswered()
+    if not before and not silent:
         return
     with suppress(TimeoutError):
         async with asyncio.timeout(STUCK_S):
             await asyncio.get_running_loop().create_future()
     after = waiting_bytes(session)
     stuck = {peer for peer, size in before.items() if after.get(peer, 0) >= size}
+    stuck |= silent & unanswered()
     if stuck:
-        logger.debug("%s: the peer has stopped reading; the connection is cut", ", ".join(stuck))
+        logger.debug("%s: the peer has stopped; the connection is cut", ", ".join(stuck))
         cut(stuck)

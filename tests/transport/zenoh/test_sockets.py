@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import socket
 import struct
 import sys
+from contextlib import AsyncExitStack
 from typing import Any
 
 import pytest
@@ -55,3 +57,27 @@ async def test_a_closed_context_looks_for_sockets_no_more() -> None:
 
     assert all(switch._timer.cancelled() for switch in switches)
     assert [transport._linger_switch for transport in transports] == [None, None]
+
+
+@pytest.mark.parametrize("who", ["we dial", "it dials"])
+async def test_a_context_closes_at_once_while_a_connection_is_not_answered(who: str) -> None:
+    """A program that is frozen accepts, and is accepted, as its system does that for it."""
+    async with AsyncExitStack() as stack:
+        silent = stack.enter_context(socket.socket())
+        silent.bind(("127.0.0.1", 0))
+        silent.listen()
+        dial = {"connect/endpoints": [f"tcp/127.0.0.1:{silent.getsockname()[1]}"]}
+        context = Context(config=dial if who == "we dial" else {})
+        closing = await stack.enter_async_context(AsyncExitStack())
+        await closing.enter_async_context(context)
+        if who == "it dials":
+            port = int(os.environ["AIONODE_MEETING_PORTS"].partition(",")[0])
+            stack.enter_context(socket.create_connection(("127.0.0.1", port)))
+        async with asyncio.timeout(20):
+            while not await asyncio.to_thread(_sockets.unanswered):
+                await checkpoint()
+        began_s = asyncio.get_running_loop().time()
+        await closing.aclose()
+        took_s = asyncio.get_running_loop().time() - began_s
+
+    assert took_s < 0.7
