@@ -50,6 +50,7 @@ from rclpy.lifecycle import (
     TransitionCallbackReturn,
 )
 from rclpy.parameter import Parameter
+from rclpy.parameter_client import AsyncParameterClient
 from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message, serialize_message
 from rclpy.task import Future
@@ -546,6 +547,45 @@ def signalled(trace: Trace, number: int) -> None:
     attempt(trace, "shutdown", rclpy.shutdown)
     attempt(trace, "again", context.shutdown)
     attempt(trace, "try", context.try_shutdown)
+
+
+@scene
+def e16_after_a_signal_nothing_is_asked_or_sent(trace: Trace) -> None:
+    node = rclpy.create_node("e16")
+    publisher = node.create_publisher(Int32, "e16", 1)
+    subscription = node.create_subscription(Int32, "e16", trace, 1)
+    client = node.create_client(ListParameters, "e16")
+    parameters = AsyncParameterClient(node, "missing")
+    os.kill(os.getpid(), signal.SIGTERM)
+    until(lambda: not rclpy.ok())
+    attempts: dict[str, Callable[[], Any]] = {
+        "service_is_ready": client.service_is_ready,
+        "wait_for_service": lambda: client.wait_for_service(timeout_sec=0.1),
+        "wait_for_services": lambda: parameters.wait_for_services(0.1),
+        "wait_for_node": lambda: node.wait_for_node("missing", 0.1),
+        "get_node_names": node.get_node_names,
+        "get_topic_names_and_types": node.get_topic_names_and_types,
+        "get_service_names_and_types": node.get_service_names_and_types,
+        "by_node": lambda: node.get_client_names_and_types_by_node("e16", "/"),
+        "count_publishers": lambda: node.count_publishers("e16"),
+        "count_services": lambda: node.count_services("e16"),
+        "info": lambda: node.get_subscriptions_info_by_topic("e16"),
+        "get_subscription_count": publisher.get_subscription_count,
+        "get_publisher_count": lambda: subscription.get_publisher_count() >= 0,
+        "publish": lambda: publisher.publish(Int32()),
+        "assert_liveliness": publisher.assert_liveliness,
+        "wait_for_all_acked": publisher.wait_for_all_acked,
+        "call_async": lambda: client.call_async(ListParameters.Request()).done(),
+        "declare_parameter": lambda: node.declare_parameter("e16", 1),
+        "create_publisher": lambda: node.create_publisher(Int32, "late", 1),
+        "create_subscription": lambda: node.create_subscription(Int32, "late", trace, 1),
+        "create_client": lambda: node.create_client(ListParameters, "late"),
+        "create_service": lambda: node.create_service(ListParameters, "late", trace),
+        "create_timer": lambda: node.create_timer(1.0, trace),
+        "get_name": node.get_name,
+    }
+    for what, action in attempts.items():
+        attempt(trace, what, action)
 
 
 @scene

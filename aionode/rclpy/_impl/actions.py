@@ -108,6 +108,7 @@ class ActionClientHandle(Parts):
         name = f"{node.resolve(action_name)}/_action"
         self.name = action_name
         self.io = node.io
+        self.context_handle = node.context_handle
         self.goal = ClientHandle(node, impl.SendGoalService, f"{name}/send_goal", goal_qos)
         self.parts.append(self.goal)
         self.result = ClientHandle(node, impl.GetResultService, f"{name}/get_result", result_qos)
@@ -122,7 +123,12 @@ class ActionClientHandle(Parts):
         self.parts.append(self.status)
 
     def is_action_server_available(self) -> bool:
-        """Return whether all that belongs to a server is there."""
+        """Return whether all that belongs to a server is there.
+
+        Raises:
+            RCLError: the context is shut down.
+        """
+        self.context_handle.refuse_after_shutdown("Failed to check if action server is available")
         services = (self.goal, self.result, self.cancel)
         return all(client.service_server_is_available() for client in services) and all(
             topic.get_publisher_count() for topic in (self.feedback, self.status)

@@ -101,6 +101,19 @@ class ContextHandle(Destroyable):
                 "was not called or rcl_shutdown() was called."
             )
 
+    def refuse_after_shutdown(self, failure: str, user: str = "rcl node") -> None:
+        """Raise after shutdown, in rcl's words: a program that asks in a loop ends by that.
+
+        Args:
+            failure: What fails.
+            user: What uses the context.
+
+        Raises:
+            RCLError: it is shut down.
+        """
+        if self._shut_down:
+            raise RCLError(f"{failure}: {user}'s context is invalid")
+
     def mark_shut_down(self) -> None:
         """Shut down as far as a signal handler may: no lock is taken, nothing is waited for."""
         self._shut_down = True

@@ -41,7 +41,7 @@ class IoThread:
     def __init__(self, context: Context) -> None:
         self.context = context
         self._work: deque[Callable[[], object]] = deque()
-        self._scheduled = False
+        self._scheduled = True  # the loop looks once it runs
         self._ended = False
         self._loop: asyncio.AbstractEventLoop | None = None
         self._stopping: asyncio.Event | None = None
@@ -111,9 +111,8 @@ class IoThread:
             self._drain()
         elif not self._scheduled:
             self._scheduled = True
-            assert self._loop is not None  # noqa: S101  # `start` has returned
             try:
-                self._loop.call_soon_threadsafe(self._drain)
+                self.loop.call_soon_threadsafe(self._drain)
             except RuntimeError:  # the loop has just been closed
                 self._drain()
 
@@ -159,6 +158,7 @@ class IoThread:
             self._stopping = asyncio.Event()
             watching = tasks.create_task(self._watch_graph())
             self._opened.set_result(None)
+            self._drain()  # a signal may have ended `start`, so that `stop` is here already
             await self._stopping.wait()
             watching.cancel()
 

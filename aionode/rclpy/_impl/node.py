@@ -29,6 +29,14 @@ __all__ = ["NodeHandle"]
 
 NamesAndTypes = list[tuple[str, list[str]]]
 
+NOUNS = {
+    EndpointKind.PUBLISHER: "publisher",
+    EndpointKind.SUBSCRIPTION: "subscriber",
+    EndpointKind.SERVER: "service",
+    EndpointKind.CLIENT: "client",
+}
+"""What rcl calls the endpoints of a kind, in errors."""
+
 system_ns = MachineTime().system_ns
 
 
@@ -114,37 +122,53 @@ class NodeHandle(Destroyable):
 
     # Graph
 
-    def ask(self, question: Callable[[Graph], Any]) -> Any:
-        """Return what `question` answers; it is called in the thread of the context."""
+    def ask(self, failure: str, question: Callable[[Graph], Any]) -> Any:
+        """Return what `question` answers; it is called in the thread of the context.
+
+        Raises:
+            RCLError: the context is shut down; the text begins with `failure`.
+        """
+        self.context_handle.refuse_after_shutdown(failure)
         return self.io.call(question, self.io.context.graph)
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
         """Return name and namespace of every node."""
         found: list[tuple[str, str]] = self.ask(
-            lambda graph: [(node.name, node.namespace) for node in graph.nodes()]
+            "Failed to get node names",
+            lambda graph: [(node.name, node.namespace) for node in graph.nodes()],
         )
         return found
 
     def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
         """Return name, namespace and enclave of every node."""
         found: list[tuple[str, str, str]] = self.ask(
-            lambda graph: [(node.name, node.namespace, node.enclave) for node in graph.nodes()]
+            "Failed to get node names",
+            lambda graph: [(node.name, node.namespace, node.enclave) for node in graph.nodes()],
         )
         return found
 
     def count(self, kind: EndpointKind, name: str) -> int:
         """Return how many endpoints of `kind` have a full name."""
-        found: int = self.ask(lambda graph: graph.count(kind, name))
+        found: int = self.ask(
+            f"Error in rcl_count_{NOUNS[kind]}s",
+            lambda graph: graph.count(kind, name),
+        )
         return found
 
     def topic_names_and_types(self) -> NamesAndTypes:
         """Return every topic with its types."""
-        found: NamesAndTypes = self.ask(lambda graph: graph.names_and_types(*TOPIC_KINDS))
+        found: NamesAndTypes = self.ask(
+            "failed to get topic names and types",
+            lambda graph: graph.names_and_types(*TOPIC_KINDS),
+        )
         return found
 
     def service_names_and_types(self) -> NamesAndTypes:
         """Return every service that has a server, with its types."""
-        found: NamesAndTypes = self.ask(lambda graph: graph.names_and_types(EndpointKind.SERVER))
+        found: NamesAndTypes = self.ask(
+            "failed to get service names and types",
+            lambda graph: graph.names_and_types(EndpointKind.SERVER),
+        )
         return found
 
     def names_and_types_of(
@@ -164,12 +188,15 @@ class NodeHandle(Destroyable):
                 raise NodeNameNonExistentError(full_name)
             return graph.names_and_types(kind, node=node)
 
-        found: NamesAndTypes = self.ask(answer)
+        found: NamesAndTypes = self.ask(f"failed to get {NOUNS[kind]} names and types", answer)
         return found
 
     def endpoints(self, kind: EndpointKind, name: str) -> list[EndpointInfo]:
         """Return the endpoints of `kind` that have a full name."""
-        found: list[EndpointInfo] = self.ask(lambda graph: graph.endpoints(kind, name=name))
+        found: list[EndpointInfo] = self.ask(
+            f"Failed to get information by topic for {kind.value}s",
+            lambda graph: graph.endpoints(kind, name=name),
+        )
         return found
 
     def _destroy(self) -> None:

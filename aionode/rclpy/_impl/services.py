@@ -76,6 +76,7 @@ class ServiceHandle(Destroyable):
         self._io = node.io
         self._support = service_support(srv_type)
         self.srv_type = srv_type
+        node.context_handle.refuse_after_shutdown("failed to create service")
         profile = profile_of(qos_profile)
         self._requests = Requests(profile.depth or MOST_REQUESTS, node.signal)
         self._taken: dict[rmw_request_id_t, Request] = {}
@@ -205,6 +206,7 @@ class ClientHandle(Destroyable):
         self._io = node.io
         self.srv_type = srv_type
         self._support = service_support(srv_type)
+        node.context_handle.refuse_after_shutdown("failed to create client")
         self._replies = Replies(node.signal)
         self._calls: dict[int, Any] = {}
         self._sequence = 0
@@ -315,7 +317,12 @@ class ClientHandle(Destroyable):
             return rmw_service_info_t(request_id, 0, received_ns), response
 
     def service_server_is_available(self) -> bool:
-        """Return whether a server is matched."""
+        """Return whether a server is matched.
+
+        Raises:
+            RCLError: the context is shut down.
+        """
+        self._node.context_handle.refuse_after_shutdown("failed to check service availability")
         return self._io.call(lambda: self._bare.servers > 0)
 
     def get_logger_name(self) -> str:

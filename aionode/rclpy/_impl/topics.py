@@ -45,6 +45,7 @@ class PublisherHandle(Destroyable):
         self.msg_type = msg_type
         self._support = message_support(msg_type)
         self.io = node.io
+        node.context_handle.refuse_after_shutdown("Failed to create publisher")
         name = node.resolve(topic)
         self.bare: BarePublisher = node.io.call(
             node.bare.create_publisher, self._support.wire_type, name, profile_of(qos_profile)
@@ -72,8 +73,9 @@ class PublisherHandle(Destroyable):
         Subscriptions of this context have it when this returns.
 
         Raises:
-            RCLError: a KEEP_ALL subscription of this context is full.
+            RCLError: the context is shut down, or a KEEP_ALL subscription of it is full.
         """
+        self._refuse_after_shutdown("Failed to publish")
         msg = self._support.wire_type(data)
         io = self.io
         io.pace()
@@ -87,12 +89,20 @@ class PublisherHandle(Destroyable):
         if self.feed:
             io.post(self._tell_feed)
 
+    def _refuse_after_shutdown(self, failure: str) -> None:
+        self._node.context_handle.refuse_after_shutdown(failure, "publisher")
+
     def _tell_feed(self) -> None:
         for listener in self.feed:
             listener(None)
 
     def get_subscription_count(self) -> int:
-        """Return how many subscriptions are matched."""
+        """Return how many subscriptions are matched.
+
+        Raises:
+            RCLError: the context is shut down.
+        """
+        self._refuse_after_shutdown("failed to get subscription count")
         return len(self.io.call(self.bare.matched))
 
     def get_topic_name(self) -> str:
@@ -104,7 +114,12 @@ class PublisherHandle(Destroyable):
         return self._node.logger_name()
 
     def assert_liveliness(self) -> None:
-        """Show that the publisher is alive."""
+        """Show that the publisher is alive.
+
+        Raises:
+            RCLError: the context is shut down.
+        """
+        self._refuse_after_shutdown("Failed to assert liveliness on the Publisher")
         self.io.post(self._assert_liveliness)
 
     def _assert_liveliness(self) -> None:
@@ -112,8 +127,13 @@ class PublisherHandle(Destroyable):
         self.bare.assert_liveliness()
 
     def wait_for_all_acked(self, timeout: Any) -> bool:
-        """Wait until everything is handed to the transports; they repeat what is lost."""
+        """Wait until everything is handed to the transports; they repeat what is lost.
+
+        Raises:
+            RCLError: the context is shut down.
+        """
         del timeout
+        self._refuse_after_shutdown("Failed to wait for all acknowledgements")
         self.io.call(lambda: None)
         return True
 
@@ -209,6 +229,7 @@ class SubscriptionHandle(Destroyable):
     ) -> None:
         super().__init__(node.signal)
         self._node = node
+        node.context_handle.refuse_after_shutdown("Failed to create subscription")
         self.io = node.io
         self.msg_type = msg_type
         self._support = message_support(msg_type)
