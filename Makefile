@@ -6,9 +6,12 @@
 #   make check     style, types, layers and structure, the documentation and its code
 #   make coverage  how much of aionode the tests reach that start no process; fails below 92 %
 #   make bench     the benchmarks; tables, JSON and pictures in benchmarks/results/
+#   make profile   instructions and cache lines for one message, by valgrind: docs/performance.md
 #   make docs      the documentation as pages, in site/
 #   make fuzz      damaged input for every parser: by property tests, and guided by coverage
 #   make faults    processes that freeze, lag and die, FAULTS_TIMES times: writes docs/reliability.md
+#   make ros-test  aionode over DDS, beside rclpy of PyPI; Linux x86-64
+#   make live      aionode beside a real ROS 2 on rmw_zenoh, where one is sourced
 #   make crowd     300 nodes come and go beside a router, which has to answer all the while
 #   make soak      everything at once, for SOAK_SECONDS seconds: nothing may grow
 #   make quotes    brings the code quoted in README.md and docs/ up to date
@@ -25,10 +28,11 @@ FAULTS_TIMES ?= 3
 WORKERS ?= auto
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test stress check coverage bench docs fuzz faults crowd soak quotes clean
+.PHONY: help demo test stress check coverage bench profile docs fuzz faults live ros-test crowd \
+	soak quotes clean
 
 help:
-	@sed -n '3,14s/^# *//p' Makefile
+	@sed -n '3,18s/^# *//p' Makefile
 
 demo: .venv/installed
 	$(BIN)/python -m aionode.examples.pubsub
@@ -58,6 +62,9 @@ coverage: .venv/installed-dev
 bench: .venv/installed-dev
 	for program in benchmarks/*.py; do $(BIN)/python $$program || exit 1; done
 
+profile: .venv/installed-dev
+	$(BIN)/python benchmarks/instructions.py --write docs/performance.md
+
 docs: .venv/installed-dev
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs site
 	@echo "Open site/index.html"
@@ -70,6 +77,13 @@ fuzz: .venv/installed-dev
 
 faults: .venv/installed-dev
 	$(BIN)/python -m tests.faults --times $(FAULTS_TIMES) --write docs/reliability.md
+
+ros-test: .venv/installed-dev
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[ros]'
+	$(BIN)/python -m pytest -q -rs tests/transport/rcl tests/transport/test_contract.py
+
+live: .venv/installed-dev
+	$(BIN)/python -m pytest -q -rs tests/live
 
 crowd: .venv/installed-dev
 	$(BIN)/python -m tests.faults.crowd

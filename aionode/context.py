@@ -22,8 +22,9 @@ from aionode.endpoints._core.loop_affinity import LoopAffinity
 from aionode.endpoints._core.mismatch_report import MismatchReport
 from aionode.errors import ConfigurationError, EntityDestroyedError, ForkedProcessError, brief
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
+from aionode.logging import get_logger
 from aionode.message import type_name
-from aionode.transport._zenoh_config import network_from
+from aionode.transport._zenoh_config import network_from, unheard_middleware
 from aionode.transport.base import Transport
 from aionode.transport.local import LocalTransport
 from aionode.wire._liveliness import endpoint_token, gid_of
@@ -39,8 +40,22 @@ if TYPE_CHECKING:
 
 __all__ = ["Context"]
 
+TRANSPORT_VARIABLE = "AIONODE_TRANSPORT"
+
 LINK_VARIABLE = "AIONODE_LINK"
 LINK_SETTINGS = {"on": True, "off": False, "": True}
+
+
+def transport_of(environ: Mapping[str, str]) -> str:
+    """Return which transport the environment asks for; zenoh if it does not.
+
+    Raises:
+        ConfigurationError: it is none of those that there are.
+    """
+    word = environ.get(TRANSPORT_VARIABLE, "") or "zenoh"
+    if word not in {"zenoh", "rcl", "local"}:
+        raise ConfigurationError(TRANSPORT_VARIABLE, word, "use zenoh, rcl or local")
+    return word
 
 
 def wants_link(asked: bool | None, environ: Mapping[str, str]) -> bool:
@@ -80,8 +95,10 @@ class Context:
 
     Args:
         domain_id: The ROS domain, 0 or more; by default ``ROS_DOMAIN_ID``, or 0.
-        transport: ``"zenoh"`` reaches other processes and ROS 2, ``"local"`` only the nodes of this
-            context. One or several `Transport` objects are used as they are.
+        transport: ``"zenoh"`` reaches other processes, and ROS 2 on rmw_zenoh; ``"rcl"`` reaches
+            ROS 2 over the middleware of the ROS 2 that is installed here, such as DDS; ``"local"``
+            reaches only the nodes of this context. One or several `Transport` objects are used as
+            they are. By default ``AIONODE_TRANSPORT``, or ``"zenoh"``.
         clock: Where the time comes from: the machine, or an `aionode.testing.ManualClock`.
         discovery_range: Where to look for other processes: ``"LOCALHOST"``, ``"SUBNET"`` or
             ``"OFF"``; by default ``ROS_AUTOMATIC_DISCOVERY_RANGE``.
@@ -124,7 +141,7 @@ class Context:
         self,
         *,
         domain_id: int | None = None,
-        transport: str | Transport | Sequence[Transport] = "zenoh",
+        transport: str | Transport | Sequence[Transport] | None = None,
         clock: TimeBase | None = None,
         discovery_range: str | None = None,
         static_peers: Sequence[str] | None = None,
@@ -153,6 +170,9 @@ class Context:
             static_peers=static_peers,
             config=config,
         )
+        if transport is None:
+            transport = transport_of(os.environ)
+        self._is_on_zenoh = transport == "zenoh"
         self._transports = self._make_transports(transport, link)
         self._usage: Usage | None = None  # of arguments that were set for this context alone
         self._nodes: dict[ContextNode, None] = {}  # from construction until destroyed
@@ -184,10 +204,12 @@ class Context:
         if transport == "zenoh":
             # Imported on demand: it is large, and a local context does not need it.
             from aionode.transport.zenoh import ZenohTransport
+            from aionode.transport.zenoh.bridge import BridgeTransport
 
             zenoh = ZenohTransport(self.participant, self.network, self.time_base)
+            bridges = BridgeTransport(zenoh.session_state, self.time_base)
             if not wants_link(link, os.environ):
-                return (LocalTransport(), zenoh)
+                return (LocalTransport(), zenoh, bridges)
             from aionode.transport.ipc import IpcTransport
 
             linked = IpcTransport(
@@ -197,9 +219,13 @@ class Context:
                 zenoh.peer_directory,
                 self.time_base,
             )
-            return (LocalTransport(), linked)
+            return (LocalTransport(), linked, bridges)
+        if transport == "rcl":
+            from aionode.transport.rcl import RclTransport
+
+            return (LocalTransport(), RclTransport(self.participant, self.network))
         raise ValueError(
-            f'Context: transport={brief(transport)} is unknown; use "zenoh" or "local"'
+            f'Context: transport={brief(transport)} is unknown; use "zenoh", "rcl" or "local"'
         )
 
     # Lifetime
@@ -339,11 +365,20 @@ class Context:
             for transport in self._transports:
                 opened.append(transport)
                 await transport.open(self.graph)
+            self._hint_at_rcl()
         except BaseException:
             for transport in reversed(opened):
                 await to_the_end(transport.close())
             self._end_spinning()
             raise
+
+    def _hint_at_rcl(self) -> None:
+        """Log what reaches the other ROS 2 nodes of this environment, if no node is heard."""
+        if not self._is_on_zenoh:
+            return
+        hint = unheard_middleware(os.environ)
+        if hint and all(one.participant == self.participant for one in self.graph.nodes()):
+            get_logger("aionode.context").warning(hint)
 
     def _end_spinning(self) -> None:
         stop, self._stop_spinning = self._stop_spinning, None

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias, TypeVar
 
 from aionode import names, qos
-from aionode._distribution import distribution_mismatch
+from aionode._distribution import NO_TYPE_HASH, distribution_mismatch
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -61,6 +61,10 @@ class NodeInfo:
         name: Its name without namespace.
         namespace: Its namespace, beginning with a slash.
         enclave: Its security enclave.
+        over_rcl: Whether rcl has found it, over a middleware such as DDS. That connects endpoints
+            only if their QoS fits, and may not tell the hashes of types.
+        bridged: Whether it is on DDS, behind a `zenoh-bridge-ros2dds`; then `participant` is the
+            Zenoh id of that bridge.
     """
 
     participant: str
@@ -68,6 +72,8 @@ class NodeInfo:
     name: str
     namespace: str
     enclave: str = "/"
+    over_rcl: bool = False
+    bridged: bool = False
 
     @property
     def fully_qualified_name(self) -> str:
@@ -102,7 +108,8 @@ class EndpointInfo:
         endpoint_id: Number of the endpoint, unique in its context.
         name: Full name of its topic or service.
         type_name: ROS name of its type, such as ``std_msgs/msg/String``.
-        type_hash: RIHS01 hash of the type, as text; ``TypeHashNotSupported`` in ROS 2 Humble.
+        type_hash: RIHS01 hash of the type, as text; ``TypeHashNotSupported`` in ROS 2 Humble, and
+            empty if unknown, as those of services over DDS.
         qos: Its QoS.
         gid: 16 bytes that identify it.
     """
@@ -126,23 +133,27 @@ class EndpointInfo:
         """Return the first difference to the opposite endpoint `other`; None if there is none.
 
         A difference in QoS matters within one context, and between contexts over DDS; rmw_zenoh
-        delivers between contexts whatever the QoS is.
+        delivers between contexts whatever the QoS is. A bridge adapts to both sides, but DDS
+        subscriptions that request what was published before may refuse a volatile publisher. A hash
+        that is not told, as of the services behind a bridge, differs from none.
         """
         different = self._compare_types(other)
         if different is not None or self.kind not in TOPIC_KINDS:
             return different  # services neither offer nor request QoS
         is_publisher = self.kind is EndpointKind.PUBLISHER
         publisher, subscription = (self, other) if is_publisher else (other, self)
-        reason = qos.mismatch(publisher.qos, subscription.qos)
-        if reason is None:
+        found = qos.incompatibilities(publisher.qos, subscription.qos)
+        if publisher.node.bridged or subscription.node.bridged:
+            refused = subscription.node.bridged and not publisher.node.bridged
+            found = [one for one in found if refused and one.kind is qos.QoSPolicyKind.DURABILITY]
+        if not found:
             return None
-        last = qos.incompatibilities(publisher.qos, subscription.qos)[-1]
-        return Mismatch("qos", reason, last.kind)
+        return Mismatch("qos", "; ".join(one.reason for one in found), found[-1].kind)
 
     def _compare_types(self, other: EndpointInfo) -> Mismatch | None:
         if self.type_name != other.type_name:
             return Mismatch("type", f"type: {self.type_name} here, {other.type_name} there")
-        if self.type_hash != other.type_hash:
+        if self._has_other_hash(other):
             reason = distribution_mismatch(self.type_hash, other.type_hash)
             if reason is not None:
                 return Mismatch("distribution", reason)
@@ -150,14 +161,26 @@ class EndpointInfo:
             return Mismatch("definition", f"definition of {self.type_name}: {hashes}")
         return None
 
+    def _has_other_hash(self, other: EndpointInfo) -> bool:
+        """Whether both tell the hash of their type, and they differ; DDS is without hashes."""
+        hashes = {self.type_hash, other.type_hash}
+        if self.node.bridged or other.node.bridged:
+            hashes -= {NO_TYPE_HASH}
+        return len(hashes - {""}) > 1
+
     def mismatch(self, other: EndpointInfo) -> str | None:
         """Return why this endpoint and its opposite `other` do not communicate; None if they do.
 
-        Between contexts only the types count: rmw_zenoh delivers whatever the QoS is.
+        Between contexts only the types count over rmw_zenoh, which delivers whatever the QoS is;
+        over DDS the QoS counts as well.
         """
-        in_one_context = self.node.participant == other.node.participant
-        found = self.compare(other) if in_one_context else self._compare_types(other)
+        found = self.compare(other) if self.needs_qos(other) else self._compare_types(other)
         return None if found is None else found.reason
+
+    def needs_qos(self, other: EndpointInfo) -> bool:
+        """Return whether the QoS of both has to fit."""
+        in_one_context = self.node.participant == other.node.participant
+        return in_one_context or self.node.over_rcl or other.node.over_rcl
 
     def matches(self, other: EndpointInfo) -> bool:
         """Whether this endpoint communicates with its opposite `other`."""
@@ -233,6 +256,31 @@ class Graph:
         self.unreported.pop(endpoint, None)
         self._tell_watchers(endpoint, present=False)
         self._wake()
+
+    def identify(self, endpoint: EndpointInfo, gid: bytes) -> None:
+        """Give an endpoint the gid that the middleware has chosen.
+
+        Watchers are told that it goes and returns; for listeners it is the same one.
+        """
+        is_known = endpoint in self._endpoints
+        if is_known:
+            self._tell_watchers(endpoint, present=False)
+            indices: tuple[dict[EndpointInfo, None], ...] = (
+                self._endpoints,
+                self._by_name[endpoint.kind, endpoint.name],
+                self._by_node[endpoint.node],
+            )
+            for index in indices:
+                del index[endpoint]
+        unreported = self.unreported.pop(endpoint, None)
+        object.__setattr__(endpoint, "gid", gid)  # frozen for everyone else
+        if unreported is not None:
+            self.unreported[endpoint] = unreported
+        if is_known:
+            for index in indices:
+                index[endpoint] = None
+            self.changes += 1
+            self._tell_watchers(endpoint, present=True)
 
     def remove_participant(self, participant: str) -> None:
         """Remove all nodes and endpoints of the context `participant`."""

@@ -537,10 +537,14 @@ def test_ci_runs_every_example() -> None:
     """A new example cannot be merged untested."""
     script = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
 
-    modules = [f"aionode.examples.{path.stem}" for path in (ROOT / "aionode/examples").glob("*.py")]
+    programs = [
+        path.relative_to(ROOT).with_suffix("")
+        for path in (ROOT / "aionode/examples").rglob("*.py")
+        if path.stem != "__init__"
+    ]
+    modules = [".".join(program.parts) for program in programs]
     files = [f"examples/{path.name}" for path in (ROOT / "examples").glob("*.py")]
 
-    modules.remove("aionode.examples.__init__")
     assert [each for each in modules + files if each not in script] == []
 
 

@@ -29,8 +29,7 @@ from aionode.logging import LoggingSeverity, get_logger_level, set_logger_level
 from aionode.message import type_name
 from aionode.parameter import Parameter, parameter_services
 from aionode.qos import QoSProfile, ReliabilityPolicy
-from aionode.wire._type_description import description_message, parts
-from aionode.wire.typehash import type_hash
+from aionode.wire.typehash import description_message, referenced_types, type_hash
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -179,7 +178,7 @@ def serve_type_descriptions(node: NodeEndpoints) -> None:
         response.successful = True
         response.type_description = description_message(kind)
         if request.include_type_sources:
-            response.type_sources = [source_of(part) for part in (kind, *parts(kind))]
+            response.type_sources = [source_of(part) for part in (kind, *referenced_types(kind))]
         return response
 
     node.create_service(GetTypeDescription, "~/get_type_description", describe)
@@ -193,7 +192,7 @@ def types_of(node: NodeEndpoints) -> Iterator[Any]:
     kinds += [client.srv_type for client in node.clients]
     for kind in dict.fromkeys(kinds):
         yield kind
-        yield from parts(kind)
+        yield from referenced_types(kind)
 
 
 def source_of(kind: Any) -> TypeSource:

@@ -9,6 +9,7 @@ import difflib
 import errno
 import importlib
 import io
+import os
 import sys
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
@@ -126,12 +127,20 @@ class LateGroup(click.Group):
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 @click.version_option(package_name="aionode", prog_name="aionode")
-def root() -> None:
+@click.option(
+    "--transport",
+    type=click.Choice(["zenoh", "rcl"]),
+    help="How to reach other nodes: rmw_zenoh's format, or the ROS 2 that is installed (rcl, over "
+    "DDS); also $AIONODE_TRANSPORT.",
+)
+def root(transport: str | None) -> None:
     """Inspect and use nodes, topics, services, parameters and actions.
 
     Commands, options and output are those of ros2. Every command that prints data has --json, which
     prints one record per line. There is no daemon: every answer is current.
     """
+    if transport is not None:
+        os.environ["AIONODE_TRANSPORT"] = transport
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from contextlib import suppress
 from enum import IntEnum
 from typing import TYPE_CHECKING
 
@@ -325,6 +326,23 @@ class Clock:
             return self._base.call_at(when_ns, callback)
         left_ns = when_ns - self._base.system_ns()
         return self._base.call_at(self._base.steady_ns() + left_ns, callback)
+
+    def call_every(
+        self, when_ns: int, period_ns: int, callback: Callable[[], None]
+    ) -> Alarm | None:
+        """Call `callback` when this clock shows `when_ns`, and then after each `period_ns`.
+
+        As with `call_at`, it reads the clock again. None if only `call_at` is available: the time
+        is not the machine's, or the system has no such alarms, or none left.
+        """
+        if not self.follows_machine:
+            return None
+        from aionode.clock._timerfd import PeriodicAlarm  # with the first timer
+
+        system = self._clock_type is not ClockType.STEADY_TIME
+        with suppress(OSError, NotImplementedError):
+            return PeriodicAlarm(when_ns, period_ns, callback, system=system)
+        return None
 
     # ROS time
 

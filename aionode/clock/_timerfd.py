@@ -7,6 +7,7 @@ becomes readable at a time given in nanoseconds, and loops wait for files withou
 
 from __future__ import annotations
 
+import asyncio
 import errno
 import os
 import sys
@@ -18,16 +19,17 @@ from typing import TYPE_CHECKING, Any
 from aionode.clock._timer_heap import TimerHeap
 
 if TYPE_CHECKING:
-    import asyncio
     from collections.abc import Callable
 
     from aionode.clock._timer_heap import Entry
 
-__all__ = ["KernelAlarms"]
+__all__ = ["KernelAlarms", "PeriodicAlarm"]
 
 # From <time.h> and <sys/timerfd.h>.
+CLOCK_REALTIME = 0
 CLOCK_MONOTONIC = 1
 TFD_TIMER_ABSTIME = 1
+TFD_TIMER_CANCEL_ON_SET = 2
 
 
 class KernelAlarms(TimerHeap):
@@ -117,6 +119,69 @@ class KernelAlarms(TimerHeap):
     __del__ = _close  # for a loop that is closed with an alarm pending
 
 
+MAX_PERIODIC = 64
+"""How many alarms have a file of their own at most, of all that a process may have open."""
+
+
+class PeriodicAlarm:
+    """An alarm that rings again and again without being set: a `timerfd` of its own.
+
+    See `Clock.call_every`. It rings once more whenever the system clock is set.
+
+    Raises:
+        OSError: The system has no `timerfd`, or the process has too many open files.
+        NotImplementedError: The loop cannot wait for files.
+    """
+
+    __slots__ = ("_callback", "_fd", "_loop", "_process")
+
+    count = 0
+
+    def __init__(
+        self, when_ns: int, period_ns: int, callback: Callable[[], None], *, system: bool
+    ) -> None:
+        self._fd = -1
+        if PeriodicAlarm.count >= MAX_PERIODIC:
+            raise OSError(errno.EMFILE, "the others share one file")
+        self._loop = asyncio.get_running_loop()
+        self._process = os.getpid()
+        self._callback = callback
+        # On the system clock itself, as the distance between the two clocks changes all the time.
+        fd = open_timer(CLOCK_REALTIME if system else CLOCK_MONOTONIC)
+        try:
+            spec = itimerspec()
+            spec[0], spec[1] = divmod(period_ns, 1_000_000_000)
+            set_timer(fd, max(when_ns, 1), spec, TFD_TIMER_CANCEL_ON_SET if system else 0)
+            self._loop.add_reader(fd, self._expired)
+        except BaseException:
+            os.close(fd)
+            raise
+        self._fd = fd
+        PeriodicAlarm.count += 1
+
+    def _expired(self) -> None:
+        try:
+            os.read(self._fd, 8)  # a count, which must be read before it can ring again
+        except BlockingIOError:
+            return
+        except OSError as error:
+            if error.errno != errno.ECANCELED:  # the system clock was set
+                raise
+        self._callback()
+
+    def cancel(self) -> None:
+        """Ring no more; calling it again has no effect."""
+        fd, self._fd = self._fd, -1
+        if fd >= 0:
+            PeriodicAlarm.count -= 1
+            # A forked child shares the parent's `epoll`, and would silence its timers.
+            if not self._loop.is_closed() and self._process == os.getpid():
+                self._loop.remove_reader(fd)
+            os.close(fd)
+
+    __del__ = cancel  # for a loop that is closed with an alarm pending
+
+
 @cache
 def libc() -> Any:
     """Return the C library; Python has these functions itself from 3.13 on."""
@@ -127,9 +192,9 @@ def libc() -> Any:
     return ctypes.CDLL(None, use_errno=True)
 
 
-def open_timer() -> int:
+def open_timer(clock: int = CLOCK_MONOTONIC) -> int:
     """Return the file descriptor of a new `timerfd`."""
-    fd: int = libc().timerfd_create(CLOCK_MONOTONIC, os.O_NONBLOCK | os.O_CLOEXEC)
+    fd: int = libc().timerfd_create(clock, os.O_NONBLOCK | os.O_CLOEXEC)
     if fd < 0:
         import ctypes
 
@@ -144,7 +209,7 @@ def itimerspec() -> Any:
     return (ctypes.c_long * 4)()
 
 
-def set_timer(fd: int, when_ns: int, spec: Any) -> None:
-    """Make `fd` readable when the monotonic clock reaches `when_ns`; `spec` is overwritten."""
+def set_timer(fd: int, when_ns: int, spec: Any, flags: int = 0) -> None:
+    """Make `fd` readable when its clock reaches `when_ns`, then after each interval of `spec`."""
     spec[2], spec[3] = divmod(when_ns, 1_000_000_000)
-    libc().timerfd_settime(fd, TFD_TIMER_ABSTIME, spec, None)
+    libc().timerfd_settime(fd, TFD_TIMER_ABSTIME | flags, spec, None)

@@ -73,6 +73,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         self._answers: set[asyncio.Future[Any]] = set()
         self._futures = Futures(self._subject)
         self._warned = False
+        self._has_told_caveat = False
 
     def __repr__(self) -> str:
         return (
@@ -126,7 +127,8 @@ class Client(Entity, Generic[RequestT, ResponseT]):
             timeout_sec: The longest wait in seconds; None waits for ever.
 
         Returns:
-            True once a server is matched, False if none was within `timeout_sec`.
+            True once a server is matched, False if none was within `timeout_sec`. A server that is
+            known not to answer, on Fast DDS behind a bridge, counts, and is warned of in the log.
 
         Raises:
             EntityDestroyedError: the client was already destroyed (a RuntimeError).
@@ -138,6 +140,7 @@ class Client(Entity, Generic[RequestT, ResponseT]):
                 await self._graph_entry.until(self.service_is_ready)
         except TimeoutError:
             return self.service_is_ready()
+        self._tell_caveat()
         return True
 
     async def call(self, request: RequestT, timeout_sec: float | None = None) -> ResponseT:
@@ -177,7 +180,9 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         except TimeoutError as error:
             self.stats.errors += 1
             if limit is not None and timeout_sec is not None and limit.expired():
-                raise RequestTimeoutError(self.srv_name, timeout_sec, self._servers()) from error
+                raise RequestTimeoutError(
+                    self.srv_name, timeout_sec, self._servers(), self._caveat()
+                ) from error
             raise
         except asyncio.CancelledError as error:
             self.stats.errors += 1
@@ -269,6 +274,19 @@ class Client(Entity, Generic[RequestT, ResponseT]):
 
     def _servers(self) -> int:
         return sum(requester.servers for requester in self._requesters)
+
+    def _caveat(self) -> str:
+        """Return why the matched servers may not answer, if a transport knows."""
+        return next((caveat for one in self._requesters if (caveat := one.caveat)), "")
+
+    def _tell_caveat(self) -> None:
+        """Log once why the matched servers may not answer, if a transport knows."""
+        caveat = self._caveat()
+        if caveat and not self._has_told_caveat:
+            self._has_told_caveat = True
+            self._graph_entry.callbacks.logger.warning(
+                f"{self.srv_name}: a server is matched, but may not answer: {caveat}"
+            )
 
     def _warn_of_silence(self) -> None:
         if not self._warned:

@@ -50,7 +50,7 @@ class Publisher(Entity, Generic[MsgT]):
         self.msg_type = msg_type
         self.qos_profile: QoSProfile = graph_entry.endpoint.qos
         self._graph_entry = graph_entry
-        self._gid = graph_entry.endpoint.gid
+        self._endpoint = graph_entry.endpoint
         self._affinity = graph_entry.affinity
         self._check: Callable[[Any], None] = checker(msg_type)
         self._now_ns = time_base.system_ns
@@ -107,7 +107,7 @@ class Publisher(Entity, Generic[MsgT]):
             if writer.bounded and not writer.has_room():
                 raise QueueFullError(self.topic_name, KEEP_ALL_DEPTH)
         stats = self.stats
-        sample_info = SampleInfo(self._gid, stats.published + 1, self._now_ns())
+        sample_info = SampleInfo(self._endpoint.gid, stats.published + 1, self._now_ns())
         used = False
         try:
             for writer in self._writers:

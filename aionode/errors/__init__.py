@@ -260,11 +260,12 @@ class RequestTimeoutError(AionodeError, TimeoutError):
         servers: Number of servers that were matched when the call timed out.
     """
 
-    def __init__(self, service: str, timeout_sec: float, servers: int) -> None:
+    def __init__(self, service: str, timeout_sec: float, servers: int, caveat: str = "") -> None:
         self.service = service
         self.timeout_sec = timeout_sec
         self.servers = servers
-        super().__init__(f"{service}: no reply in {timeout_sec:g} s; {silence(servers)}")
+        hint = f": {caveat}" if caveat else ""
+        super().__init__(f"{service}: no reply in {timeout_sec:g} s; {silence(servers)}{hint}")
 
 
 class GoalError(AionodeError, RuntimeError):
@@ -475,6 +476,18 @@ class FrameError(TransportError):
     def __init__(self, problem: str) -> None:
         self.problem = problem
         super().__init__(f"link: {problem}; do both processes run the same release of aionode?")
+
+
+FAST_DDS_SILENCE = (
+    "there are nodes on Fast DDS behind the zenoh-bridge-ros2dds, whose services, actions and "
+    "parameters time out (topics work)"
+)
+"""Why services behind a bridge do not answer."""
+
+FAST_DDS_REMEDY = (
+    "start them with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp, or run aionode on the robot with "
+    "AIONODE_TRANSPORT=rcl"
+)
 
 
 def silence(servers: int) -> str:

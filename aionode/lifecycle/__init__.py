@@ -28,7 +28,7 @@ from aionode.lifecycle._managed import (
 from aionode.lifecycle._manager import LifecycleManager
 from aionode.lifecycle._node import LifecycleNode
 from aionode.lifecycle._runner import LifecycleEvent
-from aionode.lifecycle._states import State, TransitionCallbackReturn
+from aionode.lifecycle.states import State, TransitionCallbackReturn
 
 __all__ = [
     "EntityInactiveError",

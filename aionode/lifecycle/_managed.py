@@ -6,16 +6,17 @@ import functools
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from aionode.errors import EntityInactiveError
-from aionode.lifecycle._states import TransitionCallbackReturn
+from aionode.lifecycle.states import TransitionCallbackReturn
 from aionode.message import Message
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from aionode.endpoints.events import EventStream, PublisherEvent
     from aionode.endpoints.publisher import Publisher
     from aionode.endpoints.stats import PublisherStats
     from aionode.endpoints.timer import Timer
-    from aionode.lifecycle._states import State
+    from aionode.lifecycle.states import State
     from aionode.qos import QoSProfile
 
 __all__ = ["LifecyclePublisher", "LifecycleTimer", "ManagedEntity", "SimpleManagedEntity"]
@@ -150,6 +151,19 @@ class LifecyclePublisher(SimpleManagedEntity, Generic[MsgT]):
             self._publisher.publish(msg)
         else:
             self.discarded += 1
+
+    def assert_liveliness(self) -> None:
+        """Tell the subscriptions that the publisher is alive, in any state of the node.
+
+        Raises:
+            EntityDestroyedError: the publisher or its node was destroyed (a RuntimeError).
+        """
+        self._publisher.assert_liveliness()
+
+    @property
+    def events(self) -> EventStream[PublisherEvent]:
+        """The events of the publisher; see `Publisher.events`."""
+        return self._publisher.events
 
     async def drain(self) -> None:
         """Wait until messages were sent; see `Publisher.drain`."""

@@ -17,7 +17,7 @@ from aionode.interfaces.lifecycle_msgs.srv import (
 )
 from aionode.lifecycle._managed import Gate, LifecyclePublisher, LifecycleTimer, ManagedEntity
 from aionode.lifecycle._runner import FAILURE, SUCCESS, TransitionRunner
-from aionode.lifecycle._states import (
+from aionode.lifecycle.states import (
     ERROR_PROCESSING,
     STATES,
     TRANSITIONS,
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from aionode.endpoints.subscription import Subscription, SubscriptionCallback
     from aionode.endpoints.timer import TimerCallback
     from aionode.lifecycle._runner import LifecycleEvent
-    from aionode.lifecycle._states import State, Transition
+    from aionode.lifecycle.states import State, Transition
     from aionode.message import ServiceClass
 
     Result: TypeAlias = Any

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.errors import TransitionError
 from aionode.lifecycle._managed import SimpleManagedEntity
-from aionode.lifecycle._states import (
+from aionode.lifecycle.states import (
     ACTIVE,
     ERROR_PROCESSING,
     StateMachine,
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable
 
     from aionode.lifecycle._managed import ManagedEntity
-    from aionode.lifecycle._states import State, Transition
+    from aionode.lifecycle.states import State, Transition
     from aionode.logging import RcutilsLogger
 
 __all__ = ["LifecycleEvent", "TransitionRunner"]

@@ -43,6 +43,7 @@ from aionode.message._field_types import (
 )
 from aionode.message._message import DEFAULT, Message, constants, fields, type_name
 from aionode.message._schema import documentation, json_schema
+from aionode.message._serialized import SerializedMessage, serialized, unserialized
 from aionode.message._service_types import (
     ActionClass,
     ActionType,
@@ -70,6 +71,7 @@ __all__ = [
     "Ints",
     "Message",
     "Sequence",
+    "SerializedMessage",
     "ServiceClass",
     "ServiceType",
     "byte",
@@ -92,6 +94,7 @@ __all__ = [
     "int32",
     "int64",
     "json_schema",
+    "serialized",
     "snapshot",
     "snapshotter",
     "to_builtins",
@@ -102,5 +105,6 @@ __all__ = [
     "uint16",
     "uint32",
     "uint64",
+    "unserialized",
     "wstring",
 ]

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, dataclass_transform, get_args, 
 import msgspec
 
 from aionode.message._field_types import Constant, Field, field_type
+from aionode.message._serialized import unserialized
 from aionode.message._validation import default_value, plain_default, same, shown
 
 if TYPE_CHECKING:
@@ -210,7 +211,7 @@ def fields(cls: type[Message]) -> tuple[Field, ...]:
     Raises:
         TypeError: `cls` is not a message class.
     """
-    return message_class(cls).__ros_fields__
+    return message_class(unserialized(cls)).__ros_fields__
 
 
 def constants(cls: type[Message]) -> tuple[Constant, ...]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from aionode.errors import MessageError
 from aionode.message._field_types import INT_RANGES, FieldType
 from aionode.message._message import Message, fields, message_class, type_name
+from aionode.message._serialized import unserialized
 from aionode.message._validation import (
     check_length,
     dtype_of,
@@ -54,6 +55,8 @@ def snapshotter(cls: type[MessageT]) -> Callable[[MessageT], MessageT]:
     Raises:
         TypeError: `cls` is not a message class, or has no ROS name.
     """
+    if unserialized(cls) is not cls:
+        return expecting(cls)
     function: Callable[[MessageT], MessageT] = generated(cls, copying=True)
     return function
 
@@ -64,8 +67,21 @@ def checker(cls: type[MessageT]) -> Callable[[MessageT], None]:
     Raises:
         TypeError: `cls` is not a message class, or has no ROS name.
     """
+    if unserialized(cls) is not cls:
+        return expecting(cls)
     function: Callable[[MessageT], None] = generated(cls, copying=False)
     return function
+
+
+def expecting(cls: type[Any]) -> Callable[[Any], Any]:
+    """Return a function that returns a serialized message, whose bytes never change, as it is."""
+
+    def take(message: Any) -> Any:
+        if message.__class__ is not cls:
+            refuse(cls, message, type_name(cls))
+        return message
+
+    return take
 
 
 def snapshot(message: MessageT) -> MessageT:

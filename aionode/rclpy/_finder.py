@@ -100,8 +100,8 @@ class AionodeFinder(MetaPathFinder):
     def find_spec(
         self,
         fullname: str,
-        path: Sequence[str] | None,  # noqa: ARG002 (of the protocol)
-        target: ModuleType | None = None,  # noqa: ARG002 (the same)
+        path: Sequence[str] | None,
+        target: ModuleType | None = None,
     ) -> ModuleSpec | None:
         """Return how a module is loaded; None if it is not one of these."""
         package, _, inside = fullname.partition(".")
@@ -142,7 +142,7 @@ class AliasLoader(Loader):
         self.own = own
         self.spec: ModuleSpec | None = None
 
-    def create_module(self, spec: ModuleSpec) -> ModuleType:  # noqa: ARG002 (of the protocol)
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
         """Return the module of aionode."""
         module = import_module(self.own)
         self.spec = module.__spec__

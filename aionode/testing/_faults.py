@@ -141,6 +141,16 @@ class _FaultyWriter(Writer):
         """How many messages the inner writer has dropped; injected losses are not counted."""
         return self._inner.dropped
 
+    @property
+    def filtered(self) -> int:
+        """How many messages the inner writer has left out."""
+        return self._inner.filtered
+
+    def assert_liveliness(self) -> None:
+        """Tell the readers after the delay, or do not tell them."""
+        if not self._faults._strikes(self._faults.drop):
+            self._faults._later(self._inner.assert_liveliness)
+
     def route_of(self, reader: EndpointInfo) -> str | None:
         """Return the route of the inner writer."""
         return self._inner.route_of(reader)

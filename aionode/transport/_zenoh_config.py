@@ -32,6 +32,7 @@ __all__ = [
     "probed_ports",
     "router_settings",
     "session_settings",
+    "unheard_middleware",
 ]
 
 MEETING_PORTS: Final = (17449, 17450, 17451)
@@ -419,3 +420,14 @@ def router_settings(
         # A query for its routing table can deadlock it: zenoh's pull request 2619.
         "adminspace/enabled": False,
     }
+
+
+def unheard_middleware(environ: Mapping[str, str]) -> str | None:
+    """Return what to do if the ROS 2 nodes of this environment are not heard; None if they are."""
+    middleware = environ.get("RMW_IMPLEMENTATION", "")
+    if middleware in {"", "rmw_zenoh_cpp"}:
+        return None
+    return (
+        f"RMW_IMPLEMENTATION={middleware}: nodes over DDS are not heard; AIONODE_TRANSPORT=rcl "
+        "reaches them"
+    )

@@ -196,6 +196,11 @@ class Requester(Registration):
     def servers(self) -> int:
         """How many servers are matched through this transport now."""
 
+    @property
+    def caveat(self) -> str:
+        """What is known to keep the matched servers from answering, and the way out; or empty."""
+        return ""
+
     @abstractmethod
     def send(self, request: Any, sample_info: SampleInfo, reply_to: ReplyTo) -> Call:
         """Send `request` to every matched server; never blocks.

@@ -25,7 +25,7 @@ __all__ = [
     "Individual",
     "describe",
     "description_message",
-    "parts",
+    "referenced_types",
 ]
 
 TYPE_IDS = {
@@ -93,7 +93,7 @@ def describe(cls: type[Any]) -> Description:
     """
     return {
         "type_description": individual(cls),
-        "referenced_type_descriptions": [individual(part) for part in parts(cls)],
+        "referenced_type_descriptions": [individual(part) for part in referenced_types(cls)],
     }
 
 
@@ -110,7 +110,7 @@ def description_message(cls: type[Any]) -> TypeDescription:
 
     return TypeDescription(
         type_description=individual_message(cls),
-        referenced_type_descriptions=[individual_message(part) for part in parts(cls)],
+        referenced_type_descriptions=[individual_message(part) for part in referenced_types(cls)],
     )
 
 
@@ -197,7 +197,7 @@ def nested_member(name: str, part: type[Any]) -> FieldDescription:
     }
 
 
-def parts(cls: type[Any]) -> list[type[Any]]:
+def referenced_types(cls: type[Any]) -> list[type[Any]]:
     """Return all types that `cls` uses, at any depth, sorted by name."""
     found: dict[str, type[Any]] = {}
     waiting = used_by(cls)

@@ -10,9 +10,10 @@ import json
 from functools import cache
 from typing import Any
 
-from aionode.wire._type_description import describe
+from aionode.message import unserialized
+from aionode.wire._type_description import describe, description_message, referenced_types
 
-__all__ = ["type_hash"]
+__all__ = ["description_message", "referenced_types", "type_hash"]
 
 
 @cache
@@ -26,5 +27,5 @@ def type_hash(cls: type[Any]) -> str:
         TypeError: `cls` is not such a class.
     """
     # ROS 2 hashes exactly this output of json.dumps, including the order of keys and the blanks.
-    text = json.dumps(describe(cls))
+    text = json.dumps(describe(unserialized(cls)))
     return "RIHS01_" + hashlib.sha256(text.encode()).hexdigest()

@@ -31,12 +31,12 @@ class RclpyBall:
 
 def rclpy_process(part: str) -> None:
     """Play, or echo, until stdin is closed."""
-    import rclpy  # type: ignore[import-not-found]  # from a ROS installation, as the next ones
-    import std_msgs.msg  # type: ignore[import-not-found]
-    from rclpy.experimental.events_executor import (  # type: ignore[import-not-found]
+    import rclpy  # from a ROS installation, as the next ones
+    import std_msgs.msg
+    from rclpy.experimental.events_executor import (
         EventsExecutor,
     )
-    from rclpy.task import Future  # type: ignore[import-not-found]
+    from rclpy.task import Future
 
     rclpy.init()
     node = rclpy.create_node(part.replace("-", "_"))
@@ -94,7 +94,7 @@ def rclpy_process(part: str) -> None:
 def has_rclpy() -> bool:
     """Return whether rclpy and its events executor can be imported here."""
     try:
-        import rclpy.experimental.events_executor  # type: ignore[import-not-found]  # noqa: F401
+        import rclpy.experimental.events_executor  # noqa: F401
     except ImportError:
         return False
     return True

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.lifecycle._states import (
+from aionode.lifecycle.states import (
     ACTIVE,
     FINALIZED,
     STATES,

@@ -113,7 +113,7 @@ async def test_many_threads_create_entities_at_once(node: Node) -> None:
     )
 
     assert {one.topic_name for one in created} <= {one.topic_name for one in node.publishers}
-    assert len({one._gid for one in created}) == 20
+    assert len({one._endpoint.gid for one in created}) == 20
 
 
 async def test_a_content_filter_can_be_set_in_another_thread(node: Node) -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from aionode.interfaces import shipped_packages
-from aionode.rclpy._finder import ALIASES
+from aionode.rclpy._finder import ALIASES, rclpy_of_ros
 
 ROOT = Path(__file__).parents[2]
 DISTRIBUTION = ROOT / "packages" / "aionode-rclpy"
@@ -43,7 +43,7 @@ def test_its_packages_do_one_thing() -> None:
     sources = {path.read_text() for path in (DISTRIBUTION / "src").glob("*/__init__.py")}
     codes = {"\n".join(map(ast.unparse, ast.parse(source).body[1:])) for source in sources}
 
-    assert codes == {"from aionode.rclpy import provide\nprovide(__name__)"}
+    assert codes == {"from aionode.rclpy._finder import provide\nprovide(__name__)"}
 
 
 @pytest.mark.timeout(180)
@@ -65,3 +65,10 @@ def test_a_program_runs_with_its_wheel(tmp_path: Path) -> None:
     )
 
     assert (done.stdout, done.stderr) == ("data: hi\n", "")
+
+
+def test_it_is_not_taken_for_ros(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`install` says which rclpy is used only where there are two."""
+    monkeypatch.syspath_prepend(DISTRIBUTION / "src")
+
+    assert rclpy_of_ros() is None

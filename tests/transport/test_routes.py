@@ -78,7 +78,7 @@ async def test_a_publisher_counts_what_a_slow_link_dropped() -> None:
 
 async def links_seen_by(context: Context) -> LinkStatus:
     """Return what a context is told."""
-    _, transport = context.transports
+    _, transport, _ = context.transports
     return await transport.link_status()
 
 

@@ -148,6 +148,13 @@ def mismatch(offering: EndpointInfo, requesting: EndpointInfo) -> Iterator[Findi
             f"{pair} do not communicate: QoS {found.reason}",
             "request no more than is offered, or offer more",
         )
+    elif requesting.node.bridged:
+        yield Finding(
+            "hint",
+            subject_of(offering),
+            f"{pair} may not communicate through the bridge: QoS {found.reason}",
+            "publish with durability TRANSIENT_LOCAL",
+        )
     else:
         yield Finding(
             "hint",

@@ -162,7 +162,7 @@ async def type_of(node: Node, users: list[EndpointInfo]) -> Any:
     except InterfaceNotFoundError:
         known = None
     hashes = {user.type_hash for user in users}
-    if known is not None and hashes & {type_hash(known), NO_TYPE_HASH}:
+    if known is not None and hashes & {type_hash(known), NO_TYPE_HASH, ""}:
         return known
     from aionode.cli._support.type_discovery import fetch_type
 

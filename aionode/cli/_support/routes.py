@@ -108,6 +108,7 @@ def pairs_of(endpoints: Iterable[EndpointInfo], links: LinkStatus) -> list[Pair]
         if publisher.kind is EndpointKind.PUBLISHER
         for subscription in subscriptions.get(publisher.name, ())
         if publisher.matches(subscription)
+        and not (publisher.node.bridged and subscription.node.bridged)  # that is DDS's own business
     ]
 
 
@@ -120,6 +121,8 @@ def route(
     """Return the route of messages, and the reason if it is Zenoh."""
     from aionode.transport.ipc import can_link
 
+    if publisher.node.bridged or subscription.node.bridged:
+        return "bridge", ""
     if publisher.node.participant == subscription.node.participant:
         return "local", ""
     if not can_link(publisher):

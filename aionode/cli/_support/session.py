@@ -139,8 +139,11 @@ async def wait_until_known(node: Node, output: Output) -> None:
             "this may be incomplete"
         )
     participant = node.context.participant
-    others = [one for one in node.graph.endpoints() if one.node.participant != participant]
-    hashes = {endpoint.type_hash for endpoint in others}
+    hashes = {
+        one.type_hash
+        for one in node.graph.endpoints()
+        if one.node.participant != participant and not one.node.bridged
+    }
     hint = other_distribution(node.context.ros_distro, hashes)
     if hint is not None:
         output.warn(f"WARNING: {hint}")

@@ -11,8 +11,9 @@ from aionode.cli._support import lookup
 from aionode.cli._support.diagnosis import Finding, diagnose
 from aionode.cli._support.routes import link_findings, pairs_of, query_links
 from aionode.clock import perf_ns
+from aionode.errors import FAST_DDS_REMEDY, FAST_DDS_SILENCE
 from aionode.graph import EndpointKind
-from aionode.transport._zenoh_config import DiscoveryRange
+from aionode.transport._zenoh_config import DiscoveryRange, unheard_middleware
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -51,7 +52,8 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
     has_router = await answers(network.router_port)
     nodes, endpoints = chosen(node, names)
     links = await query_links(node)
-    domains = await other_domains(node, patient=not nodes)
+    bridges = bridges_of(node)
+    domains = await other_domains(node, patient=not nodes and not bridges)
     wanted = full_names(names)
     pairs = [
         pair
@@ -64,6 +66,7 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
         "discovery_range": network.discovery_range.value,
         "static_peers": list(network.static_peers),
         "router": has_router,
+        "bridges": len(bridges),
         "participants": len({one.participant for one in nodes}),
         "nodes": len(nodes),
         "topics": count(endpoints, EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION),
@@ -76,14 +79,19 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
         lines += [f"  {pair.text()}" for pair in pairs]
     output.item("\n".join(lines), record)
     found = diagnose(nodes, endpoints)
-    hint = other_distribution(node.context.ros_distro, {one.type_hash for one in endpoints})
+    hashes = {one.type_hash for one in endpoints if not one.node.bridged}
+    hint = other_distribution(node.context.ros_distro, hashes)
     if hint is not None:
         problem, remedy = hint.split(": ")
         found.insert(0, Finding("problem", "ROS_DISTRO", problem, remedy))
-    found += link_findings(pairs)
-    found += network_findings(
-        network, os.environ, has_router=has_router, domains=domains, alone=not nodes
-    )
+    if not any(hasattr(one, "middleware") for one in node.context.transports):  # not over rcl
+        found += link_findings(pairs)
+        found += bridge_findings(bridges)
+        # What a bridge reaches is no matter of this environment's middleware.
+        environ = {} if bridges else os.environ
+        found += network_findings(
+            network, environ, has_router=has_router, domains=domains, alone=not nodes
+        )
     for finding in found:
         output.item(
             f"\n{finding.severity}: {finding.subject}: {finding.text}\n  -> {finding.remedy}",
@@ -107,6 +115,7 @@ def summary(record: Mapping[str, Any], router_port: int) -> list[str]:
         f"Discovery range: {record['discovery_range']}",
         f"Static peers: {', '.join(record['static_peers']) or 'none'}",
         f"Router on this machine (port {router_port}): {router}",
+        f"Bridges to DDS: {record['bridges'] or 'none'}",
         f"Other processes: {record['participants']}",
         f"Nodes: {record['nodes']}",
         f"Topics: {record['topics']}",
@@ -164,6 +173,21 @@ async def other_domains(node: Node, *, patient: bool) -> list[int]:
         if found or not patient or perf_ns() >= ends_ns:
             return sorted(found)
         await node.get_clock().sleep(DOMAINS_AGAIN_S)
+
+
+def bridges_of(node: Node) -> dict[str, bool]:
+    """Return the Zenoh ids of bridges, each with whether nodes on Fast DDS are behind it."""
+    found: dict[str, bool] = {}
+    for transport in node.context.transports:
+        found |= getattr(transport, "dds_bridges", {})
+    return found
+
+
+def bridge_findings(bridges: Mapping[str, bool]) -> list[Finding]:
+    """Return a finding if there are nodes behind bridges whose services do not answer."""
+    if not any(bridges.values()):
+        return []
+    return [Finding("problem", "zenoh-bridge-ros2dds", FAST_DDS_SILENCE, FAST_DDS_REMEDY)]
 
 
 async def answers(port: int) -> bool:
@@ -233,14 +257,15 @@ def network_findings(
 
 def rmw_findings(environ: Mapping[str, str]) -> list[Finding]:
     """Return a finding if ROS 2 nodes started from this environment use another RMW."""
-    rmw = environ.get("RMW_IMPLEMENTATION", "")
-    if rmw in {"", ZENOH}:
+    hint = unheard_middleware(environ)
+    if hint is None:
         return []
+    text, _, remedy = hint.partition("; ")
     return [
         Finding(
             "hint",
             "RMW_IMPLEMENTATION",
-            f"it is {rmw}, so ROS 2 nodes started in this environment cannot be reached",
-            f"set RMW_IMPLEMENTATION={ZENOH}",
+            text,
+            f"{remedy}, on this machine; or run ROS 2 with RMW_IMPLEMENTATION={ZENOH}",
         )
     ]

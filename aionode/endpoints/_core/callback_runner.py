@@ -133,7 +133,7 @@ class CallbackRunner:
         return self._finish(entered) if is_unfinished(entered) else None
 
     def receive(self, entered_ns: int, *args: Any) -> Coroutine[Any, Any, None] | None:
-        """Do `run` for a message that arrived at `entered_ns`; count it, and record its wait.
+        """Do `run` for what was due at `entered_ns`; count it, and record its wait.
 
         Raises:
             Exception: what the callback raised, if `on_error` is ``"raise"``.

@@ -66,7 +66,12 @@ def mismatch_text(own: EndpointInfo, other: EndpointInfo) -> str | None:
             f"({other.type_hash}, here {own.type_hash}). They will not hear each other; use the "
             "same version of the interface package on both sides"
         )
-    if own.node.participant != other.node.participant:
+    if other.node.bridged:
+        return (
+            f"{where}: QoS of the {peer} is incompatible ({found.reason}). A bridge that knew this "
+            "publisher first passes nothing on to it; publish with durability TRANSIENT_LOCAL"
+        )
+    if not own.needs_qos(other):
         return (
             f"{where}: QoS of the {peer} is incompatible ({found.reason}). Messages pass all the "
             "same over rmw_zenoh, but would not over DDS"

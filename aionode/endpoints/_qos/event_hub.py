@@ -89,6 +89,13 @@ class EventHub:
         TypeError: `event_callbacks` is of another class, or a function in it takes other arguments.
     """
 
+    __slots__ = (
+        "_ended",
+        "_newest",
+        "_stream",
+        "handler",
+    )
+
     def __init__(
         self,
         graph_entry: GraphEntry,

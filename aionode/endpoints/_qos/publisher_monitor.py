@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from aionode.clock._silence import SilenceAlarm
 from aionode.endpoints._qos.event_hub import EventHub
 from aionode.endpoints._qos.matching import Matching
-from aionode.endpoints._qos.silence import SilenceAlarm
 from aionode.endpoints.events import (
     PublisherEventCallbacks,
     QoSLivelinessLostInfo,
@@ -75,6 +75,21 @@ class PublisherMonitor:
     Raises:
         TypeError: `event_callbacks` is of another class, or a function in it takes other arguments.
     """
+
+    __slots__ = (
+        "_alarms",
+        "_graph_entry",
+        "_heartbeat",
+        "_hub",
+        "_lease_alarm",
+        "_lease_ns",
+        "_lost",
+        "_manual",
+        "_missed",
+        "_time_base",
+        "_watches_matches",
+        "writers",
+    )
 
     def __init__(
         self,

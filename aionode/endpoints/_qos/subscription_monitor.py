@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Protocol
 
+from aionode.clock._silence import SilenceAlarm
 from aionode.endpoints._qos.event_hub import EventHub
 from aionode.endpoints._qos.lifespan import NEVER_NS, ExpiringItems
 from aionode.endpoints._qos.liveliness import PublisherLiveliness
 from aionode.endpoints._qos.matching import Matching
-from aionode.endpoints._qos.silence import SilenceAlarm
 from aionode.endpoints.events import (
     QoSMessageLostInfo,
     QoSRequestedDeadlineMissedInfo,
@@ -63,6 +63,24 @@ class SubscriptionMonitor:
     Raises:
         TypeError: `event_callbacks` is of another class, or a function in it takes other arguments.
     """
+
+    __slots__ = (
+        "_deadline",
+        "_endpoint",
+        "_graph_entry",
+        "_hub",
+        "_items",
+        "_lifespans_ns",
+        "_liveliness",
+        "_matching",
+        "_missed",
+        "_now_ns",
+        "_own_lifespan_ns",
+        "_purge",
+        "_reader",
+        "_runs",
+        "_time_base",
+    )
 
     def __init__(
         self,

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from aionode.endpoints.actions._goal import CancelCode
+from aionode.endpoints.actions.goal import CancelCode
 from aionode.errors import ServiceUnavailableError
 
 if TYPE_CHECKING:

@@ -16,8 +16,8 @@ from aionode.endpoints._core.loop_affinity import in_thread_of_node
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints.actions._cancel_request import CancelRequest
 from aionode.endpoints.actions._client_goal import ActionResult, ClientGoalHandle
-from aionode.endpoints.actions._common import ActionEntity, expect_action_type, reason_id
-from aionode.endpoints.actions._goal import GoalStatus
+from aionode.endpoints.actions._common import ActionEntity, expect_action_type
+from aionode.endpoints.actions.goal import GoalStatus, reason_id
 from aionode.endpoints.stats import CallbackStats
 from aionode.errors import (
     GoalAbortedError,
@@ -213,6 +213,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
                     await self._change()
         except TimeoutError:
             return self.server_is_ready()
+        self._send_goal._tell_caveat()
         return True
 
     async def _change(self) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, Protocol, Self, TypeVar
 
 from aionode.endpoints._core.message_queue import MessageQueue
-from aionode.endpoints.actions._goal import GoalStatus
+from aionode.endpoints.actions.goal import GoalStatus
 from aionode.endpoints.stats import CallbackStats
 from aionode.message import Message
 

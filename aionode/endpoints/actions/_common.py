@@ -26,7 +26,6 @@ __all__ = [
     "expect_action_type",
     "in_event_loop",
     "pass_reason",
-    "reason_id",
     "seconds_to_ns",
     "stamp_ns",
 ]
@@ -76,17 +75,6 @@ class ActionEntity(Entity):
 
 class AbortReason(Exception):  # noqa: N818  # a message to the client, which reads its name
     """Why a goal was aborted, sent to the client as a service error: see `reason_id`."""
-
-
-def reason_id(goal_id: bytes) -> bytes:
-    """Return the id under which an aionode server tells why a goal was aborted.
-
-    A ROS result has no field for it. An aionode client therefore calls ``get_result`` once more,
-    with all bits of the id inverted, and gets the reason as a service error. No goal has such an
-    id (it is not a version 4 UUID), so other servers answer that they do not know it. This needs
-    no endpoint that ROS does not have, and works over every transport.
-    """
-    return bytes(byte ^ 0xFF for byte in goal_id)
 
 
 def pass_reason(error: Exception, context: CallbackContext) -> None:  # noqa: ARG001  # an OnError

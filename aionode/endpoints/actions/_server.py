@@ -20,11 +20,11 @@ from aionode.endpoints.actions._common import (
     expect_action_type,
     in_event_loop,
     pass_reason,
-    reason_id,
     seconds_to_ns,
     stamp_ns,
 )
-from aionode.endpoints.actions._goal import (
+from aionode.endpoints.actions._server_goal import ServerGoalHandle
+from aionode.endpoints.actions.goal import (
     CancelCode,
     CancelResponse,
     GoalKey,
@@ -32,8 +32,8 @@ from aionode.endpoints.actions._goal import (
     GoalStatus,
     candidates,
     is_cancelable,
+    reason_id,
 )
-from aionode.endpoints.actions._server_goal import ServerGoalHandle
 from aionode.endpoints.stats import CallbackStats
 from aionode.errors import CallbackCancelledError, QueueFullError, brief
 from aionode.message import Message, snapshotter, type_name

@@ -54,28 +54,30 @@ class Ticker:
         lost between two waits, because the schedule records what is due.
 
         Args:
-            on_ring: Called when the event loop's own alarm rings. If it returns True, it has made
-                the call, and the wait continues until the next is due.
+            on_ring: Called when the alarm rings, on a clock that follows the machine's. If it
+                returns True, it has made the call, and the wait continues until the next is due.
         """
         waiter = asyncio.get_running_loop().create_future()
         schedule = self.schedule
-        call_at = self.clock.call_at
         alarm: Alarm | None = None
+        period_ns = 0  # of the alarm, if it goes on by itself
 
         def ring() -> None:
-            nonlocal alarm
+            nonlocal alarm, period_ns
             if waiter.done():
                 return
-            called = on_ring is not None and self.clock.follows_machine and on_ring()
+            called = on_ring is not None and on_ring()
             if waiter.done():
                 return  # the call has woken or cancelled this wait
-            if called:
-                alarm = call_at(schedule.next_ns, ring)
-            else:
+            if not called:
                 waiter.set_result(None)
+            elif period_ns != schedule.period_ns:
+                if alarm is not None:
+                    alarm.cancel()
+                alarm, period_ns = self._set_alarm(ring, repeat=True)
 
         if not schedule.canceled:
-            alarm = call_at(schedule.next_ns, ring)
+            alarm, period_ns = self._set_alarm(ring, repeat=on_ring is not None)
         self._waiters[waiter] = None
         try:
             await waiter
@@ -84,6 +86,18 @@ class Ticker:
             if alarm is not None:
                 alarm.cancel()
         schedule.look_back(self.clock.now_ns())  # the machine's clock may have been set back
+
+    def _set_alarm(self, ring: Callable[[], None], *, repeat: bool) -> tuple[Alarm, int]:
+        """Have `ring` called when the next call is due; return how often after that, 0 for never.
+
+        With `repeat` it may go on by itself, which the kernel does for less than setting it again.
+        """
+        schedule = self.schedule
+        if repeat and schedule.period_ns:
+            alarm = self.clock.call_every(schedule.next_ns, schedule.period_ns, ring)
+            if alarm is not None:
+                return alarm, schedule.period_ns
+        return self.clock.call_at(schedule.next_ns, ring), 0
 
     def wake(self) -> None:
         """End all waits, because the schedule has changed."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Coroutine
 from typing import TYPE_CHECKING, Any
 
 from aionode._concurrency import checkpoint
-from aionode.clock import S_TO_NS, Time
+from aionode.clock import S_TO_NS, Time, perf_ns
 from aionode.endpoints._core.callback_runner import accepts
 from aionode.endpoints._core.entity import Entity
 from aionode.endpoints._core.inline_call import InlineCall
@@ -164,7 +164,7 @@ class Timer(Entity):
         while True:
             now_ns = ticker.clock.now_ns()
             if not schedule.is_ready(now_ns):
-                if ticker.clock.follows_machine:
+                if ticker.clock.follows_machine and self._runner.is_sync:
                     await self._inline_call.after(ticker.wait(self._call_inline))
                 else:
                     await ticker.wait()
@@ -192,18 +192,17 @@ class Timer(Entity):
         return done and not schedule.canceled
 
     def _call(self, expected_ns: int, now_ns: int) -> Coroutine[Any, Any, None] | None:
-        stats = self.stats
-        stats.received += 1
-        stats.dropped = self._ticker.schedule.skipped
-        stats.queue_wait.record(now_ns - expected_ns)
+        self.stats.dropped = self._ticker.schedule.skipped
+        entered_ns = perf_ns() - (now_ns - expected_ns)
         if not self._wants_info:
-            return self._runner.run()
-        return self._runner.run(
+            return self._runner.receive(entered_ns)
+        return self._runner.receive(
+            entered_ns,
             TimerInfo(
                 expected_call_time=expected_ns,
                 actual_call_time=now_ns,
                 clock_type=self.clock.clock_type,
-            )
+            ),
         )
 
     def _close(self) -> None:

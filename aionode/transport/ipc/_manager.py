@@ -207,7 +207,7 @@ class LinkManager:
         return [
             endpoint
             for endpoint in self._graph.endpoints(kind, name=name)
-            if endpoint.node.participant != self.participant
+            if endpoint.node.participant != self.participant and not endpoint.node.bridged
         ]
 
     def later(self, delay_s: float, call: Callable[[], None]) -> None:

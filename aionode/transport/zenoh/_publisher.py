@@ -6,12 +6,13 @@ import asyncio
 import logging
 from collections import deque
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import zenoh
 from zenoh import ext
 
 from aionode.clock import perf_ns
+from aionode.clock._silence import SilenceAlarm
 from aionode.errors import TransportError
 from aionode.graph import EndpointKind
 from aionode.qos import depth_of, is_unlimited, keeps_all
@@ -19,7 +20,6 @@ from aionode.transport._reliability import WriterHistory
 from aionode.transport._send_thread import SendQueue, SendThread
 from aionode.transport.base import Writer
 from aionode.transport.zenoh._delivery import (
-    BLOCK,
     BULK_BYTES,
     DROP,
     FLUSH_NS,
@@ -38,13 +38,16 @@ from aionode.transport.zenoh._handlers import (
     direct,
     reason,
 )
+from aionode.transport.zenoh._kept_history import (
+    declare_keeping,
+    declare_plain,
+    unless_expired,
+)
 from aionode.transport.zenoh._session_state import Declaration
 from aionode.wire import _acknack as acknack
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
 from aionode.wire._acknack import SubmessageKind
-from aionode.wire._key_expression import data_key
-from aionode.wire._liveliness import endpoint_token
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -68,11 +71,13 @@ class ZenohWriter(Declaration, Writer):
     not acknowledge and must not lose it, by a thread of this publisher that waits for them.
     """
 
+    recovers: ClassVar[bool] = True  # whether its readers ask again for what they miss
+
     def __init__(self, state: SessionState, endpoint: EndpointInfo, msg_type: type[Any]) -> None:
-        super().__init__(state, endpoint_token(state.domain_id, endpoint))
+        self._key, token, gid = state.names_of(endpoint)
+        super().__init__(state, token, gid)
         self.endpoint = endpoint
         qos = endpoint.qos
-        self._key = data_key(state.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
         self._msg_type = msg_type
         # None until it is needed, as it takes a while to make; `_update` does that, so that no
         # callback has to.
@@ -93,13 +98,16 @@ class ZenohWriter(Declaration, Writer):
         self._reliable = is_reliable(qos)
         lifespan = qos.lifespan
         self._lifespan_ns = 0 if is_unlimited(lifespan) else lifespan.nanoseconds
+        self._expiry: SilenceAlarm | None = None
+        if self._transient and self._lifespan_ns:
+            self._expiry = SilenceAlarm(state.time_base, self._lifespan_ns, self._forget_expired)
         # Messages for late readers that were published before the session is open.
         self._early: deque[tuple[bytes, bytes]] = deque(maxlen=self._depth)
         self.active = self._transient
         self.bounded = keeps_all(qos)
         # A transient local publisher has none: there Zenoh sends lost messages again.
         self._history: WriterHistory | None = None
-        if self._reliable and not self._transient:
+        if self._reliable and not self._transient and self.recovers:
             self._history = WriterHistory(
                 self._depth, keep_all=self.bounded, side=self, now_ns=perf_ns
             )
@@ -134,45 +142,50 @@ class ZenohWriter(Declaration, Writer):
     def declare_data(self, session: zenoh.Session) -> None:
         """Declare the publisher, and send what was published before."""
         self._is_watched = False
-        reliable = self._reliable
-        reliability = zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT
         if self._transient:
-            priority = BULK_PRIORITY if self._bulk_only else LOOP_PRIORITY
-            self._publisher = ext.declare_advanced_publisher(
-                session,
-                self._key,
-                congestion_control=BLOCK if self.bounded else DROP,
-                priority=PATIENT_PRIORITY if self.bounded else priority,
-                reliability=reliability,
-                allowed_destination=zenoh.Locality.REMOTE,
-                cache=ext.CacheConfig(max_samples=self._depth),
-                publisher_detection=True,
-                # Samples are numbered, so that readers ask again for what is missing between two.
-                # No heartbeat, which would tell of a missing last one too: undeclaring waits for
-                # its task with the GIL held, and for 10 s if that task's thread needs the GIL for
-                # a callback just then (zenoh-python 1.10).
-                sample_miss_detection=ext.MissDetectionConfig(
-                    heartbeat=None, sporadic_heartbeat=None
-                )
-                if reliable
-                else None,
-            )
+            self._publisher = self._declare_keeping(session)
+            if self._expiry is not None:
+                self._expiry.start()
             while self._early:
-                self.put(*self._early.popleft())
+                payload, extra = self._early.popleft()
+                self._unless_expired(extra, partial(self.put, payload, extra))()
+                if self._expiry is not None:
+                    self._expiry.note()
         else:
-            self._publisher = session.declare_publisher(
-                self._key,
-                congestion_control=DROP,
-                priority=LOOP_PRIORITY,
-                reliability=reliability,
-                allowed_destination=zenoh.Locality.REMOTE,
+            self._publisher = declare_plain(
+                session, self._key, LOOP_PRIORITY, reliable=self._reliable, waits=False
             )
-            self._matching = self._publisher.declare_matching_listener(
-                direct(self._matching_changed.put)
-            )
-            # Here only: Zenoh looks through all subscribers of all topics for an answer.
-            self._is_matching = bool(self._publisher.matching_status.matching)  # type: ignore[attr-defined]  # no bool, as the stub says
+            if self.recovers:  # else a bridge has announced every reader
+                self._matching = self._publisher.declare_matching_listener(
+                    direct(self._matching_changed.put)
+                )
+                # Here only: Zenoh looks through all subscribers of all topics for an answer.
+                self._is_matching = bool(self._publisher.matching_status.matching)  # type: ignore[attr-defined]  # no bool, as the stub says
         self._update()
+
+    def _declare_keeping(self, session: zenoh.Session) -> ext.AdvancedPublisher:
+        priority = BULK_PRIORITY if self._bulk_only else LOOP_PRIORITY
+        return declare_keeping(
+            session,
+            self._key,
+            self._depth,
+            PATIENT_PRIORITY if self.bounded else priority,
+            reliable=self._reliable,
+            waits=self.bounded,
+            numbered=self.recovers,
+        )
+
+    def _forget_expired(self, periods: int) -> bool:  # noqa: ARG002  # one lifespan is enough
+        """Replace the publisher by a new one: all that Zenoh keeps of it has expired."""
+        if self.state.session is not None and self._publisher is not None:
+            if not self.is_done():
+                return True  # once more, after another lifespan
+            before, self._publisher = self._publisher, self._declare_keeping(self.state.session)
+            if self._patient is None:
+                withdraw(before)
+            else:
+                self._patient_sender.submit(partial(withdraw, before))
+        return False
 
     def undeclare_data(self) -> None:
         """Undeclare the publisher as soon as its messages are acknowledged or given up."""
@@ -201,6 +214,8 @@ class ZenohWriter(Declaration, Writer):
 
     def finish(self) -> None:
         """Undeclare the publisher, and count the messages that were not delivered."""
+        if self._expiry is not None:
+            self._expiry.stop()
         self.state.has_lingered(self)
         if self._history is not None and (missing := self._history.give_up()):
             self.lost(missing)
@@ -268,7 +283,7 @@ class ZenohWriter(Declaration, Writer):
         return [
             reader
             for reader in graph.endpoints(EndpointKind.SUBSCRIPTION, name=self.endpoint.name)
-            if reader.node.participant != self.state.participant and self.endpoint.matches(reader)
+            if self.state.reaches(reader.node) and self.endpoint.matches(reader)
         ]
 
     def _filter_of(self, readers: list[EndpointInfo]) -> Callable[[Any], bool] | None:
@@ -320,6 +335,8 @@ class ZenohWriter(Declaration, Writer):
                 self._early.append((payload, extra))
         elif history is None:
             self.put(payload, extra)
+            if self._expiry is not None:
+                self._expiry.note()
         else:
             history.write(sample_info.sequence, payload, extra)
             if not self._is_watched and history.entries:
@@ -387,32 +404,15 @@ class ZenohWriter(Declaration, Writer):
             self._patient = self._send_queue(self._patient_sender, keep_all=self.bounded)
             self._update_route()
             if not self._transient and self.state.session is not None:
-                self._patient_publisher = self.state.session.declare_publisher(
-                    self._key,
-                    congestion_control=BLOCK,
-                    priority=PATIENT_PRIORITY,
-                    reliability=zenoh.Reliability.RELIABLE,
-                    allowed_destination=zenoh.Locality.REMOTE,
+                self._patient_publisher = declare_plain(
+                    self.state.session, self._key, PATIENT_PRIORITY, reliable=True, waits=True
                 )
         patient = self._patient_publisher or publisher
         send = partial(self._send_patiently, patient, payload, extra)
         self._patient.put(self._unless_expired(extra, send))
 
     def _unless_expired(self, extra: bytes, send: Callable[[], None]) -> Callable[[], None]:
-        """Return `send`, or with a lifespan what does nothing if the message expires before it.
-
-        Only readers of aionode look at the age of what arrives.
-        """
-        fields = attachment.unpack_fields(extra)
-        if not self._lifespan_ns or fields is None:
-            return send
-        expires_ns = fields[1] + self._lifespan_ns
-
-        def send_if_fresh() -> None:
-            if self.state.now_ns() < expires_ns:
-                send()
-
-        return send_if_fresh
+        return unless_expired(extra, self._lifespan_ns, self.state.now_ns, send)
 
     def _send_patiently(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
@@ -579,7 +579,7 @@ class ZenohWriter(Declaration, Writer):
 
     def route_of(self, reader: EndpointInfo) -> str | None:
         """Return ``zenoh`` for subscriptions of other contexts."""
-        return "zenoh" if reader.node.participant != self.state.participant else None
+        return "zenoh" if self.state.reaches(reader.node) else None
 
     def close(self) -> None:
         """Undeclare the publisher for good, after it has lingered."""

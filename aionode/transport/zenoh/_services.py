@@ -6,7 +6,7 @@ import asyncio
 import json
 import logging
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import zenoh
 
@@ -19,8 +19,6 @@ from aionode.transport.zenoh._handlers import CALL_PRIORITY, direct, translated
 from aionode.transport.zenoh._session_state import Declaration
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
-from aionode.wire._key_expression import data_key
-from aionode.wire._liveliness import endpoint_token
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -97,9 +95,9 @@ class ZenohServer(Declaration):
         srv_type: type[Any],
         serve: Serve,
     ) -> None:
-        super().__init__(state, endpoint_token(state.domain_id, endpoint))
+        self.key, token, gid = state.names_of(endpoint)
+        super().__init__(state, token, gid)
         self.endpoint = endpoint
-        self.key = data_key(state.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
         self.srv_type = srv_type
         self._serve = serve
         self._queryable: zenoh.Queryable[None] | None = None
@@ -144,6 +142,9 @@ class ZenohServer(Declaration):
             if query.attachment is not None:
                 self.state.note_malformed(self.key, "an attachment")
             sample_info = SampleInfo(UNKNOWN_GID, 0, 0, True)
+        self._take_from(query, sample_info)
+
+    def _take_from(self, query: zenoh.Query, sample_info: SampleInfo) -> None:
         payload = query.payload
         try:
             message = cdr.decode(
@@ -151,14 +152,17 @@ class ZenohServer(Declaration):
             )
         except DecodeError as error:
             self.state.note_malformed(self.key, str(error))
-            problem = error_payload("DecodeError", str(error))
-            self.answer(query, sample_info, lambda: query.reply_err(problem), len(problem))
+            self.refuse(query, sample_info, error_payload("DecodeError", str(error)))
         else:
             if abs(self.state.now_ns() - sample_info.source_ns) < FRESH_NS:
                 self.state.peer_senders.heard(self.participant_of(sample_info.gid))
             self._serve(
                 ZenohRequest(message, sample_info, query, self), self.state.waker.inline_deadline_ns
             )
+
+    def attachment_of(self, sample_info: SampleInfo) -> bytes | None:
+        """Return what goes with the response to a request."""
+        return attachment.pack(sample_info.sequence, self.state.now_ns(), sample_info.gid)
 
     def participant_of(self, client: bytes) -> str:
         """Return the context of a client; one of its own for a client without a token."""
@@ -179,6 +183,10 @@ class ZenohServer(Declaration):
             else:
                 return client.hex()
         return participant
+
+    def refuse(self, query: zenoh.Query, sample_info: SampleInfo, problem: bytes) -> None:
+        """End `query` with an error."""
+        self.answer(query, sample_info, lambda: query.reply_err(problem), len(problem))
 
     def answer(
         self,
@@ -229,17 +237,14 @@ class ZenohRequest(Request):
         if not self._finish():
             return
         query = self._query
-        extra = attachment.pack(
-            self.sample_info.sequence, self._server.state.now_ns(), self.sample_info.gid
-        )
+        extra = self._server.attachment_of(self.sample_info)
         self._answer(lambda: query.reply(query.key_expr, payload, attachment=extra), len(payload))
 
     def fail(self, error_type: str, error_text: str) -> None:
         """Send an error; a ROS client logs it and goes on waiting."""
         if self._finish():
             payload = error_payload(error_type, error_text)
-            query = self._query
-            self._answer(lambda: query.reply_err(payload), len(payload))
+            self._server.refuse(self._query, self.sample_info, payload)
 
     def drop(self) -> None:
         """End the query, which tells the client that nothing will come."""
@@ -256,10 +261,12 @@ class ZenohRequest(Request):
 class ZenohRequester(Declaration, Requester):
     """A client as the servers of others see it."""
 
+    target: ClassVar[zenoh.QueryTarget] = zenoh.QueryTarget.ALL_COMPLETE
+
     def __init__(self, state: SessionState, endpoint: EndpointInfo, srv_type: type[Any]) -> None:
-        super().__init__(state, endpoint_token(state.domain_id, endpoint))
+        self.key, token, gid = state.names_of(endpoint)
+        super().__init__(state, token, gid)
         self.endpoint = endpoint
-        self.key = data_key(state.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
         self.srv_type = srv_type
         self.unanswered: set[ZenohCall] = set()
         self._looked_at: tuple[Graph, int] | None = None
@@ -295,8 +302,7 @@ class ZenohRequester(Declaration, Requester):
             self._known = [
                 server
                 for server in graph.endpoints(EndpointKind.SERVER, name=self.endpoint.name)
-                if server.node.participant != self.state.participant
-                and self.endpoint.matches(server)
+                if self.state.reaches(server.node) and self.endpoint.matches(server)
             ]
         return self._known
 
@@ -362,7 +368,7 @@ class ZenohCall:
             session.get(
                 self._requester.key,
                 direct(self._queue.put, lambda: self._queue.put(None)),
-                target=zenoh.QueryTarget.ALL_COMPLETE,
+                target=self._requester.target,
                 consolidation=zenoh.ConsolidationMode.NONE,
                 congestion_control=zenoh.CongestionControl.BLOCK,
                 priority=CALL_PRIORITY,

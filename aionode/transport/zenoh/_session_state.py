@@ -8,7 +8,7 @@ from abc import abstractmethod
 from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
-from typing import TYPE_CHECKING, Final, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol, TypeVar
 
 import zenoh
 
@@ -23,13 +23,14 @@ from aionode.transport.zenoh._cancellations import Cancellations
 from aionode.transport.zenoh._handlers import translated
 from aionode.transport.zenoh._peer_senders import PeerSenders
 from aionode.transport.zenoh._sockets import look
-from aionode.wire._liveliness import gid_of
+from aionode.wire._key_expression import data_key
+from aionode.wire._liveliness import endpoint_token, gid_of
 
 if TYPE_CHECKING:
     from aionode.clock import TimeBase
-    from aionode.graph import Graph
+    from aionode.graph import EndpointInfo, Graph, NodeInfo
 
-__all__ = ["FLUSH_S", "Declaration", "SessionState"]
+__all__ = ["FLUSH_S", "Declaration", "EndpointNames", "SessionState"]
 
 T = TypeVar("T")
 
@@ -53,8 +54,28 @@ class LingeringWriter(Protocol):
         """Undeclare it now, and count the messages that were not delivered."""
 
 
+class EndpointNames(NamedTuple):
+    """By which names one of our endpoints is known to others.
+
+    Attributes:
+        key: The key of its messages or requests.
+        token: Its liveliness token; an empty one hides it from other contexts.
+        gid: What it is called in attachments.
+    """
+
+    key: str
+    token: str
+    gid: bytes
+
+
 class SessionState:
     """The connection of one context, open or not.
+
+    Args:
+        participant: Id of the context, and of its session.
+        domain_id: The ROS domain.
+        time_base: The time of the context; by default that of the machine.
+        waker: Wakes the event loop; by default one of its own.
 
     Attributes:
         participant: Id of the context, and of its session.
@@ -72,18 +93,25 @@ class SessionState:
         own_gids: The gids of this context's publishers, lingering ones included.
         cancellations: The requests that clients have given up.
         assertions: The liveliness that publishers assert.
+        time_base: The time of the context.
         now_ns: Returns the time of the context, in nanoseconds since 1970.
         content_filters: What subscriptions of other contexts want.
         has_unannounced_peers: Whether there may be subscriptions that nothing announces.
         on_reader: Called when a remote subscription appears or vanishes, by topic.
     """
 
-    def __init__(self, participant: str, domain_id: int, time_base: TimeBase | None = None) -> None:
+    def __init__(
+        self,
+        participant: str,
+        domain_id: int,
+        time_base: TimeBase | None = None,
+        waker: LoopWaker | None = None,
+    ) -> None:
         self.participant = participant
         self.domain_id = domain_id
         self.session: zenoh.Session | None = None
         self.graph: Graph | None = None
-        self.waker = LoopWaker()
+        self.waker = LoopWaker() if waker is None else waker
         self.bulk = SendThread("aionode-bulk", self.waker)
         self.send_threads = {self.bulk}
         self.peer_senders = PeerSenders(self.waker, self._look)
@@ -96,7 +124,8 @@ class SessionState:
         self.own_gids: set[bytes] = set()
         self.cancellations = Cancellations(participant, domain_id, self.waker, self.note_malformed)
         self.assertions = Assertions(participant, domain_id, self.waker, self.note_malformed)
-        self.now_ns = (MachineTime() if time_base is None else time_base).system_ns
+        self.time_base = MachineTime() if time_base is None else time_base
+        self.now_ns = self.time_base.system_ns
         self.on_reader: dict[str, list[Callable[[], None]]] = {}
         self.content_filters = ContentFilters()
         self.content_filters.on_change.append(self._readers_changed)
@@ -104,6 +133,26 @@ class SessionState:
         self._lingered: asyncio.Future[None] | None = None
         self._declarations: dict[Declaration, None] = {}
         self._graph_is_known = False
+
+    # What endpoints are called, and whom they reach: here as rmw_zenoh has it.
+
+    def names_of(self, endpoint: EndpointInfo, backends: str = "") -> EndpointNames:
+        """Return the names of one of our endpoints.
+
+        Without a type hash it matches every definition of the type; ROS has no token for that.
+        """
+        key = data_key(self.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
+        visible = bool(endpoint.type_hash)
+        token = endpoint_token(self.domain_id, endpoint, backends) if visible else ""
+        return EndpointNames(key, token, gid_of(token))
+
+    def reaches(self, node: NodeInfo) -> bool:
+        """Return whether messages go to the endpoints of `node` through this."""
+        return node.participant != self.participant and not node.bridged
+
+    def declare_token(self, session: zenoh.Session, token: str) -> Any:
+        """Declare a token, and return what undeclares it."""
+        return session.liveliness().declare_token(token)
 
     def queue(self, handle: Callable[[T], None], limit: int | None = None) -> ThreadsafeQueue[T]:
         """Return a queue from Zenoh's threads to `handle`, which is called on the event loop."""
@@ -123,12 +172,16 @@ class SessionState:
         """Declare everything in `session` that does not need to know its peers."""
         self.session = session
         self.graph = graph
-        self.acknowledgements.start(session)
-        self.cancellations.start(session)
-        self.assertions.start(session)
+        self._start_submessages(session)
         for declaration in list(self._declarations):
             if not declaration.needs_graph:
                 declaration.declare(session)
+
+    def _start_submessages(self, session: zenoh.Session) -> None:
+        """Begin to talk to the other contexts of aionode."""
+        self.acknowledgements.start(session)
+        self.cancellations.start(session)
+        self.assertions.start(session)
 
     def graph_is_known(self) -> None:
         """Declare what needs the graph: by now, it has the endpoints of all connected peers."""
@@ -239,6 +292,7 @@ class Declaration(Registration):
     Args:
         state: The state of the session.
         token: Its liveliness token; an empty one hides it from other contexts.
+        gid: What it is called in attachments; by default what its token says.
 
     Attributes:
         needs_graph: Whether it is declared only when the endpoints of connected peers are known.
@@ -246,12 +300,12 @@ class Declaration(Registration):
 
     needs_graph = False
 
-    def __init__(self, state: SessionState, token: str) -> None:
+    def __init__(self, state: SessionState, token: str, gid: bytes = b"") -> None:
         self.state = state
         self.token = token
-        self.gid = gid_of(token)
+        self.gid = gid or gid_of(token)
         self._declared = False
-        self._declared_token: zenoh.LivelinessToken | None = None
+        self._declared_token: Any = None
 
     def __hash__(self) -> int:
         return id(self)
@@ -262,7 +316,7 @@ class Declaration(Registration):
             self.declare_data(session)
             self._declared = True
             if self.token:
-                self._declared_token = session.liveliness().declare_token(self.token)
+                self._declared_token = self.state.declare_token(session, self.token)
 
     def undeclare(self) -> None:
         """Undeclare it, in the opposite order."""

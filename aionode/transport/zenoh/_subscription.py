@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections import deque
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import zenoh
 from zenoh import ext
@@ -29,8 +29,8 @@ from aionode.wire import _acknack as acknack
 from aionode.wire import cdr
 from aionode.wire._acknack import SubmessageKind
 from aionode.wire._attachment import unpack_fields
-from aionode.wire._key_expression import buffer_key, data_key
-from aionode.wire._liveliness import CPU_BACKEND, endpoint_token
+from aionode.wire._key_expression import buffer_key
+from aionode.wire._liveliness import CPU_BACKEND
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -70,20 +70,18 @@ Ticks, and no time: while this process is frozen or stalled, nothing that others
 class ZenohReader(Declaration, ReaderRegistration):
     """A subscription to the publishers of other contexts."""
 
+    recovers: ClassVar[bool] = True  # whether its publishers send again what it misses
+
     def __init__(
         self, state: SessionState, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
     ) -> None:
         self._buffers = has_buffers(msg_type)
         transient = is_transient(endpoint.qos)
-        self._second_key = self._buffers and not transient
+        self._second_key = self._buffers and not transient and self.recovers
         backends = CPU_BACKEND if self._second_key else ""
-        # Without a hash it matches every definition of the type; ROS has no token for that.
-        visible = bool(endpoint.type_hash)
-        super().__init__(
-            state, endpoint_token(state.domain_id, endpoint, backends) if visible else ""
-        )
+        self._key, token, gid = state.names_of(endpoint, backends)
+        super().__init__(state, token, gid)
         self.endpoint = endpoint
-        self._key = data_key(state.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
         self._transient = transient
         # The history comes at once, and how long a message is valid is in its publisher's token.
         self.needs_graph = transient
@@ -117,7 +115,7 @@ class ZenohReader(Declaration, ReaderRegistration):
         self._has_lease = not is_unlimited(endpoint.qos.liveliness_lease_duration)
         if self._has_lease:
             state.assertions.listen(reader.note_alive)
-        self._acknowledges = reliable and not transient and visible
+        self._acknowledges = reliable and not transient and bool(token) and self.recovers
         if self._acknowledges:
             state.acknowledgements.readers[self.gid] = self
         state.add(self)
@@ -138,7 +136,7 @@ class ZenohReader(Declaration, ReaderRegistration):
                     detect_late_publishers=True, max_samples=depth_of(self.endpoint.qos)
                 ),
                 recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True)
-                if reliable
+                if reliable and self.recovers
                 else None,
                 subscriber_detection=True,
             )

@@ -51,13 +51,15 @@ class ZenohTransport(Transport):
 
     Attributes:
         peer_directory: The other contexts, for links beside this transport.
+        session_state: Its connection, for the transport of bridges beside this one.
     """
 
     def __init__(
         self, participant: str, network: Network, time_base: TimeBase | None = None
     ) -> None:
         self.network = network
-        self._state = SessionState(participant, network.domain_id, time_base)
+        self.session_state = SessionState(participant, network.domain_id, time_base)
+        self._state = self.session_state
         self._watcher = Watcher(self._state)
         self.peer_directory = ZenohPeerDirectory(self._state)
         # Done when the tokens of all connected peers are in the graph.

@@ -13,7 +13,7 @@ from functools import cache
 from typing import Any, TypeAlias, TypeVar
 
 from aionode.errors import MessageError
-from aionode.message import Message, fields, snapshotter, type_name
+from aionode.message import Message, fields, snapshotter, type_name, unserialized
 from aionode.wire.cdr._decoder import generate_decoder
 from aionode.wire.cdr._encoder import FALLBACK_ERRORS, JOIN, generate_encoder, views
 from aionode.wire.cdr._fallback_decoder import decode_slowly
@@ -154,6 +154,8 @@ def new_encoder(
 ) -> Callable[[Any], Encoded]:
     """Return a new encoder of a class; arguments as for `generate_encoder`."""
     fields(cls)  # raises TypeError for a service class
+    if unserialized(cls) is not cls:
+        return lambda msg: finish((msg.data,))
     if family is not OWN:
         own = new_encoder(cls, finish, OWN)
         return generate_encoder(cls, lambda msg: own(family.adopt(msg)), finish, family)
@@ -176,6 +178,8 @@ def new_encoder(
 def new_decoder(cls: type[Message], family: MessageFamily) -> Callable[[Any], Any]:
     """Return a new decoder of a class that makes objects of `family`."""
     fields(cls)  # raises TypeError for a service class
+    if unserialized(cls) is not cls:
+        return cls
 
     def decode_carefully(data: bytes) -> Any:
         return decode_slowly(cls, memoryview(data), family)

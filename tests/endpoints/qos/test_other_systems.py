@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack
 from typing import Any
 
 import pytest
 import zenoh  # noqa: TID251  # plays the ROS 2 node, without aionode
+from zenoh import ext  # noqa: TID251  # the same
 
+from aionode._concurrency import checkpoint
 from aionode.clock import Duration, Time
 from aionode.context import Context
 from aionode.endpoints.events import (
@@ -24,7 +27,13 @@ from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.message import type_name
 from aionode.node import Node
-from aionode.qos import LivelinessPolicy, QoSPolicyKind, QoSProfile, ReliabilityPolicy
+from aionode.qos import (
+    DurabilityPolicy,
+    LivelinessPolicy,
+    QoSPolicyKind,
+    QoSProfile,
+    ReliabilityPolicy,
+)
 from aionode.testing import ManualClock
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
@@ -32,13 +41,34 @@ from aionode.wire._key_expression import data_key
 from aionode.wire._liveliness import endpoint_token, gid_of
 from aionode.wire.typehash import type_hash
 from tests.endpoints.qos.conftest import next_of, waiting
-from tests.support.links import folder
-from tests.support.peers import DOMAIN_ID, isolated_environment, quiet_node, raw_session
+from tests.support.links import folder, transport_of
+from tests.support.peers import DOMAIN_ID, Collector, isolated_environment, quiet_node, raw_session
 
 __all__ = ["folder"]  # a fixture
 
 SECOND = Duration(seconds=1)
 PLAIN = QoSProfile(depth=10)
+
+
+class Numbers:
+    """The numbers that a subscriber with history has got."""
+
+    def __init__(self, session: zenoh.Session, key: str) -> None:
+        self._collector = Collector()
+        self._subscriber = ext.declare_advanced_subscriber(
+            session,
+            key,
+            self._collector,
+            history=ext.HistoryConfig(detect_late_publishers=True, max_samples=10),
+            recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
+            subscriber_detection=True,
+        )
+
+    async def numbers(self, count: int) -> list[int]:
+        """Wait for so many, and return all."""
+        async with asyncio.timeout(10):
+            samples = await self._collector.have(count)
+        return [cdr.decode(Int32, sample.payload.to_bytes()).data for sample in samples]
 
 
 class Stranger:
@@ -63,6 +93,15 @@ class Stranger:
         )
         self.gid = gid_of(token)
         self._token = self._session.liveliness().declare_token(token)
+
+    def put(self, key: str, payload: bytes) -> None:
+        """Send anything."""
+        self._session.put(key, payload)
+
+    def subscribe_late(self) -> Numbers:
+        """Subscribe with history, as rmw_zenoh does for transient local."""
+        key = data_key(DOMAIN_ID, "/n", type_name(Int32), type_hash(Int32))
+        return Numbers(self._session, key)
 
     def withdraw(self) -> None:
         """Undeclare the token, as the end of the process does."""
@@ -119,7 +158,7 @@ async def test_a_deadline_is_kept_by_the_samples_that_come(
     assert waiting(events, QoSRequestedDeadlineMissedInfo) == [QoSRequestedDeadlineMissedInfo(1, 1)]
 
 
-async def test_a_publisher_keeps_its_deadline_towards_anyone(
+async def test_a_publisher_keeps_its_deadline_towards_ros_2(
     node: Node, stranger: Stranger, clock: ManualClock
 ) -> None:
     """It is the publisher's own business."""
@@ -154,6 +193,44 @@ async def test_an_old_sample_is_not_delivered(
     assert subscription.stats.expired == 1
 
 
+KEPT = QoSProfile(depth=5, durability=DurabilityPolicy.TRANSIENT_LOCAL, lifespan=SECOND)
+
+
+@pytest.mark.parametrize("reliability", [ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT])
+async def test_a_late_subscriber_gets_no_history_that_has_expired(
+    node: Node, stranger: Stranger, clock: ManualClock, reliability: ReliabilityPolicy
+) -> None:
+    """Zenoh keeps messages by number, so it is made to forget them when all are too old."""
+    publisher = node.create_publisher(Int32, "n", KEPT.replace(reliability=reliability))
+    for number in range(3):
+        publisher.publish(Int32(data=number))
+    early = stranger.subscribe_late()
+    assert await early.numbers(3) == [0, 1, 2]
+    await clock.advance(1)
+    late = stranger.subscribe_late()
+    for number in range(3, 6):
+        publisher.publish(Int32(data=number))
+        assert await early.numbers(number + 1) == list(range(number + 1))
+    assert min(await late.numbers(1)) >= 3
+
+
+async def test_what_waits_for_a_session_expires(
+    node: Node, stranger: Stranger, clock: ManualClock
+) -> None:
+    """A node may publish long before it runs."""
+    context = Context(clock=clock)
+    talker = quiet_node("talker", context)
+    publisher = talker.create_publisher(Int32, "n", KEPT)
+    publisher.publish(Int32(data=1))
+    await clock.advance(0.6)
+    publisher.publish(Int32(data=2))
+    await clock.advance(0.6)
+    stranger.announce(EndpointKind.SUBSCRIPTION, KEPT)
+    async with talker:
+        await publisher.wait_for_subscribers()
+        assert await stranger.subscribe_late().numbers(1) == [2]
+
+
 async def test_automatic_liveliness_is_that_of_the_token(node: Node, stranger: Stranger) -> None:
     """Zenoh withdraws it when the process ends or is not heard any more."""
     profile = QoSProfile(depth=10, liveliness_lease_duration=SECOND)
@@ -180,6 +257,23 @@ async def test_automatic_liveliness_without_assertions_has_no_lease(
     await subscription.receive()
     await clock.advance(5)
     assert waiting(subscription.events, QoSLivelinessChangedInfo) == []
+
+
+async def test_a_malformed_assertion_is_counted_and_renews_nothing(
+    node: Node, stranger: Stranger
+) -> None:
+    """Any process may put anything on any key."""
+    profile = QoSProfile(depth=10, liveliness_lease_duration=SECOND)
+    subscription = node.create_subscription(Int32, "n", None, profile)
+    stranger.announce(EndpointKind.PUBLISHER, profile)
+    await next_of(subscription.events, QoSLivelinessChangedInfo)
+    malformed = transport_of(node).zenoh.malformed  # type: ignore[attr-defined]  # is Zenoh's
+    while not malformed.total():
+        stranger.put(f"@aionode/{DOMAIN_ID}/{'a' * 32}/alive", b"no gid")
+        await checkpoint()
+    liveliness = subscription._monitor._liveliness
+    assert liveliness is not None
+    assert [lease.asserts for lease in liveliness._leases.values()] == [False]
 
 
 async def test_manual_liveliness_is_that_of_the_samples(

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import asyncio
+import errno
+import os
+import sys
 from contextvars import ContextVar
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from aionode.clock import S_TO_NS
+from aionode.clock import _timerfd as timerfd
 from aionode.endpoints.timer import Timer
 from aionode.node import Node
 from aionode.testing import local_context, settle
@@ -186,3 +192,87 @@ async def test_a_sync_callback_may_end_its_own_timer(node: Node, action: str) ->
             await may_end.wait()
         assert len(calls) == 2
     node.destroy_node()
+
+
+async def test_a_new_period_is_kept_by_an_alarm_that_goes_on_by_itself(node: Node) -> None:
+    """The kernel knows the period as well, and has to learn of the new one."""
+    calls = Calls()
+    timer = node.create_timer(PERIOD_S, calls)
+    await calls.have(3)
+    timer.timer_period_ns = 3_600 * S_TO_NS
+    count = len(calls.tasks)
+    others = Calls()
+    node.create_timer(PERIOD_S, others)
+    await others.have(5)
+    assert len(calls.tasks) <= count + 1  # the one that was planned
+    left_ns = timer.time_until_next_call()
+    assert left_ns is not None
+    assert left_ns > 3_000 * S_TO_NS
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="timerfd is Linux's")
+async def test_setting_the_system_clock_leaves_a_timer_running(
+    node: Node, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The kernel says so with an error, whatever it is set to; the timer looks and goes on."""
+    calls = Calls()
+    timer = node.create_timer(PERIOD_S, calls)
+    await calls.have(2)
+    left = 3
+
+    def read(fd: int, size: int) -> bytes:
+        nonlocal left
+        data = os.read(fd, size)
+        left -= 1
+        if left >= 0:
+            raise OSError(errno.ECANCELED, "set")
+        return data
+
+    with monkeypatch.context() as patch:
+        flags = {"O_NONBLOCK": os.O_NONBLOCK, "O_CLOEXEC": os.O_CLOEXEC}
+        patch.setattr(
+            timerfd, "os", SimpleNamespace(read=read, close=os.close, getpid=os.getpid, **flags)
+        )
+        await calls.have(len(calls.tasks) + 5)
+    assert left < 0
+    assert not timer.is_canceled()
+
+
+async def test_more_timers_than_there_are_files_for_share_one(
+    node: Node, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A program with a thousand timers has to keep files for its sockets."""
+    monkeypatch.setattr(timerfd, "MAX_PERIODIC", timerfd.PeriodicAlarm.count)
+    calls = Calls()
+    node.create_timer(PERIOD_S, calls)
+    await calls.have(5)
+    assert None in calls.tasks
+
+
+@pytest.mark.parametrize("end", [Timer.cancel, Timer.destroy])
+async def test_a_timer_gives_its_file_back(node: Node, end: Any) -> None:
+    """Also when nothing rings any more."""
+    before = timerfd.PeriodicAlarm.count
+    calls = Calls()
+    timer = node.create_timer(PERIOD_S, calls)
+    await calls.have(2)
+    end(timer)
+    await settle()
+    assert timerfd.PeriodicAlarm.count == before
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="timerfd is Linux's")
+async def test_a_forked_child_leaves_the_timers_of_its_parent_running() -> None:
+    """The two share what the loop waits with, and the child's end cancels what it has inherited."""
+    rung = asyncio.Event()
+    alarm = timerfd.PeriodicAlarm(1, 1_000_000, rung.set, system=False)
+    child = os.fork()
+    if not child:
+        alarm.cancel()
+        os._exit(0)
+    os.waitpid(child, 0)  # noqa: ASYNC222  # it ends at once
+    for _ in range(3):
+        rung.clear()
+        async with asyncio.timeout(20):
+            await rung.wait()
+    alarm.cancel()

@@ -593,7 +593,7 @@ def test_a_link_is_used_unless_it_was_switched_off(monkeypatch: pytest.MonkeyPat
     """The variable decides, unless the argument is given."""
 
     def linked(**options: Any) -> bool:
-        return isinstance(Context(**options).transports[-1], IpcTransport)
+        return isinstance(Context(**options).transports[1], IpcTransport)
 
     monkeypatch.delenv("AIONODE_LINK", raising=False)
     assert linked()

@@ -1,5 +1,5 @@
 """The package composition_interfaces of ROS 2, from aionode."""
 
-from aionode.rclpy import provide
+from aionode.rclpy._finder import provide
 
 provide(__name__)

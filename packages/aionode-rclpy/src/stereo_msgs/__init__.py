@@ -1,5 +1,5 @@
 """The package stereo_msgs of ROS 2, from aionode."""
 
-from aionode.rclpy import provide
+from aionode.rclpy._finder import provide
 
 provide(__name__)

@@ -35,7 +35,9 @@ __all__ = [
     "GoalResponse",
     "GoalStatus",
     "candidates",
+    "is_cancelable",
     "next_status",
+    "reason_id",
 ]
 
 ALL_GOALS = bytes(16)
@@ -74,14 +76,14 @@ class GoalStatus(IntEnum):
         return self in {GoalStatus.ACCEPTED, GoalStatus.EXECUTING, GoalStatus.CANCELING}
 
 
-class GoalEvent(Enum):
-    """What can happen to a goal."""
+class GoalEvent(IntEnum):
+    """What can happen to a goal, with the numbers of rcl_action."""
 
-    EXECUTE = 1
-    CANCEL_GOAL = 2
-    SUCCEED = 3
-    ABORT = 4
-    CANCELED = 5
+    EXECUTE = 0
+    CANCEL_GOAL = 1
+    SUCCEED = 2
+    ABORT = 3
+    CANCELED = 4
 
 
 class GoalResponse(Enum):
@@ -185,3 +187,17 @@ def candidates(goals: Iterable[GoalKey], asked: GoalKey) -> tuple[CancelCode, li
 def is_cancelable(status: GoalStatus) -> bool:
     """Return whether a goal in this state can be cancelled."""
     return (status, GoalEvent.CANCEL_GOAL) in TRANSITIONS
+
+
+# Why a goal was aborted
+
+
+def reason_id(goal_id: bytes) -> bytes:
+    """Return the id under which an aionode server tells why a goal was aborted.
+
+    A ROS result has no field for it. An aionode client therefore calls ``get_result`` once more,
+    with all bits of the id inverted, and gets the reason as a service error. No goal has such an
+    id (it is not a version 4 UUID), so other servers answer that they do not know it. This needs
+    no endpoint that ROS does not have, and works over every transport.
+    """
+    return bytes(byte ^ 0xFF for byte in goal_id)

@@ -50,7 +50,7 @@ class SilenceAlarm:
     def start(self) -> None:
         """Begin to ring: an event loop runs now. Signs count before that, too."""
         self._runs = True
-        if self._since_ns is not None:
+        if self._alarm is None and self._since_ns is not None:
             self._set()
 
     def note(self) -> None:

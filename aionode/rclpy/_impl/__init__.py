@@ -1,0 +1,1 @@
+"""What the modules of rclpy are made of: handles, queues, and the thread of a context."""

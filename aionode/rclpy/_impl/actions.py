@@ -1,0 +1,259 @@
+"""Handles of action servers and clients: three services and two topics, as rcl_action has them."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from aionode.clock import S_TO_NS
+from aionode.endpoints.actions.goal import (
+    GoalEvent,
+    GoalKey,
+    GoalStatus,
+    candidates,
+    next_status,
+)
+from aionode.errors import GoalTransitionError
+from aionode.rclpy._impl.destroyable import Destroyable
+from aionode.rclpy._impl.errors import RCLError
+from aionode.rclpy._impl.services import ClientHandle, ServiceHandle
+from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle
+from aionode.rclpy._impl.typesupport import message_like
+
+if TYPE_CHECKING:
+    from aionode.rclpy._impl.node import NodeHandle
+    from aionode.rclpy._impl.timers import ClockHandle
+
+__all__ = ["ActionClientHandle", "ActionServerHandle", "Expiry", "GoalEvent", "GoalState"]
+
+
+@dataclass(eq=False)
+class GoalState:
+    """One goal of a server.
+
+    Attributes:
+        info: Its id, and when it was accepted.
+        status: Its state.
+        ended_ns: When it has ended, by the clock of the server; 0 before.
+    """
+
+    info: Any
+    status: GoalStatus = GoalStatus.ACCEPTED
+    ended_ns: int = 0
+
+    @property
+    def is_active(self) -> bool:
+        """Whether it has not ended."""
+        return self.status.is_active
+
+    def update(self, event: GoalEvent) -> None:
+        """Change the state.
+
+        Raises:
+            RCLError: that cannot happen in the present state.
+        """
+        try:
+            self.status = next_status(self.status, event, bytes(self.info.goal_id.uuid).hex())
+        except GoalTransitionError as error:
+            raise RCLError(f"Failed to update goal state: {error}") from error
+
+
+def goal_key(info: Any, status: GoalStatus = GoalStatus.UNKNOWN) -> GoalKey:
+    """Return what cancel requests select a goal by."""
+    stamp_ns = info.stamp.sec * S_TO_NS + info.stamp.nanosec
+    return GoalKey(bytes(info.goal_id.uuid), stamp_ns, status)
+
+
+class Parts(Destroyable):
+    """A handle made of others."""
+
+    def __init__(self, node: NodeHandle) -> None:
+        super().__init__(node.signal)
+        self.parts: list[Any] = []
+
+    def add_to_waitset(self, wait_set: Any) -> None:
+        """Add the handles whose readiness counts."""
+        for part in self.parts:
+            if isinstance(part, SubscriptionHandle):
+                wait_set.add_subscription(part)
+            elif isinstance(part, ClientHandle):
+                wait_set.add_client(part)
+            elif isinstance(part, ServiceHandle):
+                wait_set.add_service(part)
+            elif isinstance(part, Expiry):
+                wait_set.add_timer(part)
+
+    def _destroy(self) -> None:
+        for part in getattr(self, "parts", ()):
+            part.destroy_when_not_in_use()
+
+
+class ActionClientHandle(Parts):
+    """The client's end of an action."""
+
+    def __init__(
+        self,
+        node: NodeHandle,
+        action_type: Any,
+        action_name: str,
+        goal_qos: Any,
+        result_qos: Any,
+        cancel_qos: Any,
+        feedback_qos: Any,
+        status_qos: Any,
+    ) -> None:
+        super().__init__(node)
+        impl = action_type.Impl
+        name = f"{node.resolve(action_name)}/_action"
+        self.name = action_name
+        self.io = node.io
+        self.goal = ClientHandle(node, impl.SendGoalService, f"{name}/send_goal", goal_qos)
+        self.parts.append(self.goal)
+        self.result = ClientHandle(node, impl.GetResultService, f"{name}/get_result", result_qos)
+        self.parts.append(self.result)
+        self.cancel = ClientHandle(node, impl.CancelGoalService, f"{name}/cancel_goal", cancel_qos)
+        self.parts.append(self.cancel)
+        self.feedback = SubscriptionHandle(
+            node, impl.FeedbackMessage, f"{name}/feedback", feedback_qos
+        )
+        self.parts.append(self.feedback)
+        self.status = SubscriptionHandle(node, impl.GoalStatusMessage, f"{name}/status", status_qos)
+        self.parts.append(self.status)
+
+    def is_action_server_available(self) -> bool:
+        """Return whether all that belongs to a server is there."""
+        services = (self.goal, self.result, self.cancel)
+        return all(client.service_server_is_available() for client in services) and all(
+            topic.get_publisher_count() for topic in (self.feedback, self.status)
+        )
+
+    def configure_introspection(self, clock: ClockHandle, qos_profile: Any, state: Any) -> None:
+        """Tell of the calls of the three services."""
+        for client in (self.goal, self.result, self.cancel):
+            client.configure_introspection(clock, qos_profile, state)
+
+
+class Expiry(Destroyable):
+    """When the next goal is to be forgotten: a timer, for wait sets."""
+
+    def __init__(self, node: NodeHandle, clock: ClockHandle) -> None:
+        super().__init__(node.signal)
+        self._clock = clock
+        self.due_ns: int | None = None
+
+    def ready(self) -> bool:
+        """Return whether one is to be forgotten now."""
+        return self.due_ns is not None and self._clock.clock.now_ns() >= self.due_ns
+
+    def due_in_ns(self) -> int | None:
+        """Return how long it is until then; None if no goal has ended."""
+        if self.due_ns is None or self._clock.clock.ros_time_is_active:
+            return None
+        return max(0, self.due_ns - self._clock.clock.now_ns())
+
+
+class ActionServerHandle(Parts):
+    """The server's end of an action, and its goals."""
+
+    def __init__(
+        self,
+        node: NodeHandle,
+        clock: ClockHandle,
+        action_type: Any,
+        action_name: str,
+        goal_qos: Any,
+        result_qos: Any,
+        cancel_qos: Any,
+        feedback_qos: Any,
+        status_qos: Any,
+        result_timeout: float,
+    ) -> None:
+        super().__init__(node)
+        impl = action_type.Impl
+        name = f"{node.resolve(action_name)}/_action"
+        self._clock = clock
+        self._timeout_ns = int(result_timeout * 1e9)
+        self.action_type = action_type
+        self._status_message = message_like(action_type, "action_msgs/msg/GoalStatus")
+        # Held until the states are sent: none may arrive after a newer one.
+        self._status_lock = threading.Lock()
+        self.goals: dict[bytes, GoalState] = {}
+        self.goal = ServiceHandle(node, impl.SendGoalService, f"{name}/send_goal", goal_qos)
+        self.parts.append(self.goal)
+        self.cancel = ServiceHandle(node, impl.CancelGoalService, f"{name}/cancel_goal", cancel_qos)
+        self.parts.append(self.cancel)
+        self.result = ServiceHandle(node, impl.GetResultService, f"{name}/get_result", result_qos)
+        self.parts.append(self.result)
+        self.feedback = PublisherHandle(
+            node, impl.FeedbackMessage, f"{name}/feedback", feedback_qos
+        )
+        self.parts.append(self.feedback)
+        self.status = PublisherHandle(node, impl.GoalStatusMessage, f"{name}/status", status_qos)
+        self.parts.append(self.status)
+        self.expiry = Expiry(node, clock)
+        self.parts.append(self.expiry)
+
+    def add_goal(self, info: Any) -> GoalState:
+        """Return the state of a new goal.
+
+        Raises:
+            RCLError: there is one of this id.
+        """
+        state = GoalState(info)
+        if self.goals.setdefault(bytes(info.goal_id.uuid), state) is not state:
+            raise RCLError("Failed to accept new goal: goal ID already exists")
+        return state
+
+    def publish_status(self) -> None:
+        """Publish the states of all goals."""
+        with self._status_lock:
+            message = self.action_type.Impl.GoalStatusMessage()
+            message.status_list = [
+                self._status_message(goal_info=goal.info, status=int(goal.status))
+                for goal in list(self.goals.values())
+            ]
+            self.status.publish(message)
+
+    def notify_goal_done(self) -> None:
+        """Note which goals have ended, to forget them after the time for results."""
+        now_ns = self._clock.clock.now_ns()
+        ended = [goal for goal in list(self.goals.values()) if not goal.is_active]
+        for goal in ended:
+            goal.ended_ns = goal.ended_ns or now_ns
+        if self._timeout_ns < 0:
+            return
+        self.expiry.due_ns = min((goal.ended_ns + self._timeout_ns for goal in ended), default=None)
+        self.signal.notify()
+
+    def expire_goals(self) -> list[Any]:
+        """Forget the goals whose time is over, and return their infos."""
+        now_ns = self._clock.clock.now_ns()
+        over = [
+            (goal_id, goal)
+            for goal_id, goal in list(self.goals.items())
+            if goal.ended_ns and now_ns - goal.ended_ns >= self._timeout_ns
+        ]
+        for goal_id, _ in over:
+            del self.goals[goal_id]
+        self.notify_goal_done()
+        return [goal.info for _, goal in over]
+
+    def process_cancel_request(self, request: Any) -> Any:
+        """Return the response to a request to cancel: the goals that its id and time select.
+
+        The rules are those of `aionode.endpoints.actions.goal.candidates`.
+        """
+        code, selected = candidates(
+            [goal_key(goal.info, goal.status) for goal in list(self.goals.values())],
+            goal_key(request.goal_info),
+        )
+        response = self.action_type.Impl.CancelGoalService.Response()
+        response.return_code = int(code)
+        response.goals_canceling = [self.goals[goal_id].info for goal_id in selected]
+        return response
+
+    def configure_introspection(self, clock: ClockHandle, qos_profile: Any, state: Any) -> None:
+        """Tell of the calls of the three services."""
+        for service in (self.goal, self.result, self.cancel):
+            service.configure_introspection(clock, qos_profile, state)

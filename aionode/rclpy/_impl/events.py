@@ -1,0 +1,454 @@
+"""What happens to publishers and subscriptions: matches, missed deadlines, lost messages.
+
+The statuses are counted in the thread of the context, which also keeps the time of deadlines and
+leases; executors take them as those of other waitables.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any
+
+from aionode.graph import EndpointKind
+from aionode.qos import LivelinessPolicy, QoSPolicyKind, is_unlimited
+from aionode.rclpy._impl.destroyable import Destroyable
+from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle
+
+if TYPE_CHECKING:
+    import asyncio
+    from collections.abc import Callable
+
+    from aionode.graph import EndpointInfo
+    from aionode.transport.base import SampleInfo
+
+__all__ = [
+    "DeadlineMissed",
+    "EventHandle",
+    "IncompatibleQoS",
+    "IncompatibleType",
+    "LivelinessChanged",
+    "LivelinessLost",
+    "Matched",
+    "MessageLost",
+    "PublisherEventType",
+    "SubscriptionEventType",
+]
+
+
+class PublisherEventType(IntEnum):
+    """What can happen to a publisher."""
+
+    RCL_PUBLISHER_OFFERED_DEADLINE_MISSED = 0
+    RCL_PUBLISHER_LIVELINESS_LOST = 1
+    RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS = 2
+    RCL_PUBLISHER_INCOMPATIBLE_TYPE = 3
+    RCL_PUBLISHER_MATCHED = 4
+
+
+class SubscriptionEventType(IntEnum):
+    """What can happen to a subscription."""
+
+    RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED = 0
+    RCL_SUBSCRIPTION_LIVELINESS_CHANGED = 1
+    RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS = 2
+    RCL_SUBSCRIPTION_MESSAGE_LOST = 3
+    RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE = 4
+    RCL_SUBSCRIPTION_MATCHED = 5
+
+
+@dataclass(frozen=True)
+class Counted:
+    """A count, and by how much it has changed since it was last taken."""
+
+    total_count: int = 0
+    total_count_change: int = 0
+
+
+class DeadlineMissed(Counted):
+    """How often no message came, or was published, within the deadline."""
+
+
+class LivelinessLost(Counted):
+    """How often a publisher did not show in time that it is alive."""
+
+
+class MessageLost(Counted):
+    """How many messages were lost on their way, or dropped as the queue was full."""
+
+
+class IncompatibleType(Counted):
+    """How many endpoints of the topic have another type."""
+
+
+@dataclass(frozen=True)
+class IncompatibleQoS(Counted):
+    """How many endpoints of the topic cannot be matched because of their QoS."""
+
+    last_policy_kind: QoSPolicyKind = QoSPolicyKind.INVALID
+
+
+@dataclass(frozen=True)
+class Matched(Counted):
+    """How many endpoints of the opposite kind are matched, and how many have ever been."""
+
+    current_count: int = 0
+    current_count_change: int = 0
+
+
+@dataclass(frozen=True)
+class LivelinessChanged:
+    """How many matched publishers are alive, and how many have not shown it in time."""
+
+    alive_count: int = 0
+    not_alive_count: int = 0
+    alive_count_change: int = 0
+    not_alive_count_change: int = 0
+
+
+class EventHandle(Destroyable):
+    """One kind of event of a publisher or subscription."""
+
+    def __init__(self, parent: PublisherHandle | SubscriptionHandle, event_type: IntEnum) -> None:
+        super().__init__(parent.signal)
+        self._io = parent.io
+        watches = PUBLISHER_WATCHES if isinstance(parent, PublisherHandle) else SUBSCRIPTION_WATCHES
+        self._watch = watches[event_type](parent, self.signal.notify)
+        self._io.call(self._watch.start)
+
+    def ready(self) -> bool:
+        """Return whether something has happened that was not taken."""
+        return self._watch.changed and not self._unwanted
+
+    def take_event(self) -> Any:
+        """Return the status; its changes count from now on."""
+        return self._io.call(self._watch.take)
+
+    def _destroy(self) -> None:
+        if hasattr(self, "_watch"):
+            self._io.post(self._watch.stop)
+
+
+class Watch:
+    """Counts one kind of event; lives in the thread of the context."""
+
+    empty: Any = None
+
+    def __init__(
+        self, parent: PublisherHandle | SubscriptionHandle, notify: Callable[[], None]
+    ) -> None:
+        # Not the handle itself, which is garbage once its user has dropped it.
+        self.bare = parent.bare
+        self.feed = parent.feed
+        self.assertions = parent.assertions
+        self.graph = parent.io.context.graph
+        self.io = parent.io
+        self.endpoint = parent.endpoint
+        self.changed = False
+        self.status = self.empty
+        self._notify = notify
+
+    def start(self) -> None:
+        """Begin to watch."""
+
+    def stop(self) -> None:
+        """Watch no longer."""
+
+    def count(self, **changes: int | QoSPolicyKind) -> None:
+        """Change the status: counts by these numbers, other attributes to these values."""
+        values: dict[str, Any] = {}
+        for name, value in changes.items():
+            if isinstance(value, QoSPolicyKind):
+                values[name] = value
+                continue
+            values[name] = getattr(self.status, name) + value
+            values[f"{name}_change"] = getattr(self.status, f"{name}_change") + value
+        self.status = replace(self.status, **values)
+        self.changed = True
+        self._notify()
+
+    def take(self) -> Any:
+        """Return the status, and reset its changes."""
+        status = self.status
+        zeros = {each.name: 0 for each in fields(status) if each.name.endswith("_change")}
+        self.status = replace(status, **zeros)
+        self.changed = False
+        return status
+
+
+class MatchedWatch(Watch):
+    """Counts matched endpoints."""
+
+    empty = Matched()
+
+    def start(self) -> None:
+        """Begin to watch."""
+        self._matched: set[EndpointInfo] = set()
+        self.io.watch_graph(self.look)
+        self.look()
+
+    def stop(self) -> None:
+        """Watch no longer."""
+        self.io.unwatch_graph(self.look)
+
+    def look(self) -> None:
+        """Compare what is matched now with what was."""
+        matched = set(self.bare.matched())
+        new = len(matched - self._matched)
+        change = len(matched) - len(self._matched)
+        self._matched = matched
+        if new or change:
+            self.count(total_count=new, current_count=change)
+
+
+class MismatchWatch(Watch):
+    """Counts endpoints that cannot be matched."""
+
+    aspects: tuple[str, ...] = ()
+
+    def start(self) -> None:
+        """Begin to watch."""
+        self._seen: set[EndpointInfo] = set()
+        self.io.watch_graph(self.look)
+        self.look()
+
+    def stop(self) -> None:
+        """Watch no longer."""
+        self.io.unwatch_graph(self.look)
+
+    def look(self) -> None:
+        """Count endpoints that are new."""
+        for other in self.graph.endpoints(self.endpoint.kind.opposite, name=self.endpoint.name):
+            if other in self._seen or self.endpoint.matches(other):
+                continue
+            self._seen.add(other)
+            found = self.endpoint.compare(other)
+            if found is not None and found.aspect in self.aspects:
+                self.note(found.policy)
+
+    def note(self, policy: QoSPolicyKind) -> None:
+        """Count one."""
+        self.count(total_count=1)
+
+
+class IncompatibleQoSWatch(MismatchWatch):
+    """Counts endpoints whose QoS does not fit."""
+
+    aspects = ("qos",)
+    empty = IncompatibleQoS()
+
+    def note(self, policy: QoSPolicyKind) -> None:
+        """Count one."""
+        self.count(total_count=1, last_policy_kind=policy)
+
+
+class IncompatibleTypeWatch(MismatchWatch):
+    """Counts endpoints of another type."""
+
+    aspects = ("type", "definition")
+    empty = IncompatibleType()
+
+
+class Alarm:
+    """Calls back a fixed time after the last `restart`, and again after each such time."""
+
+    def __init__(
+        self, loop: asyncio.AbstractEventLoop, period_s: float, miss: Callable[[], None]
+    ) -> None:
+        self._loop = loop
+        self._period_s = period_s
+        self._miss = miss
+        self._handle: asyncio.TimerHandle | None = None
+
+    def restart(self) -> None:
+        """Begin a new period."""
+        self.cancel()
+        self._handle = self._loop.call_later(self._period_s, self._fire)
+
+    def _fire(self) -> None:
+        self._handle = self._loop.call_later(self._period_s, self._fire)
+        self._miss()
+
+    def cancel(self) -> None:
+        """Call back no longer."""
+        if self._handle is not None:
+            self._handle.cancel()
+
+
+class DeadlineWatch(Watch):
+    """Counts the periods without a message, from the first message on."""
+
+    empty = DeadlineMissed()
+
+    def start(self) -> None:
+        """Begin to watch."""
+        deadline = self.endpoint.qos.deadline
+        self._alarm: Alarm | None = None
+        if not is_unlimited(deadline):
+            self._alarm = Alarm(
+                self.io.loop, deadline.nanoseconds / 1e9, lambda: self.count(total_count=1)
+            )
+            self.feed.append(self._on_message)
+
+    def _on_message(self, sample_info: SampleInfo | None) -> None:
+        if self._alarm is not None:
+            self._alarm.restart()
+
+    def stop(self) -> None:
+        """Watch no longer."""
+        if self._alarm is not None:
+            self._alarm.cancel()
+            self.feed.remove(self._on_message)
+
+
+class LivelinessLostWatch(Watch):
+    """Counts the leases that a publisher has let pass; asserting or publishing renews them."""
+
+    empty = LivelinessLost()
+
+    def start(self) -> None:
+        """Begin to watch."""
+        qos = self.endpoint.qos
+        self._alarm: Alarm | None = None
+        if is_manual(self.endpoint):
+            lease_s = qos.liveliness_lease_duration.nanoseconds / 1e9
+            self._lost = False
+            self._alarm = Alarm(self.io.loop, lease_s, self._on_lapse)
+            self._alarm.restart()
+            self.feed.append(self._on_sign)
+
+    def _on_sign(self, sample_info: SampleInfo | None) -> None:
+        self._lost = False
+        if self._alarm is not None:
+            self._alarm.restart()
+
+    def _on_lapse(self) -> None:
+        if not self._lost:
+            self._lost = True
+            self.count(total_count=1)
+
+    def stop(self) -> None:
+        """Watch no longer."""
+        if self._alarm is not None:
+            self._alarm.cancel()
+            self.feed.remove(self._on_sign)
+
+
+class LivelinessChangedWatch(Watch):
+    """Counts the publishers that are alive, and those that let their lease pass.
+
+    A publisher shows that it is alive by being there, or, with a manual policy, by its messages
+    and assertions.
+    """
+
+    empty = LivelinessChanged()
+
+    def start(self) -> None:
+        """Begin to watch."""
+        self._publishers: dict[bytes, Alarm | None] = {}
+        self._lapsed: set[bytes] = set()
+        self.feed.append(self._on_message)
+        self.assertions.append(self._on_sign)
+        self.io.watch_graph(self.look)
+        self.look()
+
+    def look(self) -> None:
+        """Compare the publishers with those that were there."""
+        matched = {publisher.gid: publisher for publisher in self.bare.matched()}
+        for gid, publisher in matched.items():
+            if gid not in self._publishers:
+                self._publishers[gid] = self._alarm_of(publisher)
+                self.count(alive_count=1)
+        for gid in [gid for gid in self._publishers if gid not in matched]:
+            alarm = self._publishers.pop(gid)
+            if alarm is not None:
+                alarm.cancel()
+            if gid in self._lapsed:
+                self._lapsed.discard(gid)
+                self.count(not_alive_count=-1)
+            else:
+                self.count(alive_count=-1)
+
+    def _alarm_of(self, publisher: EndpointInfo) -> Alarm | None:
+        if not is_manual(publisher):
+            return None
+        lease_s = publisher.qos.liveliness_lease_duration.nanoseconds / 1e9
+        alarm = Alarm(self.io.loop, lease_s, lambda: self._on_lapse(publisher.gid))
+        alarm.restart()
+        return alarm
+
+    def _on_lapse(self, gid: bytes) -> None:
+        if gid not in self._lapsed:
+            self._lapsed.add(gid)
+            self.count(alive_count=-1, not_alive_count=1)
+
+    def _on_message(self, sample_info: SampleInfo | None) -> None:
+        if sample_info is not None:
+            self._on_sign(sample_info.gid)
+
+    def _on_sign(self, gid: bytes) -> None:
+        alarm = self._publishers.get(gid)
+        if alarm is not None:
+            alarm.restart()
+        if gid in self._lapsed:
+            self._lapsed.discard(gid)
+            self.count(alive_count=1, not_alive_count=-1)
+
+    def stop(self) -> None:
+        """Watch no longer."""
+        self.io.unwatch_graph(self.look)
+        self.feed.remove(self._on_message)
+        self.assertions.remove(self._on_sign)
+        for alarm in self._publishers.values():
+            if alarm is not None:
+                alarm.cancel()
+
+
+class MessageLostWatch(Watch):
+    """Counts the gaps in what each publisher has numbered."""
+
+    empty = MessageLost()
+
+    def start(self) -> None:
+        """Begin to watch."""
+        self._last: dict[bytes, int] = {}
+        self.feed.append(self._on_message)
+
+    def _on_message(self, sample_info: SampleInfo | None) -> None:
+        if sample_info is None:
+            return
+        last = self._last.get(sample_info.gid)
+        self._last[sample_info.gid] = sample_info.sequence
+        if last is not None and sample_info.sequence > last + 1:
+            self.count(total_count=sample_info.sequence - last - 1)
+
+    def stop(self) -> None:
+        """Watch no longer."""
+        self.feed.remove(self._on_message)
+
+
+def is_manual(publisher: EndpointInfo) -> bool:
+    """Whether a publisher has to show now and then that it is alive."""
+    qos = publisher.qos
+    return (
+        publisher.kind is EndpointKind.PUBLISHER
+        and qos.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
+        and not is_unlimited(qos.liveliness_lease_duration)
+    )
+
+
+PUBLISHER_WATCHES: dict[int, type[Watch]] = {
+    PublisherEventType.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED: DeadlineWatch,
+    PublisherEventType.RCL_PUBLISHER_LIVELINESS_LOST: LivelinessLostWatch,
+    PublisherEventType.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS: IncompatibleQoSWatch,
+    PublisherEventType.RCL_PUBLISHER_INCOMPATIBLE_TYPE: IncompatibleTypeWatch,
+    PublisherEventType.RCL_PUBLISHER_MATCHED: MatchedWatch,
+}
+SUBSCRIPTION_WATCHES: dict[int, type[Watch]] = {
+    SubscriptionEventType.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED: DeadlineWatch,
+    SubscriptionEventType.RCL_SUBSCRIPTION_LIVELINESS_CHANGED: LivelinessChangedWatch,
+    SubscriptionEventType.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS: IncompatibleQoSWatch,
+    SubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST: MessageLostWatch,
+    SubscriptionEventType.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE: IncompatibleTypeWatch,
+    SubscriptionEventType.RCL_SUBSCRIPTION_MATCHED: MatchedWatch,
+}

@@ -1,0 +1,194 @@
+"""The thread in which a context talks to others: one event loop, and no code of the user's."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Future
+from threading import Event, Lock, Thread, get_ident
+from typing import Any, TypeVar
+
+from aionode import Context
+from aionode.rclpy._impl.errors import InvalidHandle
+
+__all__ = ["IoThread"]
+
+T = TypeVar("T")
+
+MOST_WAITING = 1000
+"""How many messages may wait for the thread before `publish` waits for it."""
+
+SLICE = 100
+"""How many of them it takes in one turn of its loop."""
+
+STOP_S = 3.0
+"""How long the end of the process waits for the thread."""
+
+logger = logging.getLogger("aionode.rclpy")
+
+
+class IoThread:
+    """Runs a context in an event loop of its own thread, from `start` to `stop`.
+
+    Attributes:
+        context: The context; it and all that belongs to it are used in this thread only.
+        delivery_lock: Held while a message is delivered inside this context, in the thread that
+            publishes it, and while a subscription is made. Nothing waits while it is held.
+    """
+
+    def __init__(self, context: Context) -> None:
+        self.context = context
+        self._work: deque[Callable[[], object]] = deque()
+        self._scheduled = False
+        self._ended = False
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._stopping: asyncio.Event | None = None
+        self._opened: Future[None] = Future()
+        self.delivery_lock = Lock()
+        self._graph_watchers: list[Callable[[], None]] = []
+        # A daemon, as the interpreter waits for others before it calls what `atexit` has.
+        self._thread = Thread(target=self._main, name="rclpy-io", daemon=True)
+
+    def start(self) -> None:
+        """Start the thread, and open the context.
+
+        Raises:
+            TransportError: a transport cannot connect.
+        """
+        self._thread.start()
+        self._opened.result()
+
+    def stop(self) -> None:
+        """Close the context, once what was published is sent, and end the thread."""
+        if self._thread.is_alive() and not self.is_current:
+            self.post(self._stop)
+            self._thread.join(STOP_S)
+
+    @property
+    def is_current(self) -> bool:
+        """Whether the caller runs in this thread."""
+        return self._thread.ident == get_ident()
+
+    def call(self, function: Callable[..., T], *args: Any) -> T:
+        """Call `function` in the thread and return its result.
+
+        Raises:
+            InvalidHandle: the context is shut down.
+            Exception: what the function raises.
+        """
+        if self.is_current:
+            return function(*args)
+        result: Future[T] = Future()
+
+        def work() -> None:
+            if self._ended:
+                result.set_exception(InvalidHandle("the context is shut down"))
+                return
+            try:
+                result.set_result(function(*args))
+            except BaseException as error:  # noqa: BLE001  # raised in the calling thread
+                result.set_exception(error)
+
+        self.post(work)
+        return result.result()
+
+    def post(self, action: Callable[[], object]) -> None:
+        """Call `action` in the thread soon, after everything that was posted before."""
+        self._work.append(action)
+        self._schedule()
+
+    def pace(self) -> None:
+        """Wait while more is posted than the thread has done; for those who post much."""
+        if len(self._work) >= MOST_WAITING and not self.is_current:
+            turn = Event()
+            self.post(turn.set)
+            turn.wait()
+
+    def _schedule(self) -> None:
+        if self._ended:
+            self._drain()
+        elif not self._scheduled:
+            self._scheduled = True
+            assert self._loop is not None  # noqa: S101  # `start` has returned
+            try:
+                self._loop.call_soon_threadsafe(self._drain)
+            except RuntimeError:  # the loop has just been closed
+                self._drain()
+
+    def _drain(self) -> None:
+        self._scheduled = False
+        work = self._work
+        left = SLICE
+        while work and left:
+            left -= 1
+            try:
+                action = work.popleft()
+            except IndexError:  # at the end, several threads may be here
+                return
+            try:
+                action()
+            except Exception:
+                if not self._ended:
+                    logger.exception("in the input and output of a context")
+        if work:
+            self._schedule()
+
+    def _stop(self) -> None:
+        if self._stopping is not None:
+            self._stopping.set()
+
+    def _main(self) -> None:
+        try:
+            with asyncio.Runner(loop_factory=loop_factory()) as runner:
+                runner.run(self._run())
+        except BaseException as error:
+            if self._opened.done():
+                logger.exception("a context ended")
+            else:
+                self._opened.set_exception(error)
+        finally:
+            self._ended = True
+            while self._work:
+                self._drain()
+
+    async def _run(self) -> None:
+        async with self.context, asyncio.TaskGroup() as tasks:
+            self._loop = asyncio.get_running_loop()
+            self._stopping = asyncio.Event()
+            watching = tasks.create_task(self._watch_graph())
+            self._opened.set_result(None)
+            await self._stopping.wait()
+            watching.cancel()
+
+    # In the thread
+
+    @property
+    def loop(self) -> asyncio.AbstractEventLoop:
+        """Its event loop."""
+        assert self._loop is not None  # noqa: S101  # `start` has returned
+        return self._loop
+
+    def watch_graph(self, watcher: Callable[[], None]) -> None:
+        """Call `watcher` after each change of the graph; in the thread only, as `unwatch_graph`."""
+        self._graph_watchers.append(watcher)
+
+    def unwatch_graph(self, watcher: Callable[[], None]) -> None:
+        """Undo `watch_graph`."""
+        self._graph_watchers.remove(watcher)
+
+    async def _watch_graph(self) -> None:
+        while True:
+            await self.context.graph.changed()
+            for watcher in list(self._graph_watchers):
+                watcher()
+
+
+def loop_factory() -> Callable[[], asyncio.AbstractEventLoop] | None:
+    """Return uvloop's loop factory if it is installed; None stands for asyncio's own."""
+    try:
+        import uvloop  # an optional extra
+    except ImportError:
+        return None
+    return uvloop.new_event_loop

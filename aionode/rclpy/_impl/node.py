@@ -1,0 +1,198 @@
+"""The handle of a node: its names, its arguments, and what it sees of the graph."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from aionode import names
+from aionode.arguments import Arguments
+from aionode.bare_node import BareNode
+from aionode.clock import MachineTime, Time
+from aionode.errors import NodeNameNonExistentError
+from aionode.graph import TOPIC_KINDS, EndpointKind
+from aionode.interfaces.rcl_interfaces.msg import Log
+from aionode.logging import get_logger
+from aionode.rclpy._impl.context import parsed
+from aionode.rclpy._impl.destroyable import Destroyable
+from aionode.rclpy._impl.qos import profile_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from aionode.bare_node import BarePublisher
+    from aionode.graph import EndpointInfo, Graph
+    from aionode.logging import LogEvent
+    from aionode.rclpy._impl.context import ContextHandle
+
+__all__ = ["NodeHandle"]
+
+NamesAndTypes = list[tuple[str, list[str]]]
+
+system_ns = MachineTime().system_ns
+
+
+class NodeHandle(Destroyable):
+    """A node in the graph. `signal` is shared by the handles of its entities.
+
+    Attributes:
+        context_handle: Its context.
+        io: The thread that works for it.
+        bare: The node in the core; used in that thread only.
+    """
+
+    def __init__(
+        self,
+        node_name: str,
+        namespace: str,
+        context: ContextHandle,
+        cli_args: Sequence[str] | None,
+        use_global_arguments: bool,
+        enable_rosout: bool,
+        rosout_qos_profile: Any = None,
+    ) -> None:
+        super().__init__()
+        self._stop_rosout: Callable[[], None] | None = None
+        names.validate_node_name(node_name)
+        namespace = names.normalize_namespace(namespace)
+        own = parsed(cli_args or ())
+        shared = context.arguments if use_global_arguments else Arguments()
+        self.context_handle = context
+        self.io = context.io
+        self._rules = own.remap_rules + shared.remap_rules
+        self._name = names.remap_node_name(self._rules, node_name)
+        self._namespace = names.remap_namespace(self._rules, node_name, namespace)
+        full_name = names.fully_qualified_name(self._namespace, self._name)
+        self._overrides = {**shared.parameters_for(full_name), **own.parameters_for(full_name)}
+        enclave = own.enclave or shared.enclave or "/"
+        self.bare: BareNode = self.io.call(
+            BareNode, self.io.context, self._name, self._namespace, enclave
+        )
+        if enable_rosout and shared.rosout_logs and own.rosout_logs:
+            publisher = self.io.call(
+                self.bare.create_publisher, Log, "/rosout", profile_of(rosout_qos_profile)
+            )
+            self._stop_rosout = get_logger(self.logger_name()).add_sink(
+                partial(publish_log, self.io.post, publisher)
+            )
+
+    # Names
+
+    def get_node_name(self) -> str:
+        """Return the name without namespace."""
+        return self._name
+
+    def get_namespace(self) -> str:
+        """Return the namespace, which begins with a slash."""
+        return self._namespace
+
+    def get_fully_qualified_name(self) -> str:
+        """Return namespace and name in one."""
+        return names.fully_qualified_name(self._namespace, self._name)
+
+    def logger_name(self) -> str:
+        """Return the name of the node's logger."""
+        return names.logger_name(self._namespace, self._name)
+
+    def resolve(self, name: str, *, only_expand: bool = False, is_service: bool = False) -> str:
+        """Return the full name of a topic or service, remapped unless `only_expand`.
+
+        Raises:
+            InvalidTopicNameException: the name is invalid.
+            InvalidServiceNameException: the name is invalid, and that of a service.
+        """
+        rules = () if only_expand else self._rules
+        return names.resolve(name, self._name, self._namespace, rules, is_service=is_service)
+
+    def remap_topic(self, name: str) -> str:
+        """Return a full name of a topic, remapped."""
+        return self.resolve(name)
+
+    def get_parameters(self, parameter_class: Any) -> dict[str, Any]:
+        """Return the parameters that arguments give, by name."""
+        return {name: parameter_class(name, value=value) for name, value in self._overrides.items()}
+
+    # Graph
+
+    def ask(self, question: Callable[[Graph], Any]) -> Any:
+        """Return what `question` answers; it is called in the thread of the context."""
+        return self.io.call(question, self.io.context.graph)
+
+    def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
+        """Return name and namespace of every node."""
+        found: list[tuple[str, str]] = self.ask(
+            lambda graph: [(node.name, node.namespace) for node in graph.nodes()]
+        )
+        return found
+
+    def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
+        """Return name, namespace and enclave of every node."""
+        found: list[tuple[str, str, str]] = self.ask(
+            lambda graph: [(node.name, node.namespace, node.enclave) for node in graph.nodes()]
+        )
+        return found
+
+    def count(self, kind: EndpointKind, name: str) -> int:
+        """Return how many endpoints of `kind` have a full name."""
+        found: int = self.ask(lambda graph: graph.count(kind, name))
+        return found
+
+    def topic_names_and_types(self) -> NamesAndTypes:
+        """Return every topic with its types."""
+        found: NamesAndTypes = self.ask(lambda graph: graph.names_and_types(*TOPIC_KINDS))
+        return found
+
+    def service_names_and_types(self) -> NamesAndTypes:
+        """Return every service that has a server, with its types."""
+        found: NamesAndTypes = self.ask(lambda graph: graph.names_and_types(EndpointKind.SERVER))
+        return found
+
+    def names_and_types_of(
+        self, kind: EndpointKind, node_name: str, node_namespace: str
+    ) -> NamesAndTypes:
+        """Return the names that a node's endpoints of `kind` have, with their types.
+
+        Raises:
+            NodeNameNonExistentError: there is no node of this name.
+        """
+        names.validate_node_name(node_name)
+        full_name = names.fully_qualified_name(names.normalize_namespace(node_namespace), node_name)
+
+        def answer(graph: Graph) -> NamesAndTypes:
+            node = next(graph.find_nodes(full_name), None)
+            if node is None:
+                raise NodeNameNonExistentError(full_name)
+            return graph.names_and_types(kind, node=node)
+
+        found: NamesAndTypes = self.ask(answer)
+        return found
+
+    def endpoints(self, kind: EndpointKind, name: str) -> list[EndpointInfo]:
+        """Return the endpoints of `kind` that have a full name."""
+        found: list[EndpointInfo] = self.ask(lambda graph: graph.endpoints(kind, name=name))
+        return found
+
+    def _destroy(self) -> None:
+        if self._stop_rosout is not None:
+            self._stop_rosout()
+        bare = getattr(self, "bare", None)
+        if bare is not None:
+            self.io.post(bare.destroy_node)
+        self.signal.notify()
+
+
+def publish_log(
+    post: Callable[[Callable[[], object]], None], publisher: BarePublisher, event: LogEvent
+) -> None:
+    """Publish one message of the log on ``/rosout``."""
+    stamp_ns = system_ns()
+    log = Log(
+        stamp=Time(nanoseconds=stamp_ns).to_msg(),
+        level=event.level,
+        name=event.name.encode(errors="replace").decode(),
+        msg=event.msg.encode(errors="replace").decode(),
+        file=event.file.encode(errors="replace").decode(),
+        function=event.function,
+        line=event.line,
+    )
+    post(partial(publisher.publish, log, stamp_ns))

@@ -1,0 +1,60 @@
+"""The form of a QoS profile that rclpy's extension module has."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from aionode.qos import QoSPresetProfiles, QoSProfile
+
+__all__ = ["profile_of", "rmw_qos_profile_t"]
+
+
+class rmw_qos_profile_t:  # noqa: N801  # rclpy's name
+    """A profile as `QoSProfile.get_c_qos_profile` returns it.
+
+    Attributes:
+        profile: The profile that it stands for.
+    """
+
+    PREDEFINED: ClassVar[dict[str, str]] = {
+        "qos_profile_unknown": "UNKNOWN",
+        "qos_profile_default": "DEFAULT",
+        "qos_profile_system_default": "SYSTEM_DEFAULT",
+        "qos_profile_sensor_data": "SENSOR_DATA",
+        "qos_profile_services_default": "SERVICES_DEFAULT",
+        "qos_profile_parameters": "PARAMETERS",
+        "qos_profile_parameter_events": "PARAMETER_EVENTS",
+        "qos_profile_best_available": "BEST_AVAILABLE",
+    }
+
+    def __init__(self, profile: QoSProfile) -> None:
+        self.profile = profile
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the policies by name."""
+        profile = self.profile
+        return {
+            name: getattr(profile, name)
+            for name in (
+                "history",
+                "depth",
+                "reliability",
+                "durability",
+                "lifespan",
+                "deadline",
+                "liveliness",
+                "liveliness_lease_duration",
+                "avoid_ros_namespace_conventions",
+            )
+        }
+
+    @classmethod
+    def predefined(cls, name: str) -> rmw_qos_profile_t:
+        """Return a profile that the middleware defines, such as ``qos_profile_sensor_data``."""
+        return cls(QoSPresetProfiles[cls.PREDEFINED[name]].value)
+
+
+def profile_of(given: Any) -> QoSProfile:
+    """Return the profile that is given in either form."""
+    profile: QoSProfile = given.profile if isinstance(given, rmw_qos_profile_t) else given
+    return profile

@@ -1,0 +1,329 @@
+"""Handles of service servers and clients, over the endpoints of a bare node."""
+
+from __future__ import annotations
+
+import logging
+from collections import deque
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from aionode.clock import MachineTime
+from aionode.errors import DecodeError
+from aionode.rclpy._impl.destroyable import Destroyable
+from aionode.rclpy._impl.introspection import Introspection, ServiceEvent
+from aionode.rclpy._impl.qos import profile_of
+from aionode.rclpy._impl.typesupport import service_support
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.bare_node import BareClient, BareEndpoint
+    from aionode.errors import ServiceError
+    from aionode.graph import EndpointInfo
+    from aionode.rclpy._impl.destroyable import Signal
+    from aionode.rclpy._impl.introspection import ServiceIntrospectionState
+    from aionode.rclpy._impl.node import NodeHandle
+    from aionode.rclpy._impl.timers import ClockHandle
+    from aionode.transport.base import Request
+
+__all__ = ["ClientHandle", "ServiceHandle", "rmw_request_id_t", "rmw_service_info_t"]
+
+MOST_REQUESTS = 1000
+"""How many requests a service keeps that nobody has taken, whatever its QoS says."""
+
+logger = logging.getLogger("aionode.rclpy")
+
+now_ns = MachineTime().system_ns
+
+
+class rmw_request_id_t(NamedTuple):  # noqa: N801  # rclpy's name
+    """Which request a response belongs to."""
+
+    sequence_number: int
+    writer_guid: bytes = bytes(16)
+
+
+class rmw_service_info_t(NamedTuple):  # noqa: N801  # rclpy's name
+    """Where a request or a response comes from."""
+
+    request_id: rmw_request_id_t
+    source_timestamp: int = 0
+    received_timestamp: int = 0
+
+
+class Requests:
+    """The requests that wait for a server; filled by the thread of the context."""
+
+    def __init__(self, limit: int, signal: Signal) -> None:
+        self.items: deque[tuple[Request, int]] = deque()
+        self._limit = limit
+        self._signal = signal
+
+    def serve(self, request: Request, inline_deadline_ns: int = 0) -> None:
+        """Take one request; the oldest makes room, and its client learns that."""
+        if len(self.items) >= self._limit:
+            self.items.popleft()[0].drop()
+        self.items.append((request, now_ns()))
+        self._signal.notify()
+
+
+class ServiceHandle(Destroyable):
+    """A service server: requests wait in it until they are taken."""
+
+    def __init__(self, node: NodeHandle, srv_type: Any, srv_name: str, qos_profile: Any) -> None:
+        super().__init__(node.signal)
+        self._node = node
+        self._io = node.io
+        self._support = service_support(srv_type)
+        self.srv_type = srv_type
+        profile = profile_of(qos_profile)
+        self._requests = Requests(profile.depth or MOST_REQUESTS, node.signal)
+        self._taken: dict[rmw_request_id_t, Request] = {}
+        self._name = node.resolve(srv_name, is_service=True)
+        self._introspection = Introspection(node, srv_type, self._name)
+        self._bare: BareEndpoint = node.io.call(
+            node.bare.create_server,
+            self._support.wire_type,
+            self._name,
+            profile,
+            self._requests.serve,
+        )
+
+    @property
+    def endpoint(self) -> EndpointInfo:
+        """What the graph knows of it."""
+        return self._bare.endpoint
+
+    @property
+    def name(self) -> str:
+        """The full name of the service."""
+        return self._name
+
+    @property
+    def qos(self) -> Any:
+        """The resolved profile."""
+        return self.endpoint.qos
+
+    def ready(self) -> bool:
+        """Return whether a request waits."""
+        return bool(self._requests.items) and not self._unwanted
+
+    def service_take_request(
+        self, request_type: Any
+    ) -> tuple[Any, rmw_service_info_t] | tuple[None, None]:
+        """Return the oldest request that waits and its header, or two times None."""
+        del request_type
+        while True:
+            try:
+                request, received_ns = self._requests.items.popleft()
+            except IndexError:
+                return None, None
+            if request.cancelled:
+                self._io.post(request.drop)
+                continue
+            try:
+                message = self._support.request.decode(request.message.data)
+            except DecodeError as error:
+                self._io.post(partial(request.fail, "DecodeError", str(error)))
+                continue
+            info = request.sample_info
+            request_id = rmw_request_id_t(info.sequence, info.gid)
+            self._taken[request_id] = request
+            self._introspection.tell(
+                ServiceEvent.REQUEST_RECEIVED, info.gid, info.sequence, request=message
+            )
+            return message, rmw_service_info_t(request_id, info.source_ns, received_ns)
+
+    def service_send_response(self, response: Any, request_id: rmw_request_id_t) -> None:
+        """Answer the request of this id; a second answer is dropped."""
+        data = self._support.response.encode(response)
+        request = self._taken.pop(request_id, None)
+        if request is None:
+            return
+        self._io.post(partial(request.reply, self._support.wire_type.Response(data)))
+        self._introspection.tell(
+            ServiceEvent.RESPONSE_SENT,
+            request_id.writer_guid,
+            request_id.sequence_number,
+            response=response,
+        )
+
+    def service_send_error(self, error_type: str, text: str, request_id: rmw_request_id_t) -> None:
+        """Send an error in place of a response; only clients of aionode learn of it."""
+        request = self._taken.pop(request_id, None)
+        if request is not None:
+            self._io.post(partial(request.fail, error_type, text))
+
+    def configure_introspection(
+        self, clock: ClockHandle, qos_profile: Any, state: ServiceIntrospectionState
+    ) -> None:
+        """Tell of calls on ``<service>/_service_event``."""
+        self._introspection.configure(clock, qos_profile, state)
+
+    def give_up(self, request_id: rmw_request_id_t) -> None:
+        """Leave the request of this id without an answer; its client goes on waiting.
+
+        As in rclpy, whose clients are not told that a callback has failed.
+        """
+        self._taken.pop(request_id, None)
+
+    def get_logger_name(self) -> str:
+        """Return the name of the node's logger."""
+        return self._node.logger_name()
+
+    def _destroy(self) -> None:
+        bare = getattr(self, "_bare", None)
+        if bare is not None:
+            self._introspection.close()
+            self._io.post(bare.destroy)
+
+
+class Replies:
+    """The replies that wait for a client; filled by the thread of the context."""
+
+    def __init__(self, signal: Signal) -> None:
+        self.items: deque[tuple[int, Any, int]] = deque()
+        self.blocked: dict[int, Callable[[Any], None]] = {}
+        self._signal = signal
+
+    def take(self, sequence: int, response: Any) -> None:
+        """Take a response: a thread that waits for it gets it at once."""
+        waiting = self.blocked.pop(sequence, None)
+        if waiting is not None:
+            waiting(response.data)
+            return
+        self.items.append((sequence, response.data, now_ns()))
+        self._signal.notify()
+
+
+class ClientHandle(Destroyable):
+    """A client: responses wait in it until they are taken."""
+
+    def __init__(self, node: NodeHandle, srv_type: Any, srv_name: str, qos_profile: Any) -> None:
+        super().__init__(node.signal)
+        self._node = node
+        self._io = node.io
+        self.srv_type = srv_type
+        self._support = service_support(srv_type)
+        self._replies = Replies(node.signal)
+        self._calls: dict[int, Any] = {}
+        self._sequence = 0
+        self._name = node.resolve(srv_name, is_service=True)
+        self._introspection = Introspection(node, srv_type, self._name)
+        self._bare: BareClient = node.io.call(
+            node.bare.create_client, self._support.wire_type, self._name, profile_of(qos_profile)
+        )
+
+    @property
+    def endpoint(self) -> EndpointInfo:
+        """What the graph knows of it."""
+        return self._bare.endpoint
+
+    @property
+    def service_name(self) -> str:
+        """The full name of the service."""
+        return self._name
+
+    def ready(self) -> bool:
+        """Return whether a response waits."""
+        return bool(self._replies.items) and not self._unwanted
+
+    def send_request(self, request: Any, on_response: Callable[[Any], None] | None = None) -> int:
+        """Send a request and return its number.
+
+        Args:
+            request: The request.
+            on_response: Called in the thread of the context with the response as bytes, which then
+                does not wait to be taken: for a thread that waits for it.
+        """
+        data = self._support.request.encode(request)
+        self._sequence += 1  # under the lock of the client
+        sequence = self._sequence
+        if on_response is not None:
+            self._replies.blocked[sequence] = on_response
+        self._introspection.tell(
+            ServiceEvent.REQUEST_SENT, self.endpoint.gid, sequence, request=request
+        )
+        self._io.post(
+            partial(self._send, sequence, self._support.wire_type.Request(data), now_ns())
+        )
+        return sequence
+
+    def _send(self, sequence: int, request: Any, source_ns: int) -> None:
+        replies, calls = self._replies, self._calls
+
+        def reply(response: Any) -> None:
+            calls.pop(sequence, None)
+            replies.take(sequence, response)
+
+        def fail(error: ServiceError | None) -> None:
+            # rclpy's clients wait for ever: no error reaches them.
+            calls.pop(sequence, None)
+            if error is not None:
+                logger.warning("%s: %s", self._name, error)
+
+        if self._bare.servers:
+            call = self._bare.send(request, source_ns, reply, fail)
+            if call.open:
+                calls[sequence] = call
+
+    def receive(self, sequence: int, data: bytes) -> Any:
+        """Return a response that came as bytes.
+
+        Raises:
+            DecodeError: the bytes are no response.
+        """
+        response = self._support.response.decode(data)
+        self._introspection.tell(
+            ServiceEvent.RESPONSE_RECEIVED, self.endpoint.gid, sequence, response=response
+        )
+        return response
+
+    def configure_introspection(
+        self, clock: ClockHandle, qos_profile: Any, state: ServiceIntrospectionState
+    ) -> None:
+        """Tell of calls on ``<service>/_service_event``."""
+        self._introspection.configure(clock, qos_profile, state)
+
+    def forget(self, sequence: int) -> None:
+        """Forget a request: the server need not begin with it, and its response is dropped."""
+        self._replies.blocked.pop(sequence, None)
+
+        def cancel() -> None:
+            call = self._calls.pop(sequence, None)
+            if call is not None:
+                call.cancel()
+
+        self._io.post(cancel)
+
+    def take_response(
+        self, response_type: Any
+    ) -> tuple[rmw_service_info_t, Any] | tuple[None, None]:
+        """Return the header of the oldest response that waits, and the response, or two None."""
+        del response_type
+        while True:
+            try:
+                sequence, data, received_ns = self._replies.items.popleft()
+            except IndexError:
+                return None, None
+            try:
+                response = self.receive(sequence, data)
+            except DecodeError as error:
+                logger.warning("%s: the response is unreadable: %s", self._name, error)
+                continue
+            request_id = rmw_request_id_t(sequence, self.endpoint.gid)
+            return rmw_service_info_t(request_id, 0, received_ns), response
+
+    def service_server_is_available(self) -> bool:
+        """Return whether a server is matched."""
+        return self._io.call(lambda: self._bare.servers > 0)
+
+    def get_logger_name(self) -> str:
+        """Return the name of the node's logger."""
+        return self._node.logger_name()
+
+    def _destroy(self) -> None:
+        bare = getattr(self, "_bare", None)
+        if bare is not None:
+            self._introspection.close()
+            self._io.post(bare.destroy)

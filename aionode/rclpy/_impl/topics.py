@@ -1,0 +1,357 @@
+"""Handles of publishers and subscriptions, over the endpoints of a bare node."""
+
+from __future__ import annotations
+
+import logging
+from collections import deque
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from aionode.clock import MachineTime
+from aionode.errors import DecodeError, MessageError, QueueFullError
+from aionode.qos import DEFAULT_DEPTH, KEEP_ALL_DEPTH, is_unlimited
+from aionode.rclpy._impl.destroyable import Destroyable
+from aionode.rclpy._impl.errors import RCLError
+from aionode.rclpy._impl.qos import profile_of
+from aionode.rclpy._impl.typesupport import aionode_class, message_support
+from aionode.wire import cdr
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.bare_node import BareEndpoint, BarePublisher
+    from aionode.graph import EndpointInfo
+    from aionode.qos import QoSProfile
+    from aionode.rclpy._impl.destroyable import Signal
+    from aionode.rclpy._impl.node import NodeHandle
+    from aionode.transport.base import SampleInfo
+
+__all__ = ["PublisherHandle", "SubscriptionHandle"]
+
+Feed = list["Callable[[SampleInfo | None], None]"]
+"""What is told of each message, in the thread of the context, by those who watch for events."""
+
+logger = logging.getLogger("aionode.rclpy")
+
+now_ns = MachineTime().system_ns
+
+
+class PublisherHandle(Destroyable):
+    """A publisher. `publish` encodes, and delivers to this context, in the calling thread."""
+
+    def __init__(self, node: NodeHandle, msg_type: Any, topic: str, qos_profile: Any) -> None:
+        super().__init__(node.signal)
+        self._node = node
+        self.msg_type = msg_type
+        self._support = message_support(msg_type)
+        self.io = node.io
+        name = node.resolve(topic)
+        self.bare: BarePublisher = node.io.call(
+            node.bare.create_publisher, self._support.wire_type, name, profile_of(qos_profile)
+        )
+        self.feed: Feed = []
+        self.assertions: list[Callable[[bytes], None]] = []  # of subscriptions only
+
+    @property
+    def endpoint(self) -> EndpointInfo:
+        """What the graph knows of it."""
+        return self.bare.endpoint
+
+    def publish(self, msg: Any) -> None:
+        """Send a message."""
+        try:
+            data = self._support.encode(msg)
+        except MessageError as error:
+            error.add_note(f"published to {self.endpoint.name}")
+            raise
+        self.publish_raw(data)
+
+    def publish_raw(self, data: bytes) -> None:
+        """Send a message that is encoded already.
+
+        Subscriptions of this context have it when this returns.
+
+        Raises:
+            RCLError: a KEEP_ALL subscription of this context is full.
+        """
+        msg = self._support.wire_type(data)
+        io = self.io
+        io.pace()
+        with io.delivery_lock:
+            try:
+                sample_info = self.bare.publish_here(msg, now_ns())
+            except QueueFullError as error:
+                raise RCLError(f"Failed to publish: {error}") from error
+            if sample_info is not None:
+                io.post(partial(self.bare.publish_elsewhere, msg, sample_info))
+        if self.feed:
+            io.post(self._tell_feed)
+
+    def _tell_feed(self) -> None:
+        for listener in self.feed:
+            listener(None)
+
+    def get_subscription_count(self) -> int:
+        """Return how many subscriptions are matched."""
+        return len(self.io.call(self.bare.matched))
+
+    def get_topic_name(self) -> str:
+        """Return the full name of the topic."""
+        return self.endpoint.name
+
+    def get_logger_name(self) -> str:
+        """Return the name of the node's logger."""
+        return self._node.logger_name()
+
+    def assert_liveliness(self) -> None:
+        """Show that the publisher is alive."""
+        self.io.post(self._assert_liveliness)
+
+    def _assert_liveliness(self) -> None:
+        self._tell_feed()
+        self.bare.assert_liveliness()
+
+    def wait_for_all_acked(self, timeout: Any) -> bool:
+        """Wait until everything is handed to the transports; they repeat what is lost."""
+        del timeout
+        self.io.call(lambda: None)
+        return True
+
+    def _destroy(self) -> None:
+        bare = getattr(self, "bare", None)
+        if bare is not None:
+            self.io.post(bare.destroy)
+
+
+class Inbox:
+    """The queue of a subscription, its `Reader`.
+
+    The thread of the context fills it, and threads that publish in the same context.
+
+    It does not know its handle, which is garbage once its user has dropped it.
+    """
+
+    raw = False
+    endpoint: EndpointInfo
+
+    def __init__(
+        self, profile: Any, signal: Signal, post: Callable[[Callable[[], object]], None]
+    ) -> None:
+        keep_all = profile.resolved().history.name == "KEEP_ALL"
+        self.limit = KEEP_ALL_DEPTH if keep_all else (profile.depth or DEFAULT_DEPTH)
+        self.keep_all = keep_all
+        self.items: deque[tuple[Any, SampleInfo, int]] = deque(
+            maxlen=None if keep_all else self.limit
+        )
+        self.dropped = 0
+        self.rejected = 0
+        self.accept: Callable[[bytes], bool] | None = None
+        self.feed: Feed = []
+        self.assertions: list[Callable[[bytes], None]] = []
+        self._signal = signal
+        self._post = post
+        self._room_waiters: list[Callable[[], None]] = []
+
+    def deliver(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
+        """Take one message."""
+        if self.feed:
+            self._post(partial(self._tell_feed, sample_info))
+        if self.accept is not None and not self.accept(msg.data):
+            return
+        items = self.items
+        if len(items) == self.limit:
+            self.dropped += 1
+            if self.keep_all:
+                return
+        items.append((msg.data, sample_info, sample_info.arrived_ns or now_ns()))
+        self._signal.notify()
+
+    def note_alive(self, gid: bytes) -> None:
+        """Take the assertion of a publisher that it is alive."""
+        for listener in self.assertions:
+            listener(gid)
+
+    def _tell_feed(self, sample_info: SampleInfo) -> None:
+        for listener in self.feed:
+            listener(sample_info)
+
+    def reject(self, error: DecodeError) -> None:
+        """Count what is no message of this type."""
+        self.rejected += 1
+
+    def has_room(self) -> bool:
+        """Whether a message can be taken without losing one that should be kept."""
+        return not self.keep_all or len(self.items) < self.limit
+
+    async def wait_for_room(self) -> None:
+        """Return at once: publishers of this context drop what does not fit."""
+
+    def when_room(self, callback: Callable[[], None]) -> None:
+        """Call `callback` once the next message was taken."""
+        self._room_waiters.append(callback)
+
+    def made_room(self) -> list[Callable[[], None]]:
+        """Return what waits for room, and forget it."""
+        waiters, self._room_waiters = self._room_waiters, []
+        return waiters
+
+
+class SubscriptionHandle(Destroyable):
+    """A subscription: messages wait in it until one is taken, the newest `depth` of them."""
+
+    def __init__(
+        self,
+        node: NodeHandle,
+        msg_type: Any,
+        topic: str,
+        qos_profile: Any,
+        content_filter_options: Any = None,
+    ) -> None:
+        super().__init__(node.signal)
+        self._node = node
+        self.io = node.io
+        self.msg_type = msg_type
+        self._support = message_support(msg_type)
+        self._filter_options = content_filter_options
+        profile = profile_of(qos_profile)
+        self.inbox = Inbox(profile, node.signal, node.io.post)
+        self.feed = self.inbox.feed
+        self.assertions = self.inbox.assertions
+        if content_filter_options is not None:
+            self._set_filter(
+                content_filter_options.filter_expression,
+                content_filter_options.expression_parameters,
+            )
+        name = node.resolve(topic)
+        self.bare: BareEndpoint = node.io.call(self._create, name, profile)
+        self._lifespans: dict[bytes, int] = {}
+        self._received = 0
+        self._complained = False
+
+    @property
+    def endpoint(self) -> EndpointInfo:
+        """What the graph knows of it."""
+        return self.bare.endpoint
+
+    def _create(self, name: str, profile: QoSProfile) -> BareEndpoint:
+        with self.io.delivery_lock:
+            return self._node.bare.create_subscription(
+                self._support.wire_type, name, profile, self.inbox
+            )
+
+    def ready(self) -> bool:
+        """Return whether a message waits."""
+        return bool(self.inbox.items) and not self._unwanted
+
+    def take_message(self, msg_type: Any, raw: bool) -> tuple[Any, dict[str, Any]] | None:
+        """Return the oldest message that waits and where it comes from, or None."""
+        inbox = self.inbox
+        while inbox.items:
+            try:
+                data, sample_info, arrived_ns = inbox.items.popleft()
+            except IndexError:  # another thread was faster
+                return None
+            if inbox.keep_all:
+                for waiter in inbox.made_room():
+                    self.io.post(waiter)
+            if self._has_expired(sample_info):
+                continue
+            message = data
+            if not raw:
+                support = self._support if msg_type is self.msg_type else message_support(msg_type)
+                try:
+                    message = support.decode(data)
+                except DecodeError as error:
+                    self._complain(error)
+                    continue
+            self._received += 1
+            return message, {
+                "source_timestamp": sample_info.source_ns,
+                "received_timestamp": arrived_ns,
+                "publication_sequence_number": sample_info.sequence,
+                "reception_sequence_number": self._received,
+                "publisher_gid": {
+                    "implementation_identifier": "rmw_zenoh_cpp",
+                    "data": sample_info.gid,
+                },
+            }
+        return None
+
+    def _complain(self, error: DecodeError) -> None:
+        self.inbox.rejected += 1
+        if not self._complained:
+            self._complained = True
+            logger.warning("%s: not a message of this type: %s", self.endpoint.name, error)
+
+    def _has_expired(self, sample_info: SampleInfo) -> bool:
+        """Whether the lifespan that the publisher gave its messages has passed."""
+        lifespan_ns = self._lifespans.get(sample_info.gid)
+        if lifespan_ns is None:
+            lifespan_ns = self.io.call(self._lifespan_of, sample_info.gid)
+            self._lifespans[sample_info.gid] = lifespan_ns
+        return bool(lifespan_ns) and now_ns() - sample_info.source_ns > lifespan_ns
+
+    def _lifespan_of(self, gid: bytes) -> int:
+        for publisher in self.bare.matched():
+            if publisher.gid == gid and not is_unlimited(publisher.qos.lifespan):
+                return publisher.qos.lifespan.nanoseconds
+        return 0
+
+    def get_publisher_count(self) -> int:
+        """Return how many publishers are matched."""
+        return len(self.io.call(self.bare.matched))
+
+    def get_topic_name(self) -> str:
+        """Return the full name of the topic."""
+        return self.endpoint.name
+
+    def get_logger_name(self) -> str:
+        """Return the name of the node's logger."""
+        return self._node.logger_name()
+
+    # Content filters
+
+    def is_cft_enabled(self) -> bool:
+        """Return whether a filter is set."""
+        return self.inbox.accept is not None
+
+    is_cft_supported = is_cft_enabled
+
+    def set_content_filter(self, filter_expression: str, expression_parameters: list[str]) -> None:
+        """Take only messages that meet the expression; an empty one takes all.
+
+        Raises:
+            RCLError: the expression cannot be used.
+        """
+        try:
+            self._set_filter(filter_expression, expression_parameters)
+        except ValueError as error:
+            raise RCLError(str(error)) from error
+
+    def _set_filter(self, expression: str, parameters: list[str]) -> None:
+        if not expression:
+            self.inbox.accept = self._filter_options = None
+            return
+        from aionode.content_filter import compile_filter  # few subscriptions have a filter
+
+        own_class = aionode_class(self.msg_type)
+        meets = compile_filter(own_class, expression, parameters)
+        decode = cdr.decoder(own_class)
+        self.inbox.accept = lambda data: meets(decode(data))
+        self._filter_options = (expression, list(parameters))
+
+    def get_content_filter(self) -> tuple[str, list[str]]:
+        """Return the expression and its parameters.
+
+        Raises:
+            RCLError: no filter is set.
+        """
+        if not isinstance(self._filter_options, tuple):
+            raise RCLError("Failed to get content filter: content filtered topic is not enabled")
+        return self._filter_options
+
+    def _destroy(self) -> None:
+        bare = getattr(self, "bare", None)
+        if bare is not None:
+            self.io.post(bare.destroy)
+        self.signal.notify()

@@ -1,0 +1,93 @@
+"""What modules below executors and nodes need of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.rclpy._impl.node import NodeHandle
+
+__all__ = ["ExecutorLike", "NodeLike"]
+
+
+class ExecutorLike(Protocol):
+    """An executor, as tasks and nodes see it."""
+
+    def create_task(self, callback: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
+        """Have a function or coroutine run; return its future."""
+
+    def wake(self) -> None:
+        """Have it look again at what is ready."""
+
+
+class NodeLike(Protocol):
+    """A node, as executors and its own services see it."""
+
+    executor: Any
+    _timers: list[Any]
+    _subscriptions: list[Any]
+    _guards: list[Any]
+    _clients: list[Any]
+    _services: list[Any]
+    _waitables: list[Any]
+
+    @property
+    def handle(self) -> NodeHandle:
+        """The handle."""
+
+    def get_name(self) -> str:
+        """Return the name."""
+
+    def get_logger(self) -> Any:
+        """Return the logger."""
+
+    def has_parameter(self, name: str) -> bool:
+        """Return whether a parameter is declared."""
+
+    def declare_parameter(self, name: str, value: Any = ..., descriptor: Any = ...) -> Any:
+        """Declare a parameter."""
+
+    def get_parameter(self, name: str) -> Any:
+        """Return a parameter."""
+
+    def get_parameters(self, names: list[str]) -> list[Any]:
+        """Return parameters."""
+
+    def get_parameter_types(self, names: list[str]) -> list[Any]:
+        """Return types of parameters."""
+
+    def describe_parameters(self, names: list[str]) -> list[Any]:
+        """Return descriptors."""
+
+    def list_parameters(self, prefixes: list[str], depth: int) -> Any:
+        """Return names of parameters."""
+
+    def set_parameters_atomically(self, parameter_list: list[Any]) -> Any:
+        """Set parameters."""
+
+    def add_on_set_parameters_callback(self, callback: Callable[[list[Any]], Any]) -> None:
+        """Add a callback."""
+
+    def create_subscription(
+        self,
+        msg_type: Any,
+        topic: str,
+        callback: Callable[..., Any],
+        qos_profile: Any,
+    ) -> Any:
+        """Return a subscription."""
+
+    def destroy_subscription(self, subscription: Any) -> bool:
+        """Destroy a subscription."""
+
+    def create_service(
+        self,
+        srv_type: Any,
+        srv_name: str,
+        callback: Callable[[Any, Any], Any],
+        *,
+        qos_profile: Any = ...,
+    ) -> Any:
+        """Return a service."""

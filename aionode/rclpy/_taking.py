@@ -1,0 +1,138 @@
+"""What executors take from entities that are ready, and what they call with it.
+
+Each function takes, and returns what is to be called then, or None if there is nothing to do. The
+result of a call is awaited if it is a coroutine.
+"""
+
+from __future__ import annotations
+
+import inspect
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from aionode.rclpy._impl.errors import InvalidHandle, TimerCancelledError
+from aionode.rclpy.subscription import Subscription
+from aionode.rclpy.timer import TimerInfo
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.rclpy._protocols import ExecutorLike
+
+
+__all__ = [
+    "await_or_execute",
+    "take_client",
+    "take_guard_condition",
+    "take_service",
+    "take_subscription",
+    "take_timer",
+    "take_waitable",
+]
+
+
+async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
+    """Call `callback`, and await it if it is a coroutine function."""
+    if inspect.iscoroutinefunction(callback):
+        return await callback(*args)
+    return callback(*args)
+
+
+def take_timer(executor: ExecutorLike, timer: Any) -> Callable[[], Any] | None:
+    """Take a call of a timer that is due."""
+    try:
+        with timer.handle:
+            called = timer.handle.call_timer_with_info()
+    except (InvalidHandle, TimerCancelledError):
+        return None
+    callback = timer.callback
+    if callback is None:
+        return None
+    name = timer.info_argument(callback)
+    if name is None:
+        return partial(run, callback)
+    info = TimerInfo(**called, clock_type=timer.clock.clock_type)
+    return partial(run, partial(callback, **{name: info}))
+
+
+def take_subscription(executor: ExecutorLike, subscription: Any) -> Callable[[], Any] | None:
+    """Take the next message of a subscription."""
+    try:
+        with subscription.handle:
+            taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
+    except InvalidHandle:
+        return None
+    if taken is None:
+        return None
+    if subscription._callback_type is Subscription.CallbackType.MessageOnly:
+        return partial(run, subscription.callback, taken[0])
+    return partial(run, subscription.callback, *taken)
+
+
+def take_guard_condition(executor: ExecutorLike, guard: Any) -> Callable[[], Any] | None:
+    """Take the trigger of a guard condition."""
+    guard.handle.take()
+    return None if guard.callback is None else partial(run, guard.callback)
+
+
+def take_client(executor: ExecutorLike, client: Any) -> Callable[[], Any] | None:
+    """Take the next response of a client."""
+    try:
+        with client.handle:
+            header, response = client.handle.take_response(client.srv_type.Response)
+    except InvalidHandle:
+        return None
+    if header is None:
+        return None
+    try:
+        future = client.get_pending_request(header.request_id.sequence_number)
+    except KeyError:  # it was given up
+        return None
+
+    def complete() -> None:
+        future._set_executor(executor)
+        future.set_result(response)
+
+    return complete
+
+
+def take_service(executor: ExecutorLike, service: Any) -> Callable[[], Any] | None:
+    """Take the next request of a service."""
+    try:
+        with service.handle:
+            request, header = service.handle.service_take_request(service.srv_type.Request)
+    except InvalidHandle:
+        return None
+    if header is None:
+        return None
+
+    async def answer() -> None:
+        try:
+            response = await await_or_execute(
+                service.callback, request, service.srv_type.Response()
+            )
+            service.send_response(response, header)
+        finally:
+            service.handle.give_up(header.request_id)
+
+    return answer
+
+
+def take_waitable(executor: ExecutorLike, waitable: Any) -> Callable[[], Any] | None:
+    """Take the data of a waitable."""
+    data = waitable.take_data()
+
+    async def execute() -> None:
+        for future in waitable._futures:
+            future._set_executor(executor)
+        await waitable.execute(data)
+
+    return execute
+
+
+def run(callback: Callable[..., Any], *args: Any) -> Any:
+    """Call `callback`; return a coroutine only if it is a coroutine function, as in rclpy."""
+    result = callback(*args)
+    if inspect.iscoroutine(result) and not inspect.iscoroutinefunction(callback):
+        return None
+    return result

@@ -1,0 +1,406 @@
+"""Action clients."""
+
+from __future__ import annotations
+
+import threading
+import uuid
+import weakref
+from typing import TYPE_CHECKING, Any, Generic
+
+from aionode.clock import MachineTime
+from aionode.endpoints.actions.goal import GoalStatus
+from aionode.rclpy._impl.actions import ActionClientHandle
+from aionode.rclpy._impl.destroyable import Wakeup
+from aionode.rclpy.executors import await_or_execute
+from aionode.rclpy.qos import (
+    QoSProfile,
+    qos_profile_action_status_default,
+    qos_profile_services_default,
+)
+from aionode.rclpy.task import Future
+from aionode.rclpy.type_support import FeedbackT, GoalT, ResultT, check_for_type_support
+from aionode.rclpy.waitable import NumberOfEntities, Waitable
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import TracebackType
+
+    from aionode.rclpy._impl.services import ClientHandle
+    from aionode.rclpy._impl.wait_set import WaitSet
+    from aionode.rclpy.callback_groups import CallbackGroup
+    from aionode.rclpy.clock import Clock
+    from aionode.rclpy.node import Node
+    from aionode.rclpy.service_introspection import ServiceIntrospectionState
+
+__all__ = ["ActionClient", "ClientGoalHandle"]
+
+FEEDBACK_QOS = QoSProfile(depth=10)
+
+CHECK_S = 0.05
+"""How often `wait_for_server` looks."""
+
+ENDED = (GoalStatus.SUCCEEDED, GoalStatus.CANCELED, GoalStatus.ABORTED)
+
+steady_ns = MachineTime().steady_ns
+
+
+class ClientGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
+    """A goal that was sent, and the server's answer to it."""
+
+    def __init__(
+        self,
+        action_client: ActionClient[GoalT, ResultT, FeedbackT],
+        goal_id: Any,
+        goal_response: Any,
+    ) -> None:
+        self._action_client = action_client
+        self._goal_id = goal_id
+        self._goal_response = goal_response
+        self._status = int(GoalStatus.UNKNOWN)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ClientGoalHandle) and self._goal_id == other._goal_id
+
+    __hash__ = None  # type: ignore[assignment] # as in rclpy
+
+    def __repr__(self) -> str:
+        return (
+            f"ClientGoalHandle <id={self.goal_id.uuid}, accepted={self.accepted}, "
+            f"status={self.status}>"
+        )
+
+    @property
+    def goal_id(self) -> Any:
+        """Its id."""
+        return self._goal_id
+
+    @property
+    def stamp(self) -> Any:
+        """When it was accepted."""
+        return self._goal_response.stamp
+
+    @property
+    def accepted(self) -> bool:
+        """Whether the server accepted it."""
+        accepted: bool = self._goal_response.accepted
+        return accepted
+
+    @property
+    def status(self) -> int:
+        """Its state, as the server has published it last."""
+        return self._status
+
+    def cancel_goal(self) -> Any:
+        """Ask the server to cancel it; block until it answers, while another thread spins."""
+        return blocked(self.cancel_goal_async())
+
+    def cancel_goal_async(self) -> Future[Any]:
+        """Ask the server to cancel it; return a future of the answer."""
+        return self._action_client._cancel_goal_async(self)
+
+    def get_result(self) -> Any:
+        """Ask for its result; block until it is there, while another thread spins."""
+        return blocked(self.get_result_async())
+
+    def get_result_async(self) -> Future[Any]:
+        """Ask for its result; return a future of it."""
+        return self._action_client._get_result_async(self)
+
+
+def blocked(future: Future[Any]) -> Any:
+    """Block the thread until a future is done; return its result."""
+    done = threading.Event()
+    future.add_done_callback(lambda _: done.set())
+    done.wait()
+    return future.result()
+
+
+class ActionClient(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT]):
+    """Sends goals to an action server.
+
+    Args:
+        node: Its node.
+        action_type: The action class.
+        action_name: Its name.
+        callback_group: The group in which answers are handled and feedback callbacks called.
+        goal_service_qos_profile, result_service_qos_profile, cancel_service_qos_profile,
+            feedback_sub_qos_profile, status_sub_qos_profile: QoS of its services and topics.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        action_type: Any,
+        action_name: str,
+        *,
+        callback_group: CallbackGroup | None = None,
+        goal_service_qos_profile: QoSProfile = qos_profile_services_default,
+        result_service_qos_profile: QoSProfile = qos_profile_services_default,
+        cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
+        feedback_sub_qos_profile: QoSProfile = FEEDBACK_QOS,
+        status_sub_qos_profile: QoSProfile = qos_profile_action_status_default,
+    ) -> None:
+        super().__init__(callback_group or node.default_callback_group)
+        check_for_type_support(action_type)
+        self._node = node
+        self._action_type = action_type
+        self._action_name = action_name
+        with node.handle:
+            self._client_handle = ActionClientHandle(
+                node.handle,
+                action_type,
+                action_name,
+                goal_service_qos_profile,
+                result_service_qos_profile,
+                cancel_service_qos_profile,
+                feedback_sub_qos_profile,
+                status_sub_qos_profile,
+            )
+        self._goal_handles: dict[bytes, weakref.ref[ClientGoalHandle[Any, Any, Any]]] = {}
+        # Of each service: the futures by the number of the request.
+        self._pending_goal_requests: dict[int, Future[Any]] = {}
+        self._pending_cancel_requests: dict[int, Future[Any]] = {}
+        self._pending_result_requests: dict[int, Future[Any]] = {}
+        self._goal_ids: dict[int, Any] = {}  # of goal requests
+        self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
+        # The states that were published last: they may be here before the response of a goal.
+        self._states: list[Any] = []
+        self._lock = threading.Lock()
+        self._logger = node.get_logger().get_child("action_client")
+        node.add_waitable(self)
+
+    # Sending
+
+    def send_goal(self, goal: Any, **kwargs: Any) -> Any:
+        """Send a goal; block until its result is there, while another thread spins.
+
+        Raises:
+            TypeError: `goal` is of another class.
+        """
+        handle = blocked(self.send_goal_async(goal, **kwargs))
+        return handle.get_result()
+
+    def send_goal_async(
+        self,
+        goal: Any,
+        feedback_callback: Callable[[Any], Any] | None = None,
+        goal_uuid: Any | None = None,
+    ) -> Future[Any]:
+        """Send a goal; return a future of its `ClientGoalHandle`, accepted or not.
+
+        Args:
+            goal: The goal.
+            feedback_callback: Called with each feedback message until the result is there.
+            goal_uuid: Its id; a random one by default.
+
+        Raises:
+            TypeError: `goal` is of another class.
+        """
+        if not isinstance(goal, self._action_type.Goal):
+            raise TypeError(
+                f"Expected goal type ({self._action_type.Goal}) but received ({type(goal)})"
+            )
+        request = self._action_type.Impl.SendGoalService.Request()
+        if goal_uuid is None:
+            request.goal_id.uuid = list(uuid.uuid4().bytes)
+        else:
+            request.goal_id = goal_uuid
+        request.goal = goal
+        if feedback_callback is not None:
+            self._feedback_callbacks[bytes(request.goal_id.uuid)] = feedback_callback
+        future: Future[Any] = Future()
+        with self._lock:
+            sequence = self._client_handle.goal.send_request(request)
+            self._pending_goal_requests[sequence] = future
+            self._goal_ids[sequence] = request.goal_id
+        self._track(future, self._pending_goal_requests, sequence)
+        return future
+
+    def _cancel_goal_async(self, goal_handle: ClientGoalHandle[Any, Any, Any]) -> Future[Any]:
+        expect_goal_handle(goal_handle)
+        request = self._action_type.Impl.CancelGoalService.Request()
+        request.goal_info.goal_id = goal_handle.goal_id
+        return self._send(self._client_handle.cancel, request, self._pending_cancel_requests)
+
+    def _get_result_async(self, goal_handle: ClientGoalHandle[Any, Any, Any]) -> Future[Any]:
+        expect_goal_handle(goal_handle)
+        request = self._action_type.Impl.GetResultService.Request()
+        request.goal_id = goal_handle.goal_id
+        future = self._send(self._client_handle.result, request, self._pending_result_requests)
+        goal_id = bytes(goal_handle.goal_id.uuid)
+        future.add_done_callback(lambda _: self._feedback_callbacks.pop(goal_id, None))
+        return future
+
+    def _send(
+        self, client: ClientHandle, request: Any, pending: dict[int, Future[Any]]
+    ) -> Future[Any]:
+        future: Future[Any] = Future()
+        with self._lock:
+            sequence = client.send_request(request)
+            pending[sequence] = future
+        self._track(future, pending, sequence)
+        return future
+
+    def _track(self, future: Future[Any], pending: dict[int, Future[Any]], sequence: int) -> None:
+        """Have executors complete `future`, and forget it then."""
+        self.add_future(future)
+
+        def forget(_: Future[Any]) -> None:
+            if pending.pop(sequence, None) is not None:
+                self.remove_future(future)
+                if pending is self._pending_goal_requests:
+                    self._goal_ids.pop(sequence, None)
+
+        future.add_done_callback(forget)
+
+    # What executors call
+
+    def is_ready(self, wait_set: WaitSet) -> bool:
+        """Return whether an answer, feedback or status has come."""
+        return any(part.ready() for part in self._client_handle.parts)
+
+    def take_data(self) -> dict[str, Any]:
+        """Take one of each."""
+        handle = self._client_handle
+        data: dict[str, Any] = {}
+        with self._lock:
+            for name, client in (
+                ("goal", handle.goal),
+                ("cancel", handle.cancel),
+                ("result", handle.result),
+            ):
+                header, response = client.take_response(None)
+                if header is not None:
+                    data[name] = (header.request_id.sequence_number, response)
+            for name, subscription in (("feedback", handle.feedback), ("status", handle.status)):
+                taken = subscription.take_message(subscription.msg_type, raw=False)
+                if taken is not None:
+                    data[name] = taken[0]
+        return data
+
+    async def execute(self, taken_data: dict[str, Any]) -> None:
+        """Complete futures, call feedback callbacks, and note states."""
+        if "goal" in taken_data:
+            self._take_goal_response(*taken_data["goal"])
+        for name, pending in (
+            ("cancel", self._pending_cancel_requests),
+            ("result", self._pending_result_requests),
+        ):
+            if name in taken_data:
+                sequence, response = taken_data[name]
+                future = pending.get(sequence)
+                if future is None:
+                    self._warn_of_unexpected(name)
+                else:
+                    future.set_result(response)
+        if "feedback" in taken_data:
+            feedback = taken_data["feedback"]
+            callback = self._feedback_callbacks.get(bytes(feedback.goal_id.uuid))
+            if callback is not None:
+                await await_or_execute(callback, feedback)
+        if "status" in taken_data:
+            self._states = taken_data["status"].status_list
+            for status in self._states:
+                self._take_status(status)
+
+    def _take_goal_response(self, sequence: int, response: Any) -> None:
+        future = self._pending_goal_requests.get(sequence)
+        if future is None:
+            self._warn_of_unexpected("goal")
+            return
+        handle = ClientGoalHandle(self, self._goal_ids[sequence], response)
+        goal_id = bytes(handle.goal_id.uuid)
+        if not handle.accepted:
+            self._feedback_callbacks.pop(goal_id, None)
+        else:
+            if goal_id in self._goal_handles:
+                raise RuntimeError(f"Two goals were accepted with the same ID ({handle})")
+            self._goal_handles[goal_id] = weakref.ref(handle)
+            for status in self._states:
+                self._take_status(status)
+        future.set_result(handle)
+
+    def _take_status(self, status: Any) -> None:
+        goal_id = bytes(status.goal_info.goal_id.uuid)
+        reference = self._goal_handles.get(goal_id)
+        if reference is None:
+            return
+        handle = reference()
+        if handle is not None:
+            handle._status = status.status
+        if handle is None or status.status in ENDED:
+            del self._goal_handles[goal_id]
+
+    def _warn_of_unexpected(self, what: str) -> None:
+        self._logger.warning(
+            f"Ignoring unexpected {what} response. There may be more than one action server for "
+            f"the action '{self._action_name}'"
+        )
+
+    def get_num_entities(self) -> NumberOfEntities:
+        """Return how many handles it adds to a wait set."""
+        return NumberOfEntities(num_subs=2, num_clients=3)
+
+    def add_to_wait_set(self, wait_set: WaitSet) -> None:
+        """Add its handles."""
+        self._client_handle.add_to_waitset(wait_set)
+
+    def __enter__(self) -> None:
+        self._client_handle.__enter__()
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._client_handle.__exit__(exc_type, exc, traceback)
+
+    # The server
+
+    def server_is_ready(self) -> bool:
+        """Return whether a server is there."""
+        with self._node.handle:
+            return self._client_handle.is_action_server_available()
+
+    def wait_for_server(self, timeout_sec: float | None = None) -> bool:
+        """Block the thread until a server is there; nobody needs to spin.
+
+        Args:
+            timeout_sec: The longest wait in seconds; None for ever.
+
+        Returns:
+            Whether one is there.
+        """
+        ends_ns = None if timeout_sec is None else steady_ns() + timeout_sec * 1e9
+        wakeup = Wakeup()
+        while not self.server_is_ready():
+            if ends_ns is not None and steady_ns() >= ends_ns:
+                return False
+            if not self._node.context.ok():
+                return False
+            wakeup.wait(CHECK_S)
+        return True
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Tell of the calls of its services on ``…/_service_event``."""
+        with self._client_handle:
+            self._client_handle.configure_introspection(
+                clock.handle, service_event_qos_profile, introspection_state
+            )
+
+    def destroy(self) -> None:
+        """Destroy it; its futures are never completed."""
+        self._client_handle.destroy_when_not_in_use()
+        self._node.remove_waitable(self)
+
+
+def expect_goal_handle(value: object) -> None:
+    """Raise TypeError unless `value` is a `ClientGoalHandle`."""
+    if not isinstance(value, ClientGoalHandle):
+        raise TypeError(f"Expected type ClientGoalHandle but received {type(value)}")

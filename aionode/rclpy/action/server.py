@@ -1,0 +1,492 @@
+"""Action servers."""
+
+from __future__ import annotations
+
+import threading
+import traceback as tracebacks
+from functools import partial
+from typing import TYPE_CHECKING, Any, Generic
+
+from aionode.endpoints.actions.goal import (
+    CancelResponse,
+    GoalEvent,
+    GoalResponse,
+    GoalStatus,
+    reason_id,
+)
+from aionode.rclpy._impl.actions import ActionServerHandle, GoalState
+from aionode.rclpy._impl.errors import RCLError
+from aionode.rclpy._impl.typesupport import message_like
+from aionode.rclpy.executors import await_or_execute
+from aionode.rclpy.qos import (
+    QoSProfile,
+    qos_profile_action_status_default,
+    qos_profile_services_default,
+)
+from aionode.rclpy.task import Future
+from aionode.rclpy.type_support import FeedbackT, GoalT, ResultT, check_for_type_support
+from aionode.rclpy.waitable import NumberOfEntities, Waitable
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import TracebackType
+
+    from aionode.rclpy._impl.wait_set import WaitSet
+    from aionode.rclpy.callback_groups import CallbackGroup
+    from aionode.rclpy.clock import Clock
+    from aionode.rclpy.node import Node
+    from aionode.rclpy.service_introspection import ServiceIntrospectionState
+
+__all__ = [
+    "ActionServer",
+    "CancelResponse",
+    "GoalEvent",
+    "GoalResponse",
+    "RCLError",
+    "ServerGoalHandle",
+    "default_cancel_callback",
+    "default_goal_callback",
+    "default_handle_accepted_callback",
+]
+
+FEEDBACK_QOS = QoSProfile(depth=10)
+
+
+class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
+    """A goal that was accepted."""
+
+    def __init__(
+        self,
+        action_server: ActionServer[GoalT, ResultT, FeedbackT],
+        goal_info: Any,
+        goal_request: Any,
+    ) -> None:
+        self._goal_handle: GoalState | None = action_server._handle.add_goal(goal_info)
+        self._action_server = action_server
+        self._goal_info = goal_info
+        self._goal_request = goal_request
+        self._lock = threading.Lock()
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ServerGoalHandle) and self.goal_id == other.goal_id
+
+    __hash__ = None  # type: ignore[assignment] # as in rclpy
+
+    @property
+    def request(self) -> Any:
+        """The goal."""
+        return self._goal_request
+
+    @property
+    def goal_id(self) -> Any:
+        """Its id."""
+        return self._goal_info.goal_id
+
+    @property
+    def is_active(self) -> bool:
+        """Whether it has not ended."""
+        with self._lock:
+            state = self._goal_handle
+            return state is not None and state.is_active
+
+    @property
+    def is_cancel_requested(self) -> bool:
+        """Whether it is to be cancelled."""
+        return self.status == GoalStatus.CANCELING
+
+    @property
+    def status(self) -> int:
+        """Its state."""
+        with self._lock:
+            state = self._goal_handle
+            return int(GoalStatus.UNKNOWN if state is None else state.status)
+
+    def _update_state(self, event: GoalEvent) -> None:
+        with self._lock:
+            if self._goal_handle is None:
+                return
+            self._goal_handle.update(event)
+            self._action_server._handle.publish_status()
+            if not self._goal_handle.is_active:
+                self._action_server.notify_goal_done()
+
+    def execute(self, execute_callback: Callable[[AnyGoalHandle], Any] | None = None) -> None:
+        """Have an executor call the execute callback; by default that of the server."""
+        if not self.is_cancel_requested:  # else the callback itself finds out
+            self._update_state(GoalEvent.EXECUTE)
+        self._action_server.notify_execute(self, execute_callback)
+
+    def publish_feedback(self, feedback: Any) -> None:
+        """Publish feedback.
+
+        Raises:
+            TypeError: it is of another class.
+        """
+        action_type = self._action_server.action_type
+        if not isinstance(feedback, action_type.Feedback):
+            raise TypeError
+        with self._lock:
+            if self._goal_handle is not None:
+                message = action_type.Impl.FeedbackMessage()
+                message.goal_id = self.goal_id
+                message.feedback = feedback
+                self._action_server._handle.feedback.publish(message)
+
+    def succeed(self) -> None:
+        """End it with success."""
+        self._update_state(GoalEvent.SUCCEED)
+
+    def abort(self) -> None:
+        """End it without success."""
+        self._update_state(GoalEvent.ABORT)
+
+    def canceled(self) -> None:
+        """End it as cancelled."""
+        self._update_state(GoalEvent.CANCELED)
+
+    def destroy(self) -> None:
+        """Forget it."""
+        with self._lock:
+            self._goal_handle = None
+
+
+AnyGoalHandle = ServerGoalHandle[Any, Any, Any]
+
+
+def default_handle_accepted_callback(goal_handle: AnyGoalHandle) -> None:
+    """Execute the goal at once."""
+    goal_handle.execute()
+
+
+def default_goal_callback(goal_request: Any) -> GoalResponse:
+    """Accept each goal."""
+    return GoalResponse.ACCEPT
+
+
+def default_cancel_callback(cancel_request: Any) -> CancelResponse:
+    """Reject each request to cancel."""
+    return CancelResponse.REJECT
+
+
+class ActionServer(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT]):
+    """Executes goals.
+
+    Args:
+        node: Its node.
+        action_type: The action class.
+        action_name: Its name.
+        execute_callback: Called with each goal's handle, as a task of the executor; returns the
+            result. A goal that it does not end is aborted.
+        callback_group: The group of the other callbacks.
+        goal_callback: Says whether a goal is accepted.
+        handle_accepted_callback: Called with each accepted goal; by default executes it.
+        cancel_callback: Says whether a goal may be cancelled; by default it may not.
+        goal_service_qos_profile, result_service_qos_profile, cancel_service_qos_profile,
+            feedback_pub_qos_profile, status_pub_qos_profile: QoS of its services and topics.
+        result_timeout: For how many seconds results are kept; negative for ever.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        action_type: Any,
+        action_name: str,
+        execute_callback: Callable[[AnyGoalHandle], Any],
+        *,
+        callback_group: CallbackGroup | None = None,
+        goal_callback: Callable[[Any], Any] | None = default_goal_callback,
+        handle_accepted_callback: (
+            Callable[[AnyGoalHandle], Any] | None
+        ) = default_handle_accepted_callback,
+        cancel_callback: Callable[[AnyGoalHandle], Any] | None = default_cancel_callback,
+        goal_service_qos_profile: QoSProfile = qos_profile_services_default,
+        result_service_qos_profile: QoSProfile = qos_profile_services_default,
+        cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
+        feedback_pub_qos_profile: QoSProfile = FEEDBACK_QOS,
+        status_pub_qos_profile: QoSProfile = qos_profile_action_status_default,
+        result_timeout: float = 10,
+    ) -> None:
+        super().__init__(callback_group or node.default_callback_group)
+        self._lock = threading.Lock()
+        self.register_handle_accepted_callback(handle_accepted_callback)
+        self.register_goal_callback(goal_callback)
+        self.register_cancel_callback(cancel_callback)
+        self.register_execute_callback(execute_callback)
+        check_for_type_support(action_type)
+        self._node = node
+        self._action_type = action_type
+        with node.handle, node.get_clock().handle:
+            self._handle = ActionServerHandle(
+                node.handle,
+                node.get_clock().handle,
+                action_type,
+                action_name,
+                goal_service_qos_profile,
+                result_service_qos_profile,
+                cancel_service_qos_profile,
+                feedback_pub_qos_profile,
+                status_pub_qos_profile,
+                result_timeout,
+            )
+        self._goal_handles: dict[bytes, AnyGoalHandle] = {}
+        self._result_futures: dict[bytes, Future[Any]] = {}
+        self._reasons: dict[bytes, str] = {}  # why goals were aborted
+        self._logger = node.get_logger().get_child("action_server")
+        node.add_waitable(self)
+
+    @property
+    def action_type(self) -> Any:
+        """The action class."""
+        return self._action_type
+
+    # Requests
+
+    async def _execute_goal_request(self, header: Any, request: Any) -> None:
+        goal_id = request.goal_id
+        info = message_like(self._action_type, "action_msgs/msg/GoalInfo")()
+        info.goal_id = goal_id
+        accepted = False
+        if bytes(goal_id.uuid) not in self._handle.goals:
+            answer = await await_or_execute(self._goal_callback, request.goal)
+            if isinstance(answer, GoalResponse):
+                accepted = answer is GoalResponse.ACCEPT
+            else:
+                self._logger.warning(
+                    "Goal request callback did not return a GoalResponse type. Rejecting goal."
+                )
+        goal_handle = self._accept(info, request.goal) if accepted else None
+        response = self._action_type.Impl.SendGoalService.Response()
+        response.accepted = goal_handle is not None
+        response.stamp = info.stamp
+        self._handle.goal.service_send_response(response, header.request_id)
+        if goal_handle is not None:
+            self._handle.publish_status()
+            await await_or_execute(self._handle_accepted_callback, goal_handle)
+
+    def _accept(self, info: Any, goal: Any) -> AnyGoalHandle | None:
+        now = self._node.get_clock().now().to_msg()  # its class may be of the other family
+        info.stamp.sec, info.stamp.nanosec = now.sec, now.nanosec
+        try:
+            with self._lock:
+                goal_handle: AnyGoalHandle = ServerGoalHandle(self, info, goal)
+        except RCLError as error:
+            self._logger.error(  # noqa: TRY400  # as above
+                f"Failed to accept new goal with ID {info.goal_id.uuid}: {error}"
+            )
+            return None
+        goal_id = bytes(info.goal_id.uuid)
+        self._goal_handles[goal_id] = goal_handle
+        result: Future[Any] = Future()
+        self._result_futures[goal_id] = result
+        self.add_future(result)
+        return goal_handle
+
+    async def _execute_goal(
+        self,
+        execute_callback: Callable[[AnyGoalHandle], Any],
+        goal_handle: AnyGoalHandle,
+    ) -> None:
+        goal_id = goal_handle.goal_id.uuid
+        # Kept, as the goal may expire before the callback returns, while clients wait.
+        future = self._result_futures[bytes(goal_id)]
+        try:
+            result = await await_or_execute(execute_callback, goal_handle)
+        except Exception as error:  # noqa: BLE001  # the client gets an empty result
+            result = self._action_type.Result()
+            self._reasons[bytes(goal_id)] = f"{type(error).__name__}: {error}"
+            self._logger.error(  # noqa: TRY400  # rclpy's loggers have no exception()
+                f"Error raised in execute callback: {error}"
+            )
+            tracebacks.print_exc()
+        if goal_handle.is_active:
+            self._logger.warning(f"Goal state not set, assuming aborted. Goal ID: {goal_id}")
+            goal_handle.abort()
+        response = self._action_type.Impl.GetResultService.Response()
+        response.status = goal_handle.status
+        response.result = result
+        future.set_result(response)
+
+    async def _execute_cancel_request(self, header: Any, request: Any) -> None:
+        with self._lock:
+            response = self._handle.process_cancel_request(request)
+        canceling = []
+        for info in response.goals_canceling:
+            goal_handle = self._goal_handles.get(bytes(info.goal_id.uuid))
+            if goal_handle is None:
+                continue
+            answer = await await_or_execute(self._cancel_callback, goal_handle)
+            if answer is not CancelResponse.ACCEPT:
+                continue
+            try:
+                goal_handle._update_state(GoalEvent.CANCEL_GOAL)
+            except RCLError as error:  # it has ended meanwhile
+                self._logger.debug(f"Failed to cancel goal in cancel callback: {error}")
+            else:
+                canceling.append(info)
+        response.goals_canceling = canceling
+        self._handle.cancel.service_send_response(response, header.request_id)
+
+    def _execute_get_result_request(self, header: Any, request: Any) -> None:
+        goal_id = bytes(request.goal_id.uuid)
+        future = self._result_futures.get(goal_id)
+        if reason_id(goal_id) in self._reasons:  # a client of aionode asks
+            reason = self._reasons[reason_id(goal_id)]
+            self._handle.result.service_send_error("AbortReason", reason, header.request_id)
+            return
+        if goal_id not in self._goal_handles or future is None:
+            is_question = reason_id(goal_id) in self._goal_handles  # of a client of aionode
+            tell = self._logger.debug if is_question else self._logger.warning
+            tell(f"Sending result response for unknown or expired goal ID: {request.goal_id.uuid}")
+            response = self._action_type.Impl.GetResultService.Response()
+            response.status = int(GoalStatus.UNKNOWN)
+            self._handle.result.service_send_response(response, header.request_id)
+            return
+        future.add_done_callback(partial(self._send_result_response, header))
+
+    def _send_result_response(self, header: Any, future: Future[Any]) -> None:
+        result = future.result()
+        if result is not None:
+            self._handle.result.service_send_response(result, header.request_id)
+
+    def _expire_goals(self, expired: list[Any]) -> None:
+        for info in expired:
+            goal_id = bytes(info.goal_id.uuid)
+            goal_handle = self._goal_handles.pop(goal_id, None)
+            if goal_handle is not None:
+                goal_handle.destroy()
+            self._reasons.pop(goal_id, None)
+            future = self._result_futures.pop(goal_id, None)
+            if future is not None:
+                self.remove_future(future)
+
+    # What executors call
+
+    def is_ready(self, wait_set: WaitSet) -> bool:
+        """Return whether a request has come, or a goal is to be forgotten."""
+        handle = self._handle
+        return any(
+            part.ready() for part in (handle.goal, handle.cancel, handle.result, handle.expiry)
+        )
+
+    def take_data(self) -> dict[str, Any]:
+        """Take one of each."""
+        handle = self._handle
+        data: dict[str, Any] = {}
+        with self._lock:
+            for name, service in (
+                ("goal", handle.goal),
+                ("cancel", handle.cancel),
+                ("result", handle.result),
+            ):
+                request, header = service.service_take_request(None)
+                if header is not None:
+                    data[name] = (header, request)
+            if handle.expiry.ready():
+                data["expired"] = handle.expire_goals()
+        return data
+
+    async def execute(self, taken_data: dict[str, Any]) -> None:
+        """Answer requests, and forget goals."""
+        for name, service, answer in (
+            ("goal", self._handle.goal, self._execute_goal_request),
+            ("cancel", self._handle.cancel, self._execute_cancel_request),
+        ):
+            if name in taken_data:
+                header, request = taken_data[name]
+                try:
+                    await answer(header, request)
+                finally:  # a callback of the user's may have failed
+                    service.give_up(header.request_id)
+        if "result" in taken_data:
+            self._execute_get_result_request(*taken_data["result"])
+        if "expired" in taken_data:
+            self._expire_goals(taken_data["expired"])
+
+    def get_num_entities(self) -> NumberOfEntities:
+        """Return how many handles it adds to a wait set."""
+        return NumberOfEntities(num_timers=1, num_services=3)
+
+    def add_to_wait_set(self, wait_set: WaitSet) -> None:
+        """Add its handles."""
+        self._handle.add_to_waitset(wait_set)
+
+    def __enter__(self) -> None:
+        self._handle.__enter__()
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._handle.__exit__(exc_type, exc, traceback)
+
+    # For goals
+
+    def notify_execute(
+        self,
+        goal_handle: AnyGoalHandle,
+        execute_callback: Callable[[AnyGoalHandle], Any] | None,
+    ) -> None:
+        """Have the executor call a callback with a goal; by default that of the server."""
+        executor = self._node.executor
+        if executor is not None:
+            executor.create_task(
+                self._execute_goal, execute_callback or self._execute_callback, goal_handle
+            )
+
+    def notify_goal_done(self) -> None:
+        """Note that a goal has ended."""
+        with self._lock:
+            self._handle.notify_goal_done()
+
+    # Callbacks
+
+    def register_handle_accepted_callback(
+        self, handle_accepted_callback: Callable[[AnyGoalHandle], Any] | None
+    ) -> None:
+        """Call this with each accepted goal; None for the default."""
+        self._handle_accepted_callback = (
+            handle_accepted_callback or default_handle_accepted_callback
+        )
+
+    def register_goal_callback(self, goal_callback: Callable[[Any], Any] | None) -> None:
+        """Ask this whether a goal is accepted; None for the default."""
+        self._goal_callback = goal_callback or default_goal_callback
+
+    def register_cancel_callback(
+        self, cancel_callback: Callable[[AnyGoalHandle], Any] | None
+    ) -> None:
+        """Ask this whether a goal may be cancelled; None for the default."""
+        self._cancel_callback = cancel_callback or default_cancel_callback
+
+    def register_execute_callback(self, execute_callback: Callable[[AnyGoalHandle], Any]) -> None:
+        """Call this to execute goals.
+
+        Raises:
+            TypeError: it is not callable.
+        """
+        if not callable(execute_callback):
+            raise TypeError("Failed to register goal execution callback: not callable")
+        self._execute_callback = execute_callback
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Tell of the calls of its services on ``…/_service_event``."""
+        with self._handle:
+            self._handle.configure_introspection(
+                clock.handle, service_event_qos_profile, introspection_state
+            )
+
+    def destroy(self) -> None:
+        """Destroy it; what it executes goes on, without effect on clients."""
+        for goal_handle in list(self._goal_handles.values()):
+            goal_handle.destroy()
+        for result in list(self._result_futures.values()):
+            self.remove_future(result)
+        self._handle.destroy_when_not_in_use()
+        self._node.remove_waitable(self)

@@ -1,0 +1,203 @@
+"""Service clients."""
+
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
+
+from aionode.clock import MachineTime
+from aionode.rclpy._impl.destroyable import Wakeup
+from aionode.rclpy.task import Future
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from aionode.rclpy._impl.services import ClientHandle
+    from aionode.rclpy.callback_groups import CallbackGroup
+    from aionode.rclpy.clock import Clock
+    from aionode.rclpy.context import Context
+    from aionode.rclpy.qos import QoSProfile
+    from aionode.rclpy.service_introspection import ServiceIntrospectionState
+
+__all__ = ["Client"]
+
+RequestT = TypeVar("RequestT")
+ResponseT = TypeVar("ResponseT")
+
+steady_ns = MachineTime().steady_ns
+
+CHECK_S = 0.05
+"""How often `wait_for_service` looks."""
+
+
+class Client(Generic[RequestT, ResponseT]):
+    """Calls a service. Made by `Node.create_client`.
+
+    Attributes:
+        context: Its context.
+        srv_type: The service class.
+        srv_name: The name it was made with.
+        qos_profile: Its profile.
+        callback_group: Its group.
+    """
+
+    def __init__(
+        self,
+        context: Context,
+        client_impl: ClientHandle,
+        srv_type: Any,
+        srv_name: str,
+        qos_profile: QoSProfile,
+        callback_group: CallbackGroup,
+    ) -> None:
+        self.context = context
+        self._handle = client_impl
+        self.srv_type = srv_type
+        self.srv_name = srv_name
+        self.qos_profile = qos_profile
+        self._pending_requests: dict[int, Future[ResponseT]] = {}
+        self.callback_group = callback_group
+        self._executor_event = False
+        self._lock = threading.Lock()
+
+    def call(self, request: RequestT, timeout_sec: float | None = None) -> ResponseT | None:
+        """Send a request and block the thread until the response is here.
+
+        It may be called in a callback: nobody needs to spin the client's node. The server must be
+        able to answer meanwhile, so it must not be served by the same single-threaded executor.
+
+        Args:
+            request: The request.
+            timeout_sec: The longest wait in seconds; None for ever.
+
+        Raises:
+            TypeError: `request` is of another class.
+            TimeoutError: no response came in time; a later one is dropped.
+        """
+        if not isinstance(request, self.srv_type.Request):
+            raise TypeError
+        wakeup = Wakeup()
+        responses: list[bytes] = []
+
+        def take(data: bytes) -> None:
+            responses.append(data)
+            wakeup.wake()
+
+        with self._handle:
+            with self._lock:
+                sequence = self._handle.send_request(request, take)
+            if not wakeup.wait(timeout_sec):
+                self._handle.forget(sequence)
+                if not responses:
+                    raise TimeoutError
+            response: ResponseT = self._handle.receive(sequence, responses[0])
+        return response
+
+    def call_async(self, request: RequestT) -> Future[ResponseT]:
+        """Send a request, and return a future of the response; an executor completes it.
+
+        Raises:
+            TypeError: `request` is of another class.
+        """
+        if not isinstance(request, self.srv_type.Request):
+            raise TypeError
+        future: Future[ResponseT] = Future()
+        with self._lock, self._handle:
+            sequence = self._handle.send_request(request)
+            self._pending_requests[sequence] = future
+        future.add_done_callback(self.remove_pending_request)
+        return future
+
+    def get_pending_request(self, sequence_number: int) -> Future[ResponseT]:
+        """Return the future of a request.
+
+        Raises:
+            KeyError: it is answered, or was given up.
+        """
+        with self._lock:
+            return self._pending_requests[sequence_number]
+
+    def remove_pending_request(self, future: Future[ResponseT]) -> None:
+        """Give a request up; its future is never completed."""
+        with self._lock:
+            for sequence, pending in self._pending_requests.items():
+                if pending is future:
+                    del self._pending_requests[sequence]
+                    if not future.done():
+                        self._handle.forget(sequence)
+                    break
+
+    def service_is_ready(self) -> bool:
+        """Return whether a server is there."""
+        with self.handle:
+            return self._handle.service_server_is_available()
+
+    def wait_for_service(self, timeout_sec: float | None = None) -> bool:
+        """Block the thread until a server is there; nobody needs to spin.
+
+        Args:
+            timeout_sec: The longest wait in seconds; None for ever.
+
+        Returns:
+            Whether one is there.
+        """
+        ends_ns = None if timeout_sec is None else steady_ns() + timeout_sec * 1e9
+        wakeup = Wakeup()
+        while not self.service_is_ready():
+            left_s = CHECK_S
+            if ends_ns is not None:
+                left_s = min(left_s, (ends_ns - steady_ns()) / 1e9)
+            if left_s <= 0 or not self.context.ok():
+                return False
+            wakeup.wait(left_s)
+        return True
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Tell of calls on ``<service>/_service_event``.
+
+        Args:
+            clock: Where the stamps come from.
+            service_event_qos_profile: QoS of that topic.
+            introspection_state: What is told.
+        """
+        with self._handle:
+            self._handle.configure_introspection(
+                clock.handle, service_event_qos_profile, introspection_state
+            )
+
+    @property
+    def handle(self) -> ClientHandle:
+        """The handle."""
+        return self._handle
+
+    @property
+    def service_name(self) -> str:
+        """The full name of the service."""
+        with self.handle:
+            return self._handle.service_name
+
+    @property
+    def logger_name(self) -> str:
+        """The name of the node's logger."""
+        with self.handle:
+            return self._handle.get_logger_name()
+
+    def destroy(self) -> None:
+        """Destroy it. Use `Node.destroy_client`."""
+        self._handle.destroy_when_not_in_use()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.destroy()

@@ -1,0 +1,5 @@
+"""Types of clocks."""
+
+from aionode.clock import ClockType
+
+__all__ = ["ClockType"]

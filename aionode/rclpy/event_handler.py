@@ -1,0 +1,288 @@
+"""What is called when something happens to a publisher or subscription itself."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Any
+
+from aionode.rclpy._impl.errors import UnsupportedEventTypeError
+from aionode.rclpy._impl.events import (
+    DeadlineMissed,
+    EventHandle,
+    IncompatibleQoS,
+    IncompatibleType,
+    LivelinessChanged,
+    LivelinessLost,
+    Matched,
+    MessageLost,
+    PublisherEventType,
+    SubscriptionEventType,
+)
+from aionode.rclpy.waitable import NumberOfEntities, Waitable
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from enum import IntEnum
+    from types import TracebackType
+
+    from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle
+    from aionode.rclpy._impl.wait_set import WaitSet
+    from aionode.rclpy.callback_groups import CallbackGroup
+
+__all__ = [
+    "EventHandler",
+    "IncompatibleTypeInfo",
+    "PublisherEventCallbacks",
+    "QoSEventHandler",
+    "QoSLivelinessChangedInfo",
+    "QoSLivelinessLostInfo",
+    "QoSMessageLostInfo",
+    "QoSOfferedDeadlineMissedInfo",
+    "QoSOfferedIncompatibleQoSInfo",
+    "QoSPublisherEventType",
+    "QoSPublisherMatchedInfo",
+    "QoSRequestedDeadlineMissedInfo",
+    "QoSRequestedIncompatibleQoSInfo",
+    "QoSSubscriptionEventType",
+    "QoSSubscriptionMatchedInfo",
+    "SubscriptionEventCallbacks",
+    "UnsupportedEventTypeError",
+]
+
+QoSPublisherEventType = PublisherEventType
+QoSSubscriptionEventType = SubscriptionEventType
+QoSRequestedDeadlineMissedInfo = DeadlineMissed
+QoSOfferedDeadlineMissedInfo = DeadlineMissed
+QoSLivelinessChangedInfo = LivelinessChanged
+QoSLivelinessLostInfo = LivelinessLost
+QoSMessageLostInfo = MessageLost
+QoSRequestedIncompatibleQoSInfo = IncompatibleQoS
+QoSOfferedIncompatibleQoSInfo = IncompatibleQoS
+QoSSubscriptionMatchedInfo = Matched
+QoSPublisherMatchedInfo = Matched
+IncompatibleTypeInfo = IncompatibleType
+
+
+class EventHandler(Waitable[Any]):
+    """Has an executor call `callback` when something has happened.
+
+    Attributes:
+        event_type: What.
+        callback: Called with its status.
+    """
+
+    def __init__(
+        self,
+        *,
+        callback_group: CallbackGroup,
+        callback: Callable[..., Any],
+        event_type: IntEnum,
+        parent_impl: PublisherHandle | SubscriptionHandle,
+    ) -> None:
+        super().__init__(callback_group)
+        self.event_type = event_type
+        self.callback = callback
+        with parent_impl:
+            self._event = EventHandle(parent_impl, event_type)
+        self._index: int | None = None
+        self._ready_to_take_data = False
+
+    def is_ready(self, wait_set: WaitSet) -> bool:
+        """Return whether something has happened."""
+        if self._index is not None and wait_set.is_ready("event", self._index):
+            self._ready_to_take_data = True
+        return self._ready_to_take_data
+
+    def take_data(self) -> Any:
+        """Return the status, or None if nothing has happened."""
+        if not self._ready_to_take_data:
+            return None
+        self._ready_to_take_data = False
+        with self._event:
+            return self._event.take_event()
+
+    async def execute(self, taken_data: Any) -> None:
+        """Call the callback."""
+        if taken_data is not None:
+            result = self.callback(taken_data)
+            if hasattr(result, "__await__"):
+                await result
+
+    def get_num_entities(self) -> NumberOfEntities:
+        """Return how many handles it adds to a wait set: one."""
+        return NumberOfEntities(num_events=1)
+
+    def add_to_wait_set(self, wait_set: WaitSet) -> None:
+        """Add its handle."""
+        with self._event:
+            self._index = wait_set.add_event(self._event)
+
+    def __enter__(self) -> None:
+        self._event.__enter__()
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._event.__exit__(exc_type, exc, traceback)
+
+    def destroy(self) -> None:
+        """Destroy it; its publisher or subscription does that."""
+        self._event.destroy_when_not_in_use()
+
+
+class QoSEventHandler(EventHandler):
+    """The former name of `EventHandler`."""
+
+    def __init__(self, **options: Any) -> None:
+        warnings.warn(
+            "QoSEventHandler is deprecated, use EventHandler instead.",
+            DeprecationWarning,
+            stacklevel=2,
+        )
+        super().__init__(**options)
+
+
+class DefaultHandler(EventHandler):
+    """Stands for a default callback, which logs that types or QoS do not fit.
+
+    The context itself reports that, once for each pair of endpoints, so no executor waits for it.
+    """
+
+    def __init__(self, event_type: IntEnum) -> None:
+        self.event_type = event_type
+        self.callback = print
+
+    def destroy(self) -> None:
+        """Do nothing."""
+
+
+class EventCallbacks:
+    """The callbacks for one endpoint."""
+
+    def __init__(self, use_default_callbacks: bool) -> None:
+        self.use_default_callbacks = use_default_callbacks
+
+    def handlers(
+        self,
+        group: CallbackGroup,
+        parent: PublisherHandle | SubscriptionHandle,
+        wanted: list[tuple[Callable[..., Any] | None, IntEnum, bool]],
+    ) -> list[EventHandler]:
+        """Return a handler for each callback that is given, or has a default."""
+        made: list[EventHandler] = []
+        for callback, event_type, has_default in wanted:
+            if callback:
+                made.append(
+                    EventHandler(
+                        callback_group=group,
+                        callback=callback,
+                        event_type=event_type,
+                        parent_impl=parent,
+                    )
+                )
+            elif has_default and self.use_default_callbacks:
+                made.append(DefaultHandler(event_type))
+        return made
+
+
+class SubscriptionEventCallbacks(EventCallbacks):
+    """What is called when something happens to a subscription; each gets a status.
+
+    Attributes:
+        deadline: No message has come within the deadline.
+        incompatible_qos: A publisher's QoS does not fit.
+        liveliness: A publisher has come, gone, or not shown in time that it is alive.
+        message_lost: A message was lost.
+        incompatible_type: A publisher has another type.
+        matched: A publisher was matched, or has gone.
+    """
+
+    def __init__(
+        self,
+        *,
+        deadline: Callable[[DeadlineMissed], Any] | None = None,
+        incompatible_qos: Callable[[IncompatibleQoS], Any] | None = None,
+        liveliness: Callable[[LivelinessChanged], Any] | None = None,
+        message_lost: Callable[[MessageLost], Any] | None = None,
+        incompatible_type: Callable[[IncompatibleType], Any] | None = None,
+        matched: Callable[[Matched], Any] | None = None,
+        use_default_callbacks: bool = True,
+    ) -> None:
+        super().__init__(use_default_callbacks)
+        self.deadline = deadline
+        self.incompatible_qos = incompatible_qos
+        self.liveliness = liveliness
+        self.message_lost = message_lost
+        self.incompatible_type = incompatible_type
+        self.matched = matched
+
+    def create_event_handlers(
+        self, callback_group: CallbackGroup, subscription: SubscriptionHandle, topic_name: str
+    ) -> list[EventHandler]:
+        """Return the handlers of a subscription."""
+        kinds = SubscriptionEventType
+        return self.handlers(
+            callback_group,
+            subscription,
+            [
+                (self.deadline, kinds.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED, False),
+                (
+                    self.incompatible_qos,
+                    kinds.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS,
+                    True,
+                ),
+                (self.liveliness, kinds.RCL_SUBSCRIPTION_LIVELINESS_CHANGED, False),
+                (self.message_lost, kinds.RCL_SUBSCRIPTION_MESSAGE_LOST, False),
+                (self.incompatible_type, kinds.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE, True),
+                (self.matched, kinds.RCL_SUBSCRIPTION_MATCHED, False),
+            ],
+        )
+
+
+class PublisherEventCallbacks(EventCallbacks):
+    """What is called when something happens to a publisher; each gets a status.
+
+    Attributes:
+        deadline: No message was published within the deadline.
+        liveliness: It has not shown in time that it is alive.
+        incompatible_qos: A subscription's QoS does not fit.
+        incompatible_type: A subscription has another type.
+        matched: A subscription was matched, or has gone.
+    """
+
+    def __init__(
+        self,
+        *,
+        deadline: Callable[[DeadlineMissed], Any] | None = None,
+        liveliness: Callable[[LivelinessLost], Any] | None = None,
+        incompatible_qos: Callable[[IncompatibleQoS], Any] | None = None,
+        incompatible_type: Callable[[IncompatibleType], Any] | None = None,
+        matched: Callable[[Matched], Any] | None = None,
+        use_default_callbacks: bool = True,
+    ) -> None:
+        super().__init__(use_default_callbacks)
+        self.deadline = deadline
+        self.liveliness = liveliness
+        self.incompatible_qos = incompatible_qos
+        self.incompatible_type = incompatible_type
+        self.matched = matched
+
+    def create_event_handlers(
+        self, callback_group: CallbackGroup, publisher: PublisherHandle, topic_name: str
+    ) -> list[EventHandler]:
+        """Return the handlers of a publisher."""
+        kinds = PublisherEventType
+        return self.handlers(
+            callback_group,
+            publisher,
+            [
+                (self.deadline, kinds.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED, False),
+                (self.liveliness, kinds.RCL_PUBLISHER_LIVELINESS_LOST, False),
+                (self.incompatible_qos, kinds.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS, True),
+                (self.incompatible_type, kinds.RCL_PUBLISHER_INCOMPATIBLE_TYPE, True),
+                (self.matched, kinds.RCL_PUBLISHER_MATCHED, False),
+            ],
+        )

@@ -1,0 +1,585 @@
+"""Executors: plain loops in the threads that spin, which call the callbacks of nodes.
+
+Input and output happen elsewhere, in the thread of the context; what arrives waits in the handles
+of the entities until an executor takes it.
+"""
+
+from __future__ import annotations
+
+import inspect
+import os
+import threading
+import warnings
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING, Any, Self
+
+from aionode.clock import MachineTime
+from aionode.rclpy._impl.destroyable import Wakeup
+from aionode.rclpy._impl.errors import InvalidHandle
+from aionode.rclpy._impl.wait_set import WaitSet
+from aionode.rclpy._taking import (
+    await_or_execute,
+    take_client,
+    take_guard_condition,
+    take_service,
+    take_subscription,
+    take_timer,
+    take_waitable,
+)
+from aionode.rclpy.task import Future, Task
+from aionode.rclpy.utilities import get_default_context
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Iterable
+    from types import TracebackType
+
+    from aionode.rclpy._protocols import NodeLike
+    from aionode.rclpy.callback_groups import Entity
+    from aionode.rclpy.context import Context
+
+__all__ = [
+    "ConditionReachedException",
+    "Executor",
+    "ExternalShutdownException",
+    "MultiThreadedExecutor",
+    "ShutdownException",
+    "SingleThreadedExecutor",
+    "TimeoutException",
+    "TimeoutObject",
+    "await_or_execute",
+]
+
+steady_ns = MachineTime().steady_ns
+
+
+class TimeoutException(Exception):  # noqa: N818  # rclpy's name
+    """Nothing became ready in time."""
+
+
+class ShutdownException(Exception):  # noqa: N818  # rclpy's name
+    """The executor is shut down."""
+
+
+class ExternalShutdownException(Exception):  # noqa: N818  # rclpy's name
+    """The context is shut down."""
+
+
+class ConditionReachedException(Exception):  # noqa: N818  # rclpy's name
+    """The future that was waited for is done."""
+
+
+class TimeoutObject:
+    """A time limit in seconds that may change while it is used."""
+
+    def __init__(self, timeout: float) -> None:
+        self._timeout = timeout
+
+    @property
+    def timeout(self) -> float:
+        """The limit."""
+        return self._timeout
+
+    @timeout.setter
+    def timeout(self, timeout: float) -> None:
+        self._timeout = timeout
+
+
+def never() -> bool:
+    """Return False."""
+    return False
+
+
+Take = Callable[["Executor", Any], "Callable[[], Any] | None"]
+Ready = tuple["Entity", "NodeLike", Take]
+Work = tuple[Task[Any], "Entity | None", "NodeLike | None"]
+
+
+class Executor:
+    """Base of all executors. Subclasses define `spin_once`, with `wait_for_ready_callbacks`.
+
+    Args:
+        context: Its context; the default one by default.
+    """
+
+    def __init__(self, *, context: Context | None = None) -> None:
+        self._context = get_default_context() if context is None else context
+        self._nodes: dict[NodeLike, None] = {}
+        self._nodes_lock = threading.RLock()
+        self._tasks: list[Work] = []
+        self._tasks_lock = threading.Lock()
+        self._wakeup = Wakeup()
+        self._is_shutdown = False
+        self._shutdown_lock = threading.Lock()
+        self._cb_iter: Generator[Work, None, None] | None = None
+        self._last_args: tuple[Any, ...] = ()
+        if self._context.handle is None:
+            raise RuntimeError("Context must be initialized a GuardCondition can be created")
+        self._context.handle.refuse_if_over("guard_condition")
+        self._context.handle.signal.add(self._wakeup)
+        self._context.on_shutdown(self.wake)
+
+    @property
+    def context(self) -> Context:
+        """The context."""
+        return self._context
+
+    # Tasks
+
+    def create_task(self, callback: Callable[..., Any], *args: Any, **kwargs: Any) -> Task[Any]:
+        """Have a function or coroutine run while the executor spins; return its future."""
+        task: Task[Any] = Task(callback, args, kwargs, executor=self)
+        with self._tasks_lock:
+            self._tasks.append((task, None, None))
+        self.wake()
+        return task
+
+    def create_future(self) -> Future[Any]:
+        """Return a future whose done callbacks are tasks of this executor."""
+        return Future(executor=self)
+
+    # Nodes
+
+    def add_node(self, node: NodeLike) -> bool:
+        """Call the callbacks of `node` from now on; its former executor no longer does.
+
+        Returns:
+            Whether it is new here.
+        """
+        with self._nodes_lock:
+            if node in self._nodes:
+                return False
+            self._nodes[node] = None
+            node.executor = self
+            node.handle.signal.add(self._wakeup)
+        self.wake()
+        return True
+
+    def remove_node(self, node: NodeLike) -> None:
+        """Call the callbacks of `node` no longer."""
+        with self._nodes_lock:
+            if node in self._nodes:
+                del self._nodes[node]
+                node.handle.signal.remove(self._wakeup)
+        self.wake()
+
+    def get_nodes(self) -> list[NodeLike]:
+        """Return the nodes."""
+        with self._nodes_lock:
+            return list(self._nodes)
+
+    def wake(self) -> None:
+        """Have it look again at what is ready; any thread may call this."""
+        self._wakeup.wake()
+
+    def shutdown(self, timeout_sec: float | None = None) -> bool:
+        """Begin no more callbacks, and let go of the nodes.
+
+        As in rclpy, it does not wait for callbacks that run: it may be called in one.
+
+        Args:
+            timeout_sec: Ignored.
+
+        Returns:
+            True.
+        """
+        with self._shutdown_lock:
+            self._is_shutdown = True
+        self.wake()
+        for node in self.get_nodes():
+            self.remove_node(node)
+        if self._context.handle is not None:
+            self._context.handle.signal.remove(self._wakeup)
+        self._cb_iter = None
+        return True
+
+    # Spinning
+
+    def spin(self) -> None:
+        """Call callbacks until the executor or its context is shut down."""
+        while self._context.ok() and not self._is_shutdown:
+            self.spin_once()
+
+    def spin_until_future_complete(
+        self, future: Future[Any], timeout_sec: float | None = None
+    ) -> None:
+        """Call callbacks until `future` is done.
+
+        Args:
+            future: The future.
+            timeout_sec: The longest time in seconds; None or negative for ever.
+        """
+        # With an executor of its own, that is one of its tasks: a call more for `spin_once`.
+        future.add_done_callback(lambda _: self.wake())
+        if timeout_sec is None or timeout_sec < 0:
+            while self._goes_on(future):
+                self._spin_once_until_future_complete(future, timeout_sec)
+            return
+        ends_ns = steady_ns() + timeout_sec * 1e9
+        left = TimeoutObject(timeout_sec)
+        while self._goes_on(future):
+            self._spin_once_until_future_complete(future, left)
+            left_ns = ends_ns - steady_ns()
+            if left_ns <= 0:
+                return
+            left.timeout = left_ns / 1e9
+
+    def _goes_on(self, future: Future[Any]) -> bool:
+        return (
+            self._context.ok()
+            and not future.done()
+            and not future.cancelled()
+            and not self._is_shutdown
+        )
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        """Wait for one callback and call it. Only one thread may do this at a time.
+
+        Args:
+            timeout_sec: The longest wait in seconds; None or negative for ever.
+        """
+        raise NotImplementedError
+
+    def spin_once_until_future_complete(
+        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
+    ) -> None:
+        """Wait for one callback and call it, but no longer than until `future` is done."""
+        raise NotImplementedError
+
+    def _spin_once_until_future_complete(
+        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
+    ) -> None:
+        raise NotImplementedError
+
+    def can_execute(self, entity: Entity) -> bool:
+        """Return whether a callback of an entity may begin: none is about to, its group agrees."""
+        return (
+            not entity._executor_event
+            and entity.callback_group is not None
+            and entity.callback_group.can_execute(entity)
+        )
+
+    def wait_for_ready_callbacks(
+        self,
+        timeout_sec: float | TimeoutObject | None = None,
+        nodes: list[NodeLike] | None = None,
+        condition: Callable[[], bool] = never,
+    ) -> Work:
+        """Wait for a callback that is ready, and return a task that calls it.
+
+        What is ready is collected in rounds: waitables, timers, subscriptions, guard conditions,
+        clients, services, of each at most one call.
+
+        Args:
+            timeout_sec: The longest wait in seconds; None or negative for ever.
+            nodes: The nodes to look at; by default those of this executor.
+            condition: Ends the wait when it is true.
+
+        Returns:
+            The task, its entity and node; the latter are None for tasks of `create_task`.
+
+        Raises:
+            TimeoutException: nothing was ready in time.
+            ShutdownException: the executor is shut down.
+            ExternalShutdownException: the context is shut down.
+            ConditionReachedException: the condition is true.
+        """
+        args = (timeout_sec, nodes, condition)
+        while True:
+            if self._cb_iter is None or self._last_args != args:
+                self._last_args = args
+                self._cb_iter = self._wait_for_ready_callbacks(timeout_sec, nodes, condition)
+            try:
+                return next(self._cb_iter)
+            except StopIteration:
+                self._cb_iter = None
+
+    def _wait_for_ready_callbacks(
+        self,
+        timeout_sec: float | TimeoutObject | None = None,
+        nodes: list[NodeLike] | None = None,
+        condition: Callable[[], bool] = never,
+    ) -> Generator[Work, None, None]:
+        """Yield the callbacks of one round, after waiting until there is one."""
+        if isinstance(timeout_sec, TimeoutObject):
+            timeout_sec = timeout_sec.timeout
+        ends_ns = None
+        if timeout_sec is not None and timeout_sec >= 0:
+            ends_ns = steady_ns() + int(timeout_sec * 1e9)
+        yielded = False
+        while not yielded:
+            self._raise_if_over(condition)
+            used = self.get_nodes() if nodes is None else nodes
+            for work in self._unfinished(used):
+                yielded = True
+                yield work
+            ready = self._ready(used)
+            if not ready and not yielded:
+                left_ns = None if ends_ns is None else ends_ns - steady_ns()
+                if left_ns is None or left_ns > 0:
+                    self._wait(used, left_ns)
+                    self._raise_if_over(never)
+                    ready = self._ready(used)
+            # Before the calls, which may take longer than the limit.
+            over = ends_ns is not None and (timeout_sec == 0 or steady_ns() >= ends_ns)
+            for entity, node, take in ready:
+                # A call of this round may have begun another one, of the same group.
+                if self.can_execute(entity):
+                    yielded = True
+                    yield self._make_handler(entity, node, take), entity, node
+            if over:
+                raise TimeoutException
+
+    def _raise_if_over(self, condition: Callable[[], bool]) -> None:
+        if self._is_shutdown:
+            self.wake()  # another thread may wait, too
+            raise ShutdownException
+        if not self._context.ok():
+            self.wake()
+            raise ExternalShutdownException
+        if condition():
+            raise ConditionReachedException
+
+    def _unfinished(self, nodes: list[NodeLike]) -> Iterable[Work]:
+        """Yield the tasks that can go on, and forget those that are done."""
+        with self._tasks_lock:
+            if not self._tasks:
+                return
+            self._tasks = [
+                work for work in self._tasks if not (work[0].done() or work[0].cancelled())
+            ]
+            tasks = list(self._tasks)
+        for work in tasks:
+            task, _, node = work
+            if (
+                task._can_go_on()
+                and not task.executing()
+                and not task._scheduled
+                and not task.done()
+                and (node is None or node in nodes)
+            ):
+                yield work
+
+    def _ready(self, nodes: list[NodeLike]) -> list[Ready]:
+        """Return what is ready now, in the order of a round."""
+        found: list[Ready] = []
+        can_execute = self.can_execute
+        for node in nodes:
+            waitables = [each for each in node._waitables if can_execute(each)]
+            if waitables:
+                found += self._ready_waitables(waitables, node)
+        for node in nodes:
+            for entities, take in (
+                (node._timers, take_timer),
+                (node._subscriptions, take_subscription),
+                (node._guards, take_guard_condition),
+                (node._clients, take_client),
+                (node._services, take_service),
+            ):
+                for entity in entities:
+                    if entity.handle.ready() and can_execute(entity):
+                        found.append((entity, node, take))
+        return found
+
+    def _ready_waitables(self, waitables: list[Any], node: NodeLike) -> list[Ready]:
+        found: list[Ready] = []
+        for waitable in waitables:
+            wait_set = self._wait_set([waitable])
+            wait_set.look()
+            if waitable.is_ready(wait_set):
+                found.append((waitable, node, take_waitable))
+        return found
+
+    def _wait_set(self, waitables: list[Any]) -> WaitSet:
+        wait_set = WaitSet(0, 0, 0, 0, 0, 0, self._context.handle)  # type: ignore[arg-type] # it is initialised
+        for waitable in waitables:
+            try:
+                with waitable:
+                    waitable.add_to_wait_set(wait_set)
+            except InvalidHandle:
+                continue
+        return wait_set
+
+    def _wait(self, nodes: list[NodeLike], left_ns: int | None) -> None:
+        """Wait until something may be ready, or the time has passed."""
+        waits = [] if left_ns is None else [left_ns]
+        for node in nodes:
+            for timer in node._timers:
+                # One whose group is busy is waited for by that group's end.
+                if self.can_execute(timer):
+                    due_ns = timer.handle.due_in_ns()
+                    if due_ns is not None:
+                        waits.append(due_ns)
+        waitables = [each for node in nodes for each in node._waitables if self.can_execute(each)]
+        wait_set = self._wait_set(waitables) if waitables else None
+        if wait_set is not None:
+            due_ns = wait_set.due_in_ns()
+            if due_ns is not None:
+                waits.append(due_ns)
+            wait_set.watch(self._wakeup)
+        try:
+            if not self._may_be_ready(wait_set):
+                self._wakeup.wait(max(0, min(waits)) / 1e9 if waits else None)
+        finally:
+            if wait_set is not None:
+                wait_set.unwatch(self._wakeup)
+
+    def _may_be_ready(self, wait_set: WaitSet | None) -> bool:
+        """Whether a handle of a waitable became ready before it was watched."""
+        return wait_set is not None and any(
+            handle.ready() for handles in wait_set._handles.values() for handle in handles
+        )
+
+    # Calling callbacks
+
+    def _make_handler(self, entity: Entity, node: NodeLike, take: Take) -> Task[Any]:
+        """Return a task that takes what is ready and calls the entity's callback with it."""
+        entity._executor_event = True
+
+        async def handle() -> None:
+            group = entity.callback_group
+            if self._is_shutdown or not (group is None or group.beginning_execution(entity)):
+                entity._executor_event = False
+                self.wake()
+                return
+            try:
+                call = take(self, entity)
+                entity._executor_event = False
+                self.wake()
+                if call is not None:
+                    result = call()
+                    if inspect.iscoroutine(result):
+                        await result
+            finally:
+                entity._executor_event = False
+                if group is not None:
+                    group.ending_execution(entity)
+                self.wake()
+
+        task: Task[Any] = Task(handle, executor=self)
+        with self._tasks_lock:
+            self._tasks.append((task, entity, node))
+        return task
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.shutdown()
+
+
+class SingleThreadedExecutor(Executor):
+    """Calls callbacks in the thread that spins."""
+
+    def _spin_once_impl(
+        self,
+        timeout_sec: float | TimeoutObject | None = None,
+        condition: Callable[[], bool] = never,
+    ) -> None:
+        try:
+            task, _, _ = self.wait_for_ready_callbacks(timeout_sec, None, condition)
+        except (ShutdownException, TimeoutException, ConditionReachedException):
+            return
+        task()
+        exception = task.exception()
+        if exception is not None:
+            raise exception
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        """Wait for one callback and call it."""
+        self._spin_once_impl(timeout_sec)
+
+    def _spin_once_until_future_complete(
+        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
+    ) -> None:
+        self._spin_once_impl(timeout_sec, future.done)
+
+    def spin_once_until_future_complete(
+        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
+    ) -> None:
+        """Wait for one callback and call it, but no longer than until `future` is done."""
+        future.add_done_callback(lambda _: self.wake())
+        self._spin_once_until_future_complete(future, timeout_sec)
+
+
+class MultiThreadedExecutor(Executor):
+    """Calls callbacks in a pool of threads.
+
+    Args:
+        num_threads: The most threads; by default one for each CPU of this process.
+        context: Its context; the default one by default.
+    """
+
+    def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
+        super().__init__(context=context)
+        if num_threads is None:
+            num_threads = (
+                len(os.sched_getaffinity(0))
+                if hasattr(os, "sched_getaffinity")
+                else os.cpu_count() or 2
+            )
+        if num_threads == 1:
+            warnings.warn(
+                "MultiThreadedExecutor is used with a single thread.\n"
+                "Use the SingleThreadedExecutor instead.",
+                stacklevel=2,
+            )
+        self._futures: list[Task[Any]] = []
+        self._executor = ThreadPoolExecutor(num_threads)
+
+    def _spin_once_impl(
+        self,
+        timeout_sec: float | TimeoutObject | None = None,
+        condition: Callable[[], bool] = never,
+    ) -> None:
+        try:
+            task, _, _ = self.wait_for_ready_callbacks(timeout_sec, None, condition)
+        except (
+            ExternalShutdownException,
+            ShutdownException,
+            TimeoutException,
+            ConditionReachedException,
+        ):
+            return
+        task._scheduled = True
+        self._executor.submit(self._step, task)
+        if task not in self._futures:
+            self._futures.append(task)
+        for future in self._futures[:]:
+            if future.done():
+                self._futures.remove(future)
+                future.result()  # raises what the callback raised
+
+    def _step(self, task: Task[Any]) -> None:
+        try:
+            task()
+        finally:
+            task._scheduled = False
+            self.wake()
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        """Wait for one callback and hand it to a thread; raise what an earlier one has raised."""
+        self._spin_once_impl(timeout_sec)
+
+    def _spin_once_until_future_complete(
+        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
+    ) -> None:
+        self._spin_once_impl(timeout_sec, future.done)
+
+    def spin_once_until_future_complete(
+        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
+    ) -> None:
+        """Wait for one callback, but no longer than until `future` is done; see `spin_once`."""
+        future.add_done_callback(lambda _: self.wake())
+        self._spin_once_until_future_complete(future, timeout_sec)
+
+    def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool = True) -> bool:
+        """Begin no more callbacks, wait for those that run, and end the threads."""
+        success = super().shutdown(timeout_sec)
+        self._executor.shutdown(wait=wait_for_threads)
+        return success

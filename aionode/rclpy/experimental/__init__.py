@@ -1,0 +1,5 @@
+"""What rclpy calls experimental."""
+
+from aionode.rclpy.experimental.events_executor import EventsExecutor
+
+__all__ = ["EventsExecutor"]

@@ -1,0 +1,380 @@
+"""A node whose callbacks run in the event loop that awaits it, without executors.
+
+It is newer than Kilted. A program that uses it may as well be written with `aionode.Node`, which
+has the same and more.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import inspect
+from typing import TYPE_CHECKING, Any, Self
+
+from aionode.rclpy._impl.errors import InvalidHandle, TimerCancelledError
+from aionode.rclpy.client import Client
+from aionode.rclpy.clock import ROSClock
+from aionode.rclpy.node import Node
+from aionode.rclpy.publisher import Publisher
+from aionode.rclpy.qos import qos_profile_services_default
+from aionode.rclpy.service import Service
+from aionode.rclpy.subscription import Subscription
+from aionode.rclpy.timer import Timer, TimerInfo
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import TracebackType
+
+    from aionode.rclpy.qos import QoSProfile
+    from aionode.rclpy.subscription_content_filter_options import ContentFilterOptions
+
+__all__ = [
+    "AsyncClient",
+    "AsyncClock",
+    "AsyncNode",
+    "AsyncPublisher",
+    "AsyncService",
+    "AsyncSubscription",
+    "AsyncTimer",
+]
+
+AsyncPublisher = Publisher
+AsyncSubscription = Subscription
+AsyncService = Service
+AsyncTimer = Timer
+
+
+class AsyncClock(ROSClock):
+    """A clock of ROS time that can be awaited."""
+
+    async def sleep(self, duration_sec: float) -> None:
+        """Wait until a duration has passed on this clock.
+
+        Raises:
+            EntityDestroyedError: its node is destroyed (a RuntimeError).
+            TimeSourceChangedError: ROS time was switched on or off meanwhile.
+            CancelledError: its node was destroyed meanwhile.
+        """
+        await self._handle.clock.sleep(duration_sec)
+
+
+class AsyncClient(Client[Any, Any]):
+    """A client whose calls are awaited."""
+
+    async def call(self, request: Any) -> Any:  # type: ignore[override] # that is the point
+        """Send a request and wait for the response. Cancelling forgets the request.
+
+        Raises:
+            TypeError: `request` is of another class.
+            InvalidHandle: the client is destroyed.
+        """
+        if not isinstance(request, self.srv_type.Request):
+            raise TypeError
+        loop = asyncio.get_running_loop()
+        answer: asyncio.Future[bytes] = loop.create_future()
+
+        def take(data: bytes) -> None:
+            loop.call_soon_threadsafe(complete, answer, data)
+
+        with self._handle:
+            sequence = self._handle.send_request(request, take)
+            try:
+                return self._handle.receive(sequence, await answer)
+            finally:
+                self._handle.forget(sequence)
+
+    async def wait_for_service(self, *, check_interval: float = 0.1) -> None:  # type: ignore[override] # as above
+        """Wait until a server is there.
+
+        Args:
+            check_interval: How often to look, in seconds.
+        """
+        while not self.service_is_ready():
+            await pause(check_interval)
+
+
+def complete(future: asyncio.Future[Any], result: Any) -> None:
+    """Set a result, unless the future is done."""
+    if not future.done():
+        future.set_result(result)
+
+
+async def pause(seconds: float) -> None:
+    """Wait for so many seconds."""
+    loop = asyncio.get_running_loop()
+    over = loop.create_future()
+    handle = loop.call_later(seconds, complete, over, None)
+    try:
+        await over
+    finally:
+        handle.cancel()
+
+
+class LoopWakeup:
+    """Sets an event of a loop, from any thread: the `Wakeup` of a node in an event loop."""
+
+    def __init__(self, loop: asyncio.AbstractEventLoop, event: asyncio.Event) -> None:
+        self._loop = loop
+        self._event = event
+
+    def wake(self) -> None:
+        """Set the event soon."""
+        if not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(self._event.set)
+
+
+class AsyncNode(Node):
+    """A node for ``await node.run()``, or ``async with node:``.
+
+    Arguments are those of `Node`. Callbacks are functions or coroutine functions; one of an entity
+    runs at a time, unless the entity is `concurrent`.
+    """
+
+    def __init__(self, node_name: str, **options: Any) -> None:
+        self._tasks: asyncio.TaskGroup | None = None
+        self._pumps: dict[Any, asyncio.Task[None]] = {}
+        self._news: dict[Any, asyncio.Event] = {}
+        self._concurrent: set[Any] = set()
+        self._destroyed = asyncio.Event()
+        super().__init__(node_name, **options)
+
+    def _make_clock(self) -> ROSClock:
+        return AsyncClock()
+
+    def get_clock(self) -> AsyncClock:
+        """Return its clock."""
+        assert isinstance(self._clock, AsyncClock)  # noqa: S101  # made above
+        return self._clock
+
+    # Lifetime
+
+    async def __aenter__(self) -> Self:
+        """Begin to call callbacks.
+
+        Raises:
+            RuntimeError: it runs already, or was destroyed.
+        """
+        if self._destroyed.is_set():
+            raise RuntimeError("Node has been destroyed and cannot be reentered")
+        if self._tasks is not None:
+            raise RuntimeError("Node is already running")
+        self._tasks = await asyncio.TaskGroup().__aenter__()
+        self._event = asyncio.Event()
+        self._loop_wakeup: Any = LoopWakeup(asyncio.get_running_loop(), self._event)
+        self.handle.signal.add(self._loop_wakeup)
+        self._dispatcher = self._tasks.create_task(self._dispatch())
+        for entity in (*self._subscriptions, *self._services, *self._timers, *self._guards):
+            self._start(entity)
+        return self
+
+    async def __aexit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Destroy the node; its callbacks are cancelled.
+
+        Raises:
+            ExceptionGroup: what callbacks have raised.
+        """
+        tasks = self._tasks
+        assert tasks is not None  # noqa: S101  # set by __aenter__
+        try:
+            self.destroy_node()
+            self._dispatcher.cancel()
+            await tasks.__aexit__(exc_type, exc, traceback)
+        finally:
+            self._tasks = None
+
+    async def run(self) -> None:
+        """Call callbacks until `destroy_node`."""
+        async with self:
+            await self._destroyed.wait()
+
+    def destroy_node(self) -> None:
+        """Destroy its entities, cancel their callbacks, and leave the graph."""
+        if self._destroyed.is_set():
+            return
+        self._destroyed.set()
+        for pump in list(self._pumps.values()):
+            pump.cancel()
+        self._clock.handle.clock.destroy()
+        super().destroy_node()
+
+    async def wait_for_node(  # type: ignore[override] # awaited, and without a limit
+        self, fully_qualified_node_name: str, *, check_interval: float = 0.1
+    ) -> None:
+        """Wait until a node of this name is there.
+
+        Args:
+            fully_qualified_node_name: Namespace and name; the leading slash may be left out.
+            check_interval: How often to look, in seconds.
+        """
+        wanted = "/" + fully_qualified_node_name.removeprefix("/")
+        while wanted not in self.get_fully_qualified_node_names():
+            await pause(check_interval)
+
+    # Entities
+
+    def create_subscription(
+        self,
+        msg_type: Any,
+        topic: str,
+        callback: Callable[..., Any],
+        qos_profile: QoSProfile | int,
+        *,
+        raw: bool = False,
+        concurrent: bool = False,
+        content_filter_options: ContentFilterOptions | None = None,
+        **options: Any,
+    ) -> Subscription[Any]:
+        """Return a subscription; `concurrent` lets calls of its callback overlap."""
+        subscription = super().create_subscription(
+            msg_type,
+            topic,
+            callback,
+            qos_profile,
+            raw=raw,
+            content_filter_options=content_filter_options,
+            **options,
+        )
+        self._begin(subscription, concurrent)
+        return subscription
+
+    def create_service(
+        self,
+        srv_type: Any,
+        srv_name: str,
+        callback: Callable[[Any, Any], Any],
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        concurrent: bool = False,
+        **options: Any,
+    ) -> Service[Any, Any]:
+        """Return a service; `concurrent` lets calls of its callback overlap."""
+        service = super().create_service(
+            srv_type, srv_name, callback, qos_profile=qos_profile, **options
+        )
+        self._begin(service, concurrent)
+        return service
+
+    def create_client(
+        self,
+        srv_type: Any,
+        srv_name: str,
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        **options: Any,
+    ) -> AsyncClient:
+        """Return a client whose `call` is awaited."""
+        made = super().create_client(srv_type, srv_name, qos_profile=qos_profile, **options)
+        client = AsyncClient(
+            self.context, made.handle, srv_type, srv_name, qos_profile, made.callback_group
+        )
+        self._clients[self._clients.index(made)] = client
+        return client
+
+    def create_timer(  # type: ignore[override] # of Lyrical's AsyncNode
+        self, timer_period_sec: float, callback: Callable[..., Any], autostart: bool = True
+    ) -> Timer:
+        """Return a timer; the callback may take a `TimerInfo`."""
+        timer = super().create_timer(timer_period_sec, callback, autostart=autostart)
+        self._begin(timer, concurrent=False)
+        return timer
+
+    def _begin(self, entity: Any, concurrent: bool) -> None:
+        if concurrent:
+            self._concurrent.add(entity)
+        if self._tasks is not None:
+            self._start(entity)
+
+    def _destroy(self, entity: Any, entities: list[Any]) -> bool:
+        pump = self._pumps.pop(entity, None)
+        if pump is not None and pump is not asyncio.current_task():
+            pump.cancel()
+        self._news.pop(entity, None)
+        return super()._destroy(entity, entities)
+
+    # Callbacks
+
+    def _start(self, entity: Any) -> None:
+        assert self._tasks is not None  # noqa: S101  # the node runs
+        self._news[entity] = asyncio.Event()
+        self._news[entity].set()
+        self._pumps[entity] = self._tasks.create_task(self._pump(entity))
+
+    async def _dispatch(self) -> None:
+        """Tell all entities that something has happened to one of them."""
+        while True:
+            await self._event.wait()
+            self._event.clear()
+            for news in self._news.values():
+                news.set()
+
+    async def _pump(self, entity: Any) -> None:
+        """Call the callback of an entity whenever it is ready."""
+        news = self._news[entity]
+        async with asyncio.TaskGroup() as overlapping:
+            while entity.handle.is_valid:
+                if not entity.handle.ready():
+                    news.clear()
+                    await self._wait(entity, news)
+                    continue
+                work = self._take(entity)
+                if work is None:
+                    continue
+                if entity in self._concurrent:
+                    overlapping.create_task(work)
+                else:
+                    await work
+                await pause(0)
+
+    async def _wait(self, entity: Any, news: asyncio.Event) -> None:
+        due_ns = entity.handle.due_in_ns() if isinstance(entity, Timer) else None
+        if due_ns is None:
+            await news.wait()
+            return
+        loop = asyncio.get_running_loop()
+        alarm = loop.call_later(max(0.0, due_ns / 1e9), news.set)
+        try:
+            await news.wait()
+        finally:
+            alarm.cancel()
+
+    def _take(self, entity: Any) -> Any:
+        """Take what is ready, and return the coroutine that handles it, or None."""
+        try:
+            with entity.handle:
+                if isinstance(entity, Subscription):
+                    taken = entity.handle.take_message(entity.msg_type, entity.raw)
+                    if taken is None:
+                        return None
+                    only = entity._callback_type is Subscription.CallbackType.MessageOnly
+                    return called(entity.callback, *taken[: 1 if only else 2])
+                if isinstance(entity, Service):
+                    request, header = entity.handle.service_take_request(None)
+                    return None if header is None else self._answer(entity, request, header)
+                if isinstance(entity, Timer) and entity.callback is not None:
+                    info = entity.handle.call_timer_with_info()
+                    return called(entity.callback, *self._timer_arguments(entity, info))
+                entity.handle.take()
+                return called(entity.callback)
+        except (InvalidHandle, TimerCancelledError):
+            return None
+
+    def _timer_arguments(self, timer: Timer, info: dict[str, int]) -> tuple[Any, ...]:
+        try:
+            inspect.signature(timer.callback).bind()  # type: ignore[arg-type] # it has one
+        except TypeError:
+            return (TimerInfo(**info, clock_type=timer.clock.clock_type),)
+        return ()
+
+    async def _answer(self, service: Any, request: Any, header: Any) -> None:
+        response = await called(service.callback, request, service.srv_type.Response())
+        service.send_response(response, header)
+
+
+async def called(callback: Callable[..., Any], *args: Any) -> Any:
+    """Call a function, and await what it returns if that can be."""
+    result = callback(*args)
+    return await result if inspect.isawaitable(result) else result

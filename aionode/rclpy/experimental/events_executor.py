@@ -1,0 +1,11 @@
+"""The events executor: here every executor waits for events, and collects no wait sets."""
+
+from __future__ import annotations
+
+from aionode.rclpy.executors import SingleThreadedExecutor
+
+__all__ = ["EventsExecutor"]
+
+
+class EventsExecutor(SingleThreadedExecutor):
+    """Calls callbacks in the thread that spins, as `SingleThreadedExecutor` does."""

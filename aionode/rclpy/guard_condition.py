@@ -1,0 +1,58 @@
+"""Guard conditions, which any thread triggers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from aionode.rclpy._impl.timers import GuardConditionHandle
+from aionode.rclpy.utilities import get_default_context
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.rclpy.callback_groups import CallbackGroup
+    from aionode.rclpy.context import Context
+
+__all__ = ["GuardCondition"]
+
+
+class GuardCondition:
+    """Has an executor call `callback` after `trigger`. Made by `Node.create_guard_condition`.
+
+    Attributes:
+        callback: What is called; None to wake the executor only.
+        callback_group: Its group.
+    """
+
+    def __init__(
+        self,
+        callback: Callable[[], object] | None,
+        callback_group: CallbackGroup | None,
+        context: Context | None = None,
+    ) -> None:
+        self._context = get_default_context() if context is None else context
+        if self._context.handle is None:
+            raise RuntimeError("Context must be initialized a GuardCondition can be created")
+        self._handle = GuardConditionHandle(self._context.handle)
+        self.callback = callback
+        self.callback_group = callback_group
+        self._executor_event = False  # whether an executor has a task for it that has not begun
+        self._executor_triggered = False
+
+    def trigger(self) -> None:
+        """Trigger it; any thread may.
+
+        Raises:
+            InvalidHandle: it is destroyed.
+        """
+        with self._handle:
+            self._handle.trigger_guard_condition()
+
+    @property
+    def handle(self) -> GuardConditionHandle:
+        """The handle."""
+        return self._handle
+
+    def destroy(self) -> None:
+        """Destroy it. Use `Node.destroy_guard_condition` for those of nodes."""
+        self._handle.destroy_when_not_in_use()

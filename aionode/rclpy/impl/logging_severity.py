@@ -1,0 +1,5 @@
+"""The severities of log messages."""
+
+from aionode.logging import LoggingSeverity
+
+__all__ = ["LoggingSeverity"]

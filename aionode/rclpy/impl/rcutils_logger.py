@@ -1,0 +1,5 @@
+"""Loggers."""
+
+from aionode.logging import RcutilsLogger
+
+__all__ = ["RcutilsLogger"]

@@ -1,0 +1,341 @@
+"""Managed nodes."""
+
+from __future__ import annotations
+
+from traceback import format_exc
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from aionode.rclpy._impl import messages as msg
+from aionode.rclpy._impl.errors import RCLError
+from aionode.rclpy._impl.lifecycle import LifecycleStateMachine, TransitionCallbackReturn
+from aionode.rclpy.lifecycle.managed_entity import ManagedEntity
+from aionode.rclpy.lifecycle.publisher import LifecyclePublisher
+from aionode.rclpy.node import Node
+from aionode.rclpy.qos import QoSProfile
+from aionode.rclpy.service import Service
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.rclpy._impl.services import ServiceHandle
+    from aionode.rclpy.callback_groups import CallbackGroup
+
+__all__ = [
+    "LifecycleNode",
+    "LifecycleNodeMixin",
+    "LifecycleState",
+    "TransitionCallbackReturn",
+]
+
+CALLBACKS = {
+    "configuring": "on_configure",
+    "cleaningup": "on_cleanup",
+    "shuttingdown": "on_shutdown",
+    "activating": "on_activate",
+    "deactivating": "on_deactivate",
+    "errorprocessing": "on_error",
+}
+"""By the state between two others: the callback that decides which one follows."""
+
+SHUTDOWNS = {"unconfigured": 5, "inactive": 6, "active": 7}
+
+
+class LifecycleState(NamedTuple):
+    """A state of a managed node."""
+
+    label: str
+    state_id: int
+
+
+class LifecycleNodeMixin(ManagedEntity):
+    """What makes a node a managed one; to be used with `Node`, as `LifecycleNode` does.
+
+    Args:
+        enable_communication_interface: Whether others can ask for its state and change it.
+        callback_group: The group of those services.
+    """
+
+    handle: Any
+    _services: list[Any]
+    default_callback_group: Any
+    get_logger: Callable[[], Any]
+
+    def __init__(
+        self,
+        *,
+        enable_communication_interface: bool = True,
+        callback_group: CallbackGroup | None = None,
+    ) -> None:
+        if not isinstance(self, Node):
+            raise RuntimeError(  # as rclpy
+                "LifecycleNodeMixin uses Node fields so Node needs to be in the inheritance tree."
+            )
+        # A dict for its order; rclpy has a set.
+        self._managed_entities: dict[ManagedEntity, None] = {}
+        with self.handle:
+            self._state_machine = LifecycleStateMachine(self.handle, enable_communication_interface)
+        if enable_communication_interface:
+            self._serve(callback_group or self.default_callback_group)
+
+    def _serve(self, group: CallbackGroup) -> None:
+        """Answer the services of the state machine."""
+        machine = self._state_machine
+
+        def service(
+            handle: ServiceHandle | None, srv_type: Any, callback: Callable[[Any, Any], Any]
+        ) -> Service[Any, Any]:
+            assert handle is not None  # noqa: S101  # the interface is enabled
+            made: Service[Any, Any] = Service(
+                handle, srv_type, handle.name, callback, group, QoSProfile(depth=10)
+            )
+            group.add_entity(made)
+            self._services.append(made)
+            return made
+
+        self._service_change_state = service(
+            machine.service_change_state, msg.ChangeState, self._on_change_state
+        )
+        self._service_get_state = service(
+            machine.service_get_state, msg.GetState, self._on_get_state
+        )
+        self._service_get_available_states = service(
+            machine.service_get_available_states,
+            msg.GetAvailableStates,
+            self._on_get_available_states,
+        )
+        self._service_get_available_transitions = service(
+            machine.service_get_available_transitions,
+            msg.GetAvailableTransitions,
+            self._on_get_available_transitions,
+        )
+        self._service_get_transition_graph = service(
+            machine.service_get_transition_graph,
+            msg.GetAvailableTransitions,
+            self._on_get_transition_graph,
+        )
+
+    # Transitions
+
+    def trigger_configure(self) -> TransitionCallbackReturn:
+        """Configure the node; return what its callback returned."""
+        return self._change_state(1)
+
+    def trigger_cleanup(self) -> TransitionCallbackReturn:
+        """Clean the node up; return what its callback returned."""
+        return self._change_state(2)
+
+    def trigger_activate(self) -> TransitionCallbackReturn:
+        """Activate the node; return what its callback returned."""
+        return self._change_state(3)
+
+    def trigger_deactivate(self) -> TransitionCallbackReturn:
+        """Deactivate the node; return what its callback returned."""
+        return self._change_state(4)
+
+    def trigger_shutdown(self) -> TransitionCallbackReturn:
+        """Shut the node down; return what its callback returned.
+
+        Raises:
+            RCLError: it is shut down, or in a transition.
+        """
+        _, label = self._state_machine.current_state
+        if label not in SHUTDOWNS:
+            raise RCLError("Shutdown transtion not possible")
+        return self._change_state(SHUTDOWNS[label])
+
+    def _change_state(self, transition_id: int) -> TransitionCallbackReturn:
+        self._check_is_initialized()
+        machine = self._state_machine
+        number, label = machine.current_state
+        before = LifecycleState(label=label, state_id=number)
+        try:
+            machine.trigger_transition_by_id(transition_id, True)
+        except RCLError:
+            self.get_logger().error(
+                f"Unable to start transition {transition_id} from current state "
+                f"{machine.current_state}"
+            )
+            return TransitionCallbackReturn.ERROR
+        outcome = self._execute_callback(before)
+        machine.trigger_transition_by_label(outcome.to_label(), True)
+        if outcome is TransitionCallbackReturn.ERROR:
+            machine.trigger_transition_by_label(self._execute_callback(before).to_label(), True)
+        return outcome
+
+    def _execute_callback(self, before: LifecycleState) -> TransitionCallbackReturn:
+        """Call the callback of the present state; an exception counts as an error."""
+        _, label = self._state_machine.current_state
+        callback: Callable[[LifecycleState], TransitionCallbackReturn] = getattr(
+            self, CALLBACKS[label]
+        )
+        try:
+            return callback(before)
+        except Exception as error:  # noqa: BLE001  # as rclpy; the state machine goes on with an error
+            self.get_logger().error(  # rclpy's loggers have no exception()
+                f"{CALLBACKS[label]}() raised {type(error).__name__}: {error}\n{format_exc()}"
+            )
+            return TransitionCallbackReturn.ERROR
+
+    def _check_is_initialized(self) -> None:
+        if not self._state_machine.initialized:
+            raise RuntimeError(
+                "Internal error: got service request while lifecycle state machine is not "
+                "initialized."
+            )
+
+    # Entities
+
+    def add_managed_entity(self, entity: ManagedEntity) -> None:
+        """Tell `entity` of transitions.
+
+        Raises:
+            TypeError: it is no `ManagedEntity`.
+        """
+        if not isinstance(entity, ManagedEntity):
+            raise TypeError("Expected a rclpy.lifecycle.ManagedEntity instance.")
+        self._managed_entities[entity] = None
+
+    def _tell_entities(self, callback_name: str, state: Any) -> TransitionCallbackReturn:
+        """Call a callback of all entities, up to the first that does not succeed."""
+        for entity in list(self._managed_entities):
+            outcome = getattr(entity, callback_name)(state)
+            if not isinstance(outcome, TransitionCallbackReturn):
+                raise TypeError(
+                    f"{callback_name}() return value of class {type(entity)} should be "
+                    "`TransitionCallbackReturn`.\n"
+                    f"Instance of the class that caused the failure: {entity}"
+                )
+            if outcome is not TransitionCallbackReturn.SUCCESS:
+                return outcome
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_configure(self, state: Any) -> TransitionCallbackReturn:
+        """Handle the transition from unconfigured to inactive; tells the managed entities."""
+        return self._tell_entities("on_configure", state)
+
+    def on_cleanup(self, state: Any) -> TransitionCallbackReturn:
+        """Handle the transition from inactive to unconfigured; tells the managed entities."""
+        return self._tell_entities("on_cleanup", state)
+
+    def on_shutdown(self, state: Any) -> TransitionCallbackReturn:
+        """Handle the transition to finalized; tells the managed entities."""
+        return self._tell_entities("on_shutdown", state)
+
+    def on_activate(self, state: Any) -> TransitionCallbackReturn:
+        """Handle the transition from inactive to active; tells the managed entities."""
+        return self._tell_entities("on_activate", state)
+
+    def on_deactivate(self, state: Any) -> TransitionCallbackReturn:
+        """Handle the transition from active to inactive; tells the managed entities."""
+        return self._tell_entities("on_deactivate", state)
+
+    def on_error(self, state: Any) -> TransitionCallbackReturn:
+        """Handle an error in another callback; tells the managed entities."""
+        return self._tell_entities("on_error", state)
+
+    def create_lifecycle_publisher(
+        self,
+        msg_type: Any,
+        topic: str,
+        qos_profile: QoSProfile | int,
+        *,
+        publisher_class: None = None,
+        **kwargs: Any,
+    ) -> LifecyclePublisher[Any]:
+        """Return a publisher that drops what is published while the node is not active.
+
+        Raises:
+            TypeError: a `publisher_class` is given.
+        """
+        if publisher_class:
+            raise TypeError(
+                "create_publisher() got an unexpected keyword argument 'publisher_class'"
+            )
+        assert isinstance(self, Node)  # noqa: S101  # checked by the constructor
+        publisher: LifecyclePublisher[Any] = Node.create_publisher(
+            self, msg_type, topic, qos_profile, publisher_class=LifecyclePublisher, **kwargs
+        )
+        self._managed_entities[publisher] = None
+        return publisher
+
+    def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher[Any]) -> bool:
+        """Destroy a publisher; return whether it was one of this node."""
+        self._managed_entities.pop(publisher, None)
+        assert isinstance(self, Node)  # noqa: S101  # checked by the constructor
+        return self.destroy_publisher(publisher)
+
+    # Services
+
+    def _on_change_state(self, request: Any, response: Any) -> Any:
+        self._check_is_initialized()
+        transition_id = request.transition.id
+        if request.transition.label:
+            try:
+                transition_id = self._state_machine.get_transition_by_label(
+                    request.transition.label
+                )
+            except RCLError:
+                response.success = False
+                return response
+        response.success = self._change_state(transition_id) is TransitionCallbackReturn.SUCCESS
+        return response
+
+    def _on_get_state(self, request: Any, response: Any) -> Any:
+        self._check_is_initialized()
+        state = response.current_state
+        state.id, state.label = self._state_machine.current_state
+        return response
+
+    def _on_get_available_states(self, request: Any, response: Any) -> Any:
+        self._check_is_initialized()
+        response.available_states = [
+            msg.LifecycleState(id=number, label=label)
+            for number, label in self._state_machine.available_states
+        ]
+        return response
+
+    def _on_get_available_transitions(self, request: Any, response: Any) -> Any:
+        self._check_is_initialized()
+        response.available_transitions = [
+            described(each) for each in self._state_machine.available_transitions
+        ]
+        return response
+
+    def _on_get_transition_graph(self, request: Any, response: Any) -> Any:
+        self._check_is_initialized()
+        response.available_transitions = [
+            described(each) for each in self._state_machine.transition_graph
+        ]
+        return response
+
+
+def described(transition: tuple[int, str, int, str, int, str]) -> Any:
+    """Return a transition as a message."""
+    message = msg.TransitionDescription()
+    message.transition.id, message.transition.label = transition[:2]
+    message.start_state.id, message.start_state.label = transition[2:4]
+    message.goal_state.id, message.goal_state.label = transition[4:]
+    return message
+
+
+class LifecycleNode(LifecycleNodeMixin, Node):
+    """A managed node.
+
+    Args:
+        node_name: Its name.
+        enable_communication_interface: Whether others can ask for its state and change it.
+        options: Those of `Node`.
+    """
+
+    def __init__(
+        self, node_name: str, *, enable_communication_interface: bool = True, **options: Any
+    ) -> None:
+        Node.__init__(self, node_name, **options)
+        LifecycleNodeMixin.__init__(
+            self, enable_communication_interface=enable_communication_interface
+        )
+
+    def destroy_node(self) -> None:
+        """Destroy its entities, and leave the graph."""
+        self._state_machine.destroy()
+        super().destroy_node()

@@ -1,0 +1,264 @@
+"""Parameters."""
+
+from __future__ import annotations
+
+import array
+from enum import IntEnum
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+import yaml
+
+from aionode.rclpy._impl import messages as msg
+
+__all__ = [
+    "PARAMETER_SEPARATOR_STRING",
+    "AllowableParameterValue",
+    "Parameter",
+    "get_parameter_value",
+    "parameter_dict_from_yaml_file",
+    "parameter_value_to_python",
+]
+
+PARAMETER_SEPARATOR_STRING = "."
+
+AllowableParameterValue = Any
+AllowableParameterValueT = TypeVar("AllowableParameterValueT")
+
+
+class Type(IntEnum):
+    """The type of a parameter."""
+
+    NOT_SET = 0
+    BOOL = 1
+    INTEGER = 2
+    DOUBLE = 3
+    STRING = 4
+    BYTE_ARRAY = 5
+    BOOL_ARRAY = 6
+    INTEGER_ARRAY = 7
+    DOUBLE_ARRAY = 8
+    STRING_ARRAY = 9
+
+    @classmethod
+    def from_parameter_value(cls, parameter_value: Any) -> Type:
+        """Return the type of a value. An empty list counts as BYTE_ARRAY.
+
+        Raises:
+            TypeError: no type fits it.
+        """
+        if parameter_value is None:
+            return cls.NOT_SET
+        for kind, type_ in SINGLE:
+            if isinstance(parameter_value, kind):
+                return type_
+        if not isinstance(parameter_value, list | tuple | array.array):
+            raise TypeError(f"The given value is not one of the allowed types '{parameter_value}'.")
+        for kind, type_ in ELEMENTS:
+            if all(isinstance(element, kind) for element in parameter_value):
+                return type_
+        raise TypeError(
+            f"The given value is not a list of one of the allowed types '{parameter_value}'."
+        )
+
+    def check(self, parameter_value: Any) -> bool:
+        """Return whether a parameter of this type may have the value."""
+        if self is Type.NOT_SET:
+            return parameter_value is None
+        for kind, type_ in SINGLE:
+            if self is type_:
+                return isinstance(parameter_value, kind)
+        if not isinstance(parameter_value, list | tuple):
+            numbers = self in (Type.INTEGER_ARRAY, Type.DOUBLE_ARRAY)
+            if not (numbers and isinstance(parameter_value, array.array)):
+                return False
+        kind = next(kind for kind, type_ in ELEMENTS if self is type_)
+        return all(
+            isinstance(element, kind) and (not isinstance(element, bytes) or len(element) == 1)
+            for element in parameter_value
+        )
+
+
+ParameterType = Type  # `Parameter.Type` hides the name in the class
+
+# bool before int, as True is an int to Python
+SINGLE: tuple[tuple[type, Type], ...] = (
+    (bool, Type.BOOL),
+    (int, Type.INTEGER),
+    (float, Type.DOUBLE),
+    (str, Type.STRING),
+)
+ELEMENTS: tuple[tuple[type, Type], ...] = (
+    (bytes, Type.BYTE_ARRAY),
+    (bool, Type.BOOL_ARRAY),
+    (int, Type.INTEGER_ARRAY),
+    (float, Type.DOUBLE_ARRAY),
+    (str, Type.STRING_ARRAY),
+)
+
+
+def field_of(type_: Type) -> str:
+    """Return the field of a ParameterValue that has the value of a type."""
+    return f"{type_.name.lower()}_value"
+
+
+class Parameter(Generic[AllowableParameterValueT]):
+    """A parameter: its name, its type and its value.
+
+    Args:
+        name: The name; dots make groups.
+        type_: The type; by default that of the value.
+        value: The value.
+
+    Raises:
+        TypeError: no type fits the value.
+        ValueError: the value is not of the given type.
+    """
+
+    Type = Type
+
+    def __init__(self, name: str, type_: ParameterType | None = None, value: Any = None) -> None:
+        if type_ is None:
+            type_ = Type.from_parameter_value(value)
+        if not isinstance(type_, Type):
+            raise TypeError(f"type must be an instance of '{Type!r}'")
+        if not type_.check(value):
+            raise ValueError(f"Type '{type_}' and value '{value}' do not agree")
+        self._type_ = type_
+        self._name = name
+        self._value = value
+
+    @classmethod
+    def from_parameter_msg(cls, param_msg: Any) -> Parameter[Any]:
+        """Return the parameter in a message.
+
+        Raises:
+            ValueError: its type is unknown.
+        """
+        type_ = Type(param_msg.value.type)
+        value = None if type_ is Type.NOT_SET else getattr(param_msg.value, field_of(type_))
+        return cls(param_msg.name, type_, value)
+
+    @property
+    def name(self) -> str:
+        """The name."""
+        return self._name
+
+    @property
+    def type_(self) -> ParameterType:
+        """The type."""
+        return self._type_
+
+    @property
+    def value(self) -> Any:
+        """The value; None if it is not set."""
+        return self._value
+
+    def get_parameter_value(self) -> Any:
+        """Return type and value as a message."""
+        message = msg.ParameterValue(type=int(self._type_))
+        if self._type_ is not Type.NOT_SET:
+            setattr(message, field_of(self._type_), self._value)
+        return message
+
+    def to_parameter_msg(self) -> Any:
+        """Return the parameter as a message."""
+        return msg.Parameter(name=self._name, value=self.get_parameter_value())
+
+
+def get_parameter_value(string_value: str) -> Any:
+    """Return the value in a text, in the syntax of YAML, as a message."""
+    try:
+        value = yaml.safe_load(string_value)
+    except yaml.parser.ParserError:
+        value = string_value
+    message = msg.ParameterValue()
+    type_ = Type.STRING
+    if isinstance(value, bool | int | float):
+        type_ = Type.from_parameter_value(value)
+    elif isinstance(value, list):
+        try:
+            type_ = Type.from_parameter_value(value) if value else Type.BOOL_ARRAY
+        except TypeError:
+            value = string_value
+    elif value is None:
+        value = string_value
+    message.type = int(type_)
+    setattr(message, field_of(type_), value)
+    return message
+
+
+def parameter_value_to_python(parameter_value: Any) -> Any:
+    """Return the value in a message; arrays as lists.
+
+    Raises:
+        RuntimeError: its type is unknown.
+    """
+    try:
+        type_ = Type(parameter_value.type)
+    except ValueError:
+        raise RuntimeError(f"unexpected parameter type {parameter_value.type}") from None
+    if type_ is Type.NOT_SET:
+        return None
+    value = getattr(parameter_value, field_of(type_))
+    return list(value) if type_ >= Type.BYTE_ARRAY else value
+
+
+def parameter_dict_from_yaml_file(
+    parameter_file: str,
+    use_wildcard: bool = False,
+    target_nodes: list[str] | None = None,
+    namespace: str = "",
+) -> dict[str, Any]:
+    """Return the parameters in a file as messages, by name.
+
+    Args:
+        parameter_file: Path of the file.
+        use_wildcard: Whether those of ``/**`` count.
+        target_nodes: The nodes whose parameters count; all by default.
+        namespace: Prefix of the names.
+
+    Raises:
+        RuntimeError: the file has another form, or no parameters of these nodes.
+    """
+    content = yaml.safe_load(Path(parameter_file).read_text(encoding="utf-8"))
+    keys = []
+    if use_wildcard and "/**" in content:
+        keys.append("/**")
+    if target_nodes:
+        keys += [key for name in target_nodes if (key := key_of(name, content)) is not None]
+    else:
+        keys += [key for key in content if key != "/**"]
+    if not keys:
+        raise RuntimeError("Param file does not contain any valid parameters")
+    values: dict[str, Any] = {}
+    for key in keys:
+        section = content[key]
+        if not isinstance(section, dict) or "ros__parameters" not in section:
+            raise RuntimeError(f"YAML file is not a valid ROS parameter file for node {key}")
+        values.update(section["ros__parameters"])
+    return messages_of(values, namespace)
+
+
+def key_of(node_name: str, content: dict[str, Any]) -> str | None:
+    """Return the key of a node in a parameter file, with or without its slash."""
+    absolute = f"/{node_name.removeprefix('/')}"
+    for key in (absolute, absolute.removeprefix("/")):
+        if key in content:
+            return key
+    return None
+
+
+def messages_of(values: dict[str, Any], namespace: str = "") -> dict[str, Any]:
+    """Return the parameters in nested dicts as messages, by their full names."""
+    found: dict[str, Any] = {}
+    prefix = f"{namespace}{PARAMETER_SEPARATOR_STRING}" if namespace else ""
+    for name, value in values.items():
+        full_name = prefix + name
+        if isinstance(value, dict):
+            found.update(messages_of(value, full_name))
+        else:
+            message = msg.Parameter(name=full_name)
+            message.value = get_parameter_value(str(value))
+            found[full_name] = message
+    return found

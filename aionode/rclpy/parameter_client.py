@@ -1,0 +1,219 @@
+"""The parameters of another node."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from aionode.clock import MachineTime
+from aionode.rclpy._impl import messages as msg
+from aionode.rclpy._impl.destroyable import Wakeup
+from aionode.rclpy.parameter import Parameter, parameter_dict_from_yaml_file
+from aionode.rclpy.qos import (
+    QoSProfile,
+    qos_profile_parameter_events,
+    qos_profile_services_default,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from aionode.rclpy.callback_groups import CallbackGroup
+    from aionode.rclpy.client import Client
+    from aionode.rclpy.event_handler import SubscriptionEventCallbacks
+    from aionode.rclpy.node import Node
+    from aionode.rclpy.qos_overriding_options import QoSOverridingOptions
+    from aionode.rclpy.subscription import Subscription
+    from aionode.rclpy.task import Future
+
+__all__ = ["AsyncParameterClient"]
+
+CHECK_S = 0.05
+
+steady_ns = MachineTime().steady_ns
+
+
+class AsyncParameterClient:
+    """Reads and sets the parameters of another node; each call returns a future of the response.
+
+    An executor with `node` has to spin meanwhile. A `callback` is called with the future when that
+    is done.
+
+    Args:
+        node: The node that asks.
+        remote_node_name: The other node.
+        qos_profile: QoS of the services.
+        callback_group: The group of their clients.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        remote_node_name: str,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: CallbackGroup | None = None,
+    ) -> None:
+        self.remote_node_name = remote_node_name
+        self.node = node
+
+        def client(srv_type: Any, name: str) -> Client[Any, Any]:
+            return node.create_client(
+                srv_type,
+                f"{remote_node_name}/{name}",
+                qos_profile=qos_profile,
+                callback_group=callback_group,
+            )
+
+        self._get_parameter_client = client(msg.GetParameters, "get_parameters")
+        self._list_parameter_client = client(msg.ListParameters, "list_parameters")
+        self._set_parameter_client = client(msg.SetParameters, "set_parameters")
+        self._get_parameter_types_client = client(msg.GetParameterTypes, "get_parameter_types")
+        self._describe_parameters_client = client(msg.DescribeParameters, "describe_parameters")
+        self._set_parameters_atomically_client = client(
+            msg.SetParametersAtomically, "set_parameters_atomically"
+        )
+
+    def services_are_ready(self) -> bool:
+        """Return whether all services are there."""
+        return all(
+            client.service_is_ready()
+            for client in (
+                self._list_parameter_client,
+                self._set_parameter_client,
+                self._get_parameter_client,
+                self._get_parameter_types_client,
+                self._describe_parameters_client,
+                self._set_parameters_atomically_client,
+            )
+        )
+
+    def wait_for_services(self, timeout_sec: float | None = None) -> bool:
+        """Block the thread until all services are there; return whether they are in time."""
+        ends_ns = None if timeout_sec is None else steady_ns() + timeout_sec * 1e9
+        wakeup = Wakeup()
+        while not self.services_are_ready():
+            if ends_ns is not None and steady_ns() >= ends_ns:
+                return False
+            wakeup.wait(CHECK_S)
+        return True
+
+    def list_parameters(
+        self,
+        prefixes: list[str] | None = None,
+        depth: int | None = None,
+        callback: Callable[[Future[Any]], None] | None = None,
+    ) -> Future[Any]:
+        """Ask for names."""
+        request = msg.ListParameters.Request()
+        if prefixes:
+            request.prefixes = prefixes
+        if depth:
+            request.depth = depth
+        return ask(self._list_parameter_client, request, callback)
+
+    def get_parameters(
+        self, names: list[str], callback: Callable[[Future[Any]], None] | None = None
+    ) -> Future[Any]:
+        """Ask for values."""
+        request = msg.GetParameters.Request(names=names)
+        return ask(self._get_parameter_client, request, callback)
+
+    def set_parameters(
+        self,
+        parameters: Sequence[Any],
+        callback: Callable[[Future[Any]], None] | None = None,
+    ) -> Future[Any]:
+        """Set parameters, given as `Parameter` or as messages, one by one."""
+        request = msg.SetParameters.Request(parameters=as_messages(parameters))
+        return ask(self._set_parameter_client, request, callback)
+
+    def describe_parameters(
+        self, names: list[str], callback: Callable[[Future[Any]], None] | None = None
+    ) -> Future[Any]:
+        """Ask for descriptors."""
+        request = msg.DescribeParameters.Request(names=names)
+        return ask(self._describe_parameters_client, request, callback)
+
+    def get_parameter_types(
+        self, names: list[str], callback: Callable[[Future[Any]], None] | None = None
+    ) -> Future[Any]:
+        """Ask for types."""
+        request = msg.GetParameterTypes.Request(names=names)
+        return ask(self._get_parameter_types_client, request, callback)
+
+    def set_parameters_atomically(
+        self,
+        parameters: Sequence[Any],
+        callback: Callable[[Future[Any]], None] | None = None,
+    ) -> Future[Any]:
+        """Set parameters, given as `Parameter` or as messages, all or none."""
+        request = msg.SetParametersAtomically.Request(parameters=as_messages(parameters))
+        return ask(self._set_parameters_atomically_client, request, callback)
+
+    def delete_parameters(
+        self, names: list[str], callback: Callable[[Future[Any]], None] | None = None
+    ) -> Future[Any]:
+        """Undeclare parameters, where that is allowed."""
+        return self.set_parameters([Parameter(name) for name in names], callback)
+
+    def load_parameter_file(
+        self,
+        parameter_file: str,
+        use_wildcard: bool = False,
+        callback: Callable[[Future[Any]], None] | None = None,
+    ) -> Future[Any]:
+        """Set the parameters that a file has for the other node, one by one."""
+        return self.set_parameters(self._in_file(parameter_file, use_wildcard), callback)
+
+    def load_parameter_file_atomically(
+        self,
+        parameter_file: str,
+        use_wildcard: bool = False,
+        callback: Callable[[Future[Any]], None] | None = None,
+    ) -> Future[Any]:
+        """Set the parameters that a file has for the other node, all or none."""
+        return self.set_parameters_atomically(self._in_file(parameter_file, use_wildcard), callback)
+
+    def _in_file(self, parameter_file: str, use_wildcard: bool) -> list[Any]:
+        found = parameter_dict_from_yaml_file(
+            parameter_file, use_wildcard, target_nodes=[self.remote_node_name]
+        )
+        return list(found.values())
+
+    def on_parameter_event(
+        self,
+        callback: Callable[..., Any],
+        qos_profile: QoSProfile = qos_profile_parameter_events,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        raw: bool = False,
+    ) -> Subscription[Any]:
+        """Return a subscription to the parameter events of all nodes."""
+        return self.node.create_subscription(
+            msg.ParameterEvent,
+            "/parameter_events",
+            callback,
+            qos_profile,
+            callback_group=callback_group,
+            event_callbacks=event_callbacks,
+            qos_overriding_options=qos_overriding_options,
+            raw=raw,
+        )
+
+
+def ask(
+    client: Client[Any, Any],
+    request: Any,
+    callback: Callable[[Future[Any]], None] | None,
+) -> Future[Any]:
+    """Send a request, and have `callback` called with its future."""
+    future = client.call_async(request)
+    if callback is not None:
+        future.add_done_callback(callback)
+    return future
+
+
+def as_messages(parameters: Sequence[Any]) -> list[Any]:
+    """Return parameters as messages."""
+    return [each.to_parameter_msg() if isinstance(each, Parameter) else each for each in parameters]

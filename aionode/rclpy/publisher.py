@@ -1,0 +1,113 @@
+"""Publishers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Generic, Self, TypeVar
+
+from aionode.rclpy.duration import Duration
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from aionode.rclpy._impl.topics import PublisherHandle
+    from aionode.rclpy.callback_groups import CallbackGroup
+    from aionode.rclpy.event_handler import EventHandler, PublisherEventCallbacks
+    from aionode.rclpy.qos import QoSProfile
+
+__all__ = ["Publisher"]
+
+MsgT = TypeVar("MsgT")
+
+FOREVER = Duration(seconds=-1)
+
+
+class Publisher(Generic[MsgT]):
+    """Sends messages to a topic. Made by `Node.create_publisher`.
+
+    Attributes:
+        msg_type: The class of its messages.
+        topic: The name it was made with.
+        qos_profile: Its profile.
+        event_handlers: Its event handlers.
+    """
+
+    def __init__(
+        self,
+        publisher_impl: PublisherHandle,
+        msg_type: type[MsgT],
+        topic: str,
+        qos_profile: QoSProfile,
+        event_callbacks: PublisherEventCallbacks,
+        callback_group: CallbackGroup,
+    ) -> None:
+        self._handle = publisher_impl
+        self.msg_type = msg_type
+        self.topic = topic
+        self.qos_profile = qos_profile
+        self.event_handlers: list[EventHandler] = event_callbacks.create_event_handlers(
+            callback_group, publisher_impl, topic
+        )
+
+    def publish(self, msg: MsgT | bytes) -> None:
+        """Send a message, or one that is encoded already. Nobody needs to spin for that.
+
+        Raises:
+            TypeError: it is of another class, or a value does not fit its field.
+            InvalidHandle: the publisher is destroyed.
+        """
+        with self._handle:
+            if isinstance(msg, self.msg_type):
+                self._handle.publish(msg)
+            elif isinstance(msg, bytes):
+                self._handle.publish_raw(msg)
+            else:
+                raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
+
+    def get_subscription_count(self) -> int:
+        """Return how many subscriptions are matched."""
+        with self.handle:
+            return self._handle.get_subscription_count()
+
+    @property
+    def topic_name(self) -> str:
+        """The full name of the topic."""
+        with self.handle:
+            return self._handle.get_topic_name()
+
+    @property
+    def handle(self) -> PublisherHandle:
+        """The handle."""
+        return self._handle
+
+    @property
+    def logger_name(self) -> str:
+        """The name of the node's logger."""
+        with self.handle:
+            return self._handle.get_logger_name()
+
+    def destroy(self) -> None:
+        """Destroy it. Use `Node.destroy_publisher`."""
+        for handler in self.event_handlers:
+            handler.destroy()
+        self._handle.destroy_when_not_in_use()
+
+    def assert_liveliness(self) -> None:
+        """Show that it is alive, for MANUAL_BY_TOPIC."""
+        with self.handle:
+            self._handle.assert_liveliness()
+
+    def wait_for_all_acked(self, timeout: Duration = FOREVER) -> bool:
+        """Wait until what was published is handed on; return whether that is so in time."""
+        with self.handle:
+            return self._handle.wait_for_all_acked(timeout)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.destroy()

@@ -1,0 +1,119 @@
+"""Service servers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
+
+from aionode.rclpy._impl.services import rmw_request_id_t, rmw_service_info_t
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import TracebackType
+
+    from aionode.rclpy._impl.services import ServiceHandle
+    from aionode.rclpy.callback_groups import CallbackGroup
+    from aionode.rclpy.clock import Clock
+    from aionode.rclpy.qos import QoSProfile
+    from aionode.rclpy.service_introspection import ServiceIntrospectionState
+
+__all__ = ["Service"]
+
+RequestT = TypeVar("RequestT")
+ResponseT = TypeVar("ResponseT")
+
+
+class Service(Generic[RequestT, ResponseT]):
+    """Answers requests. Made by `Node.create_service`.
+
+    Attributes:
+        srv_type: The service class.
+        srv_name: The name it was made with.
+        callback: Called with request and response; returns the response.
+        callback_group: Its group.
+        qos_profile: Its profile.
+    """
+
+    def __init__(
+        self,
+        service_impl: ServiceHandle,
+        srv_type: Any,
+        srv_name: str,
+        callback: Callable[[RequestT, ResponseT], Any],
+        callback_group: CallbackGroup,
+        qos_profile: QoSProfile,
+    ) -> None:
+        self._handle = service_impl
+        self.srv_type = srv_type
+        self.srv_name = srv_name
+        self.callback = callback
+        self.callback_group = callback_group
+        self._executor_event = False
+        self.qos_profile = qos_profile
+
+    def send_response(
+        self, response: ResponseT, header: rmw_service_info_t | rmw_request_id_t
+    ) -> None:
+        """Answer the request with this header.
+
+        Raises:
+            TypeError: `response` is of another class, or `header` is no header.
+            InvalidHandle: the service is destroyed.
+        """
+        if not isinstance(response, self.srv_type.Response):
+            raise TypeError
+        if isinstance(header, rmw_service_info_t):
+            header = header.request_id
+        if not isinstance(header, rmw_request_id_t):
+            raise TypeError
+        with self._handle:
+            self._handle.service_send_response(response, header)
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Tell of calls on ``<service>/_service_event``.
+
+        Args:
+            clock: Where the stamps come from.
+            service_event_qos_profile: QoS of that topic.
+            introspection_state: What is told.
+        """
+        with self._handle:
+            self._handle.configure_introspection(
+                clock.handle, service_event_qos_profile, introspection_state
+            )
+
+    @property
+    def handle(self) -> ServiceHandle:
+        """The handle."""
+        return self._handle
+
+    @property
+    def service_name(self) -> str:
+        """The full name of the service."""
+        with self._handle:
+            return self._handle.name
+
+    @property
+    def logger_name(self) -> str:
+        """The name of the node's logger."""
+        with self._handle:
+            return self._handle.get_logger_name()
+
+    def destroy(self) -> None:
+        """Destroy it. Use `Node.destroy_service`."""
+        self._handle.destroy_when_not_in_use()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.destroy()

@@ -1,0 +1,167 @@
+"""Subscriptions."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from enum import Enum
+from typing import TYPE_CHECKING, Any, Generic, Self, TypedDict, TypeVar
+
+from aionode.rclpy._impl.errors import RCLError
+from aionode.rclpy.subscription_content_filter_options import ContentFilterOptions
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from aionode.rclpy._impl.topics import SubscriptionHandle
+    from aionode.rclpy.callback_groups import CallbackGroup
+    from aionode.rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
+    from aionode.rclpy.qos import QoSProfile
+
+__all__ = ["MessageInfo", "RCLError", "Subscription"]
+
+MsgT = TypeVar("MsgT")
+
+
+class MessageInfo(TypedDict):
+    """Where a message comes from; times are in nanoseconds since 1970."""
+
+    source_timestamp: int
+    received_timestamp: int
+    publication_sequence_number: int | None
+    reception_sequence_number: int | None
+    publisher_gid: dict[str, Any] | None
+
+
+class Subscription(Generic[MsgT]):
+    """Receives the messages of a topic. Made by `Node.create_subscription`.
+
+    Attributes:
+        msg_type: The class of its messages.
+        topic: The name it was made with.
+        callback_group: Its group.
+        qos_profile: Its profile.
+        raw: Whether the callback gets bytes.
+    """
+
+    class CallbackType(Enum):
+        """What the callback takes."""
+
+        MessageOnly = 0
+        WithMessageInfo = 1
+
+    def __init__(
+        self,
+        subscription_impl: SubscriptionHandle,
+        msg_type: type[MsgT],
+        topic: str,
+        callback: Callable[..., object],
+        callback_group: CallbackGroup,
+        qos_profile: QoSProfile,
+        raw: bool,
+        event_callbacks: SubscriptionEventCallbacks,
+    ) -> None:
+        self._handle = subscription_impl
+        self.msg_type = msg_type
+        self.topic = topic
+        self.callback = callback
+        self.callback_group = callback_group
+        self._executor_event = False
+        self.qos_profile = qos_profile
+        self.raw = raw
+        self.event_handlers: list[EventHandler] = event_callbacks.create_event_handlers(
+            callback_group, subscription_impl, topic
+        )
+
+    @property
+    def callback(self) -> Callable[..., object]:
+        """What is called with each message, or with it and its `MessageInfo`.
+
+        Raises:
+            RuntimeError: set to what takes other arguments.
+        """
+        return self._callback
+
+    @callback.setter
+    def callback(self, value: Callable[..., object]) -> None:
+        signature = inspect.signature(value)
+        for count, kind in enumerate(Subscription.CallbackType, start=1):
+            try:
+                signature.bind(*[object()] * count)
+            except TypeError:
+                continue
+            self._callback = value
+            self._callback_type = kind
+            return
+        raise RuntimeError(
+            "Subscription.__init__(): callback should be either be callable with one argument"
+            "(to get only the message) or two (to get message and message info)"
+        )
+
+    def get_publisher_count(self) -> int:
+        """Return how many publishers are matched."""
+        with self.handle:
+            return self._handle.get_publisher_count()
+
+    @property
+    def handle(self) -> SubscriptionHandle:
+        """The handle."""
+        return self._handle
+
+    @property
+    def topic_name(self) -> str:
+        """The full name of the topic."""
+        with self.handle:
+            return self._handle.get_topic_name()
+
+    @property
+    def logger_name(self) -> str:
+        """The name of the node's logger."""
+        with self.handle:
+            return self._handle.get_logger_name()
+
+    @property
+    def is_cft_enabled(self) -> bool:
+        """Whether a content filter is set."""
+        with self.handle:
+            return self._handle.is_cft_enabled()
+
+    @property
+    def is_cft_supported(self) -> bool:
+        """Whether content filters can be set: they can."""
+        return True
+
+    def set_content_filter(self, filter_expression: str, expression_parameters: list[str]) -> None:
+        """Take only messages that meet an expression; an empty one takes all.
+
+        Raises:
+            RCLError: the expression cannot be used.
+        """
+        with self.handle:
+            self._handle.set_content_filter(filter_expression, expression_parameters)
+
+    def get_content_filter(self) -> ContentFilterOptions:
+        """Return the content filter.
+
+        Raises:
+            RCLError: none is set.
+        """
+        with self.handle:
+            return ContentFilterOptions(*self._handle.get_content_filter())
+
+    def destroy(self) -> None:
+        """Destroy it. Use `Node.destroy_subscription`."""
+        for handler in self.event_handlers:
+            handler.destroy()
+        self._handle.destroy_when_not_in_use()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.destroy()

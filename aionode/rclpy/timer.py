@@ -1,0 +1,218 @@
+"""Timers, and rates made of them."""
+
+from __future__ import annotations
+
+import inspect
+import threading
+from typing import TYPE_CHECKING, Any, Self
+
+from aionode.clock import ClockType
+from aionode.rclpy._impl.timers import TimerHandle
+from aionode.rclpy.exceptions import InvalidHandle, ROSInterruptException
+from aionode.rclpy.time import Time
+from aionode.rclpy.utilities import get_default_context
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import TracebackType
+
+    from aionode.rclpy.callback_groups import CallbackGroup
+    from aionode.rclpy.clock import Clock
+    from aionode.rclpy.context import Context
+
+__all__ = ["Rate", "Timer", "TimerInfo"]
+
+
+class TimerInfo:
+    """When a callback was to be called, and when it was; for parameters annotated with this class.
+
+    Raises:
+        TypeError: `clock_type` is not a `ClockType`.
+        ValueError: a time is negative.
+    """
+
+    def __init__(
+        self,
+        *,
+        expected_call_time: int = 0,
+        actual_call_time: int = 0,
+        clock_type: ClockType = ClockType.SYSTEM_TIME,
+    ) -> None:
+        if not isinstance(clock_type, ClockType):
+            raise TypeError("Clock type must be a ClockType enum")
+        if expected_call_time < 0 or actual_call_time < 0:
+            raise ValueError("call time values must not be negative")
+        self._expected_call_time = Time(nanoseconds=expected_call_time, clock_type=clock_type)
+        self._actual_call_time = Time(nanoseconds=actual_call_time, clock_type=clock_type)
+
+    @property
+    def expected_call_time(self) -> Time:
+        """When it was due."""
+        return self._expected_call_time
+
+    @property
+    def actual_call_time(self) -> Time:
+        """When it was taken by the executor."""
+        return self._actual_call_time
+
+
+class Timer:
+    """Calls its callback at each period. Made by `Node.create_timer`.
+
+    Attributes:
+        callback: What is called.
+        callback_group: Its group.
+    """
+
+    def __init__(
+        self,
+        callback: Callable[..., object] | None,
+        callback_group: CallbackGroup | None,
+        timer_period_ns: int,
+        clock: Clock,
+        *,
+        context: Context | None = None,
+        autostart: bool = True,
+    ) -> None:
+        self._context = get_default_context() if context is None else context
+        self._clock = clock
+        if self._context.handle is None:
+            raise RuntimeError("Context must be initialized before create a _rclpy.Timer.")
+        with clock.handle, self._context.handle:
+            self._handle = TimerHandle(
+                clock.handle, self._context.handle, int(timer_period_ns), autostart
+            )
+        self.callback = callback
+        self.callback_group = callback_group
+        self._executor_event = False
+        self._inspected: tuple[Any, str | None] | None = None
+
+    @property
+    def handle(self) -> TimerHandle:
+        """The handle."""
+        return self._handle
+
+    def destroy(self) -> None:
+        """Destroy it. Use `Node.destroy_timer` for those of nodes."""
+        self._handle.destroy_when_not_in_use()
+
+    @property
+    def clock(self) -> Clock:
+        """The clock that it follows."""
+        return self._clock
+
+    @property
+    def timer_period_ns(self) -> int:
+        """The period in nanoseconds; a new one holds from the next call on."""
+        with self._handle:
+            return self._handle.get_timer_period()
+
+    @timer_period_ns.setter
+    def timer_period_ns(self, value: int) -> None:
+        with self._handle:
+            self._handle.change_timer_period(int(value))
+
+    def is_ready(self) -> bool:
+        """Return whether it is due."""
+        with self._handle:
+            return self._handle.is_timer_ready()
+
+    def is_canceled(self) -> bool:
+        """Return whether it is cancelled."""
+        with self._handle:
+            return self._handle.is_timer_canceled()
+
+    def cancel(self) -> None:
+        """Call no more, until `reset`."""
+        with self._handle:
+            self._handle.cancel_timer()
+
+    def reset(self) -> None:
+        """Begin a new period now."""
+        with self._handle:
+            self._handle.reset_timer()
+
+    def time_since_last_call(self) -> int:
+        """Return nanoseconds since the last call, or since the timer was made."""
+        with self._handle:
+            return self._handle.time_since_last_call()
+
+    def time_until_next_call(self) -> int | None:
+        """Return nanoseconds until the next call, negative if it is late; None if cancelled."""
+        with self._handle:
+            return self._handle.time_until_next_call()
+
+    def info_argument(self, callback: Callable[..., object]) -> str | None:
+        """Return the parameter of `callback` that takes a `TimerInfo`, or None."""
+        if self._inspected is None or self._inspected[0] is not callback:
+            found = None
+            for parameter in inspect.signature(callback).parameters.values():
+                if parameter.annotation in (TimerInfo, "TimerInfo"):
+                    found = parameter.name
+                    break
+            self._inspected = callback, found
+        return self._inspected[1]
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.destroy()
+
+
+class Rate:
+    """Lets a thread sleep until its next tick, while another one spins. Made by `create_rate`."""
+
+    def __init__(self, timer: Timer, *, context: Context) -> None:
+        self._timer = timer
+        self._is_shutdown = False
+        self._is_destroyed = False
+        self._event = threading.Event()
+        self._lock = threading.Lock()
+        self._num_sleepers = 0
+        self._timer.callback = self._event.set
+        context.on_shutdown(self._on_shutdown)
+
+    def _on_shutdown(self) -> None:
+        self._is_shutdown = True
+        self.destroy()
+
+    def destroy(self) -> None:
+        """Wake the threads that sleep. Use `Node.destroy_rate`."""
+        self._is_destroyed = True
+        self._event.set()
+
+    def sleep(self) -> None:
+        """Sleep until the next tick.
+
+        Raises:
+            ROSInterruptException: the context is shut down.
+            RuntimeError: the rate is destroyed.
+            InvalidHandle: its timer is destroyed.
+        """
+        self._refuse_if_shut_down()
+        if self._is_destroyed:
+            raise RuntimeError("Rate cannot sleep because it has been destroyed")
+        if not self._timer.handle.is_valid:
+            self.destroy()
+            raise InvalidHandle("Rate cannot sleep because the timer has been destroyed")
+        with self._lock:
+            self._num_sleepers += 1
+        try:
+            self._event.wait()
+        finally:
+            with self._lock:
+                self._num_sleepers -= 1
+                if self._num_sleepers == 0:
+                    self._event.clear()
+        self._refuse_if_shut_down()
+
+    def _refuse_if_shut_down(self) -> None:
+        if self._is_shutdown:
+            self.destroy()
+            raise ROSInterruptException

@@ -1,0 +1,272 @@
+"""Every function of rcl, rmw and rclpy that the transport uses, and how to find them.
+
+Messages are taken and published as CDR by functions of librcl, called by ctypes, as rclpy has no
+raw form of requests and holds the GIL while it publishes. What makes and destroys entities, and
+what asks for the graph, is rclpy's own extension module, as used by its executors.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import importlib.metadata
+import os
+import sys
+from ctypes import (
+    POINTER,
+    byref,
+    c_char,
+    c_char_p,
+    c_int,
+    c_int64,
+    c_size_t,
+    c_uint8,
+    c_uint64,
+    c_void_p,
+)
+from typing import Any, Final
+
+from aionode.errors import TransportError
+
+__all__ = ["MessageInfo", "Rcl", "RequestId", "ServiceInfo", "load"]
+
+OLDEST: Final = (7, 0)
+"""The first release of rclpy with what is needed: that of ROS 2 Jazzy."""
+
+UNNUMBERED: Final = 2**64 - 1
+"""RMW_MESSAGE_INFO_SEQUENCE_NUMBER_UNSUPPORTED."""
+
+RMW_VARIABLE: Final = "RMW_IMPLEMENTATION"
+
+INSTALL: Final = (
+    "source the ROS 2 of this machine (source /opt/ros/jazzy/setup.bash) and use its Python, or, "
+    "on Linux x86-64: pip install 'aionode[ros]'"
+)
+
+
+class MessageInfo(ctypes.Structure):
+    """The ``rmw_message_info_t`` of Jazzy and later."""
+
+    _fields_ = (
+        ("source_ns", c_int64),
+        ("received_ns", c_int64),
+        ("sequence", c_uint64),
+        ("reception_sequence", c_uint64),
+        ("implementation", c_void_p),
+        ("gid", c_uint8 * 16),
+        ("from_intra_process", ctypes.c_bool),
+    )
+
+
+class RequestId(ctypes.Structure):
+    """An ``rmw_request_id_t``: the client, and its number of the request."""
+
+    _fields_ = (("gid", c_uint8 * 16), ("sequence", c_int64))
+
+
+class ServiceInfo(ctypes.Structure):
+    """An ``rmw_service_info_t``."""
+
+    _fields_ = (("source_ns", c_int64), ("received_ns", c_int64), ("request_id", RequestId))
+
+
+class Gid(ctypes.Structure):
+    """An ``rmw_gid_t``."""
+
+    _fields_ = (("implementation", c_void_p), ("data", c_uint8 * 16))
+
+
+class Allocator(ctypes.Structure):
+    """An ``rcutils_allocator_t``."""
+
+    _fields_ = tuple(
+        (name, c_void_p)
+        for name in ("allocate", "deallocate", "reallocate", "zero_allocate", "state")
+    )
+
+
+class ByteArray(ctypes.Structure):
+    """An ``rcutils_uint8_array_t``, which is an ``rmw_serialized_message_t``."""
+
+    _fields_ = (
+        ("buffer", c_void_p),
+        ("length", c_size_t),
+        ("capacity", c_size_t),
+        ("allocator", Allocator),
+    )
+
+
+class ErrorString(ctypes.Structure):
+    """An ``rcutils_error_string_t``."""
+
+    _fields_ = (("text", c_char * 1024),)
+
+
+class Rcl:
+    """The functions. Those named ``*_freely`` release the GIL, the other ones keep it.
+
+    No thread of the middleware ever wants the GIL, so keeping it cannot deadlock; it spares the
+    loop the wait for the GIL after each short call.
+
+    Attributes:
+        module: rclpy's extension module.
+        middleware: The name of the middleware, such as ``rmw_fastrtps_cpp``.
+        notify: libc's ``eventfd_write`` as an ``rcl_event_callback_t``, which it fits.
+    """
+
+    def __init__(self, module: Any, version: str) -> None:
+        self.module = module
+        self.version = version
+        self.middleware: str = module.rclpy_get_rmw_implementation_identifier()
+        # The functions of rmw and rcutils are found in the libraries that this one needs, whose
+        # names differ between installations.
+        rcl = rmw = rcutils = ctypes.PyDLL("librcl.so")
+        freely = ctypes.CDLL("librcl.so")
+        libc = ctypes.CDLL(None)
+        self.notify = ctypes.cast(libc.eventfd_write, c_void_p)
+
+        array, nothing = POINTER(ByteArray), c_void_p
+        self.take = function(
+            rcl.rcl_take_serialized_message, nothing, array, POINTER(MessageInfo), nothing
+        )
+        self.take_freely = function(
+            freely.rcl_take_serialized_message, nothing, array, POINTER(MessageInfo), nothing
+        )
+        self.publish = function(rcl.rcl_publish_serialized_message, nothing, array, nothing)
+        self.publish_freely = function(
+            freely.rcl_publish_serialized_message, nothing, array, nothing
+        )
+        self.take_request = function(
+            rcl.rcl_take_request_with_info, nothing, POINTER(ServiceInfo), nothing
+        )
+        self.send_response = function(rcl.rcl_send_response, nothing, POINTER(RequestId), nothing)
+        self.send_request = function(rcl.rcl_send_request, nothing, nothing, POINTER(c_int64))
+        self.take_response = function(
+            rcl.rcl_take_response_with_info, nothing, POINTER(ServiceInfo), nothing
+        )
+        self.is_available = function(
+            rcl.rcl_service_server_is_available, nothing, nothing, POINTER(ctypes.c_bool)
+        )
+        self.assert_liveliness = function(rcl.rcl_publisher_assert_liveliness, nothing)
+        # These wait for callbacks that are being called, which need no GIL.
+        self.set_subscription_callback = function(
+            freely.rcl_subscription_set_on_new_message_callback, nothing, nothing, nothing
+        )
+        self.set_service_callback = function(
+            freely.rcl_service_set_on_new_request_callback, nothing, nothing, nothing
+        )
+        self.set_client_callback = function(
+            freely.rcl_client_set_on_new_response_callback, nothing, nothing, nothing
+        )
+        self.add_guard = function(rcl.rcl_wait_set_add_guard_condition, nothing, nothing, nothing)
+        self.graph_guard = function(
+            rcl.rcl_node_get_graph_guard_condition, nothing, returns=nothing
+        )
+        self.serialize = function(rmw.rmw_serialize, nothing, nothing, array)
+        self.deserialize = function(rmw.rmw_deserialize, array, nothing, nothing)
+        self._publisher_rmw = function(rcl.rcl_publisher_get_rmw_handle, nothing, returns=nothing)
+        self._client_rmw = function(rcl.rcl_client_get_rmw_handle, nothing, returns=nothing)
+        self._publisher_gid = function(rmw.rmw_get_gid_for_publisher, nothing, POINTER(Gid))
+        self._client_gid = function(rmw.rmw_get_gid_for_client, nothing, POINTER(Gid))
+        self._new_array = function(rcutils.rcutils_uint8_array_init, array, c_size_t, nothing)
+        self._free_array = function(rcutils.rcutils_uint8_array_fini, array)
+        self._allocator = Allocator()
+        default = rcutils.rcutils_get_default_allocator
+        default.argtypes, default.restype = (), Allocator
+        self._allocator = default()
+        self._get_error = rcutils.rcutils_get_error_string
+        self._get_error.argtypes, self._get_error.restype = (), ErrorString
+        self._reset_error = function(rcutils.rcutils_reset_error, returns=None)
+
+    def error(self) -> str:
+        """Return why the last call of this thread failed, and forget it."""
+        text: bytes = self._get_error().text
+        self._reset_error()
+        return text.decode(errors="replace").partition(", at ")[0]
+
+    def forget_error(self) -> None:
+        """Forget why the last call of this thread failed."""
+        self._reset_error()
+
+    def new_array(self, size: int = 256) -> ByteArray:
+        """Return an array that rcl can write to; `free_array` frees it."""
+        array = ByteArray()
+        if self._new_array(byref(array), size, byref(self._allocator)):
+            raise TransportError(f"transport=rcl: {self.error()}")
+        return array
+
+    def free_array(self, array: ByteArray) -> None:
+        """Free an array of `new_array`."""
+        self._free_array(byref(array))
+
+    def publisher_gid(self, pointer: int) -> bytes:
+        """Return the gid of a publisher of this process; its first 12 bytes are its context's."""
+        gid = Gid()
+        if self._publisher_gid(self._publisher_rmw(pointer), byref(gid)):
+            self.forget_error()
+        return bytes(gid.data)
+
+    def client_gid(self, pointer: int) -> bytes:
+        """Return the gid of a client of this process."""
+        gid = Gid()
+        if self._client_gid(self._client_rmw(pointer), byref(gid)):
+            self.forget_error()
+        return bytes(gid.data)
+
+
+def function(symbol: Any, *arguments: Any, returns: Any = c_int) -> Any:
+    """Return a C function with its signature."""
+    symbol.argtypes, symbol.restype = arguments, returns
+    return symbol
+
+
+def view(payload: bytes) -> ByteArray:
+    """Return an array that shows `payload`, which must outlive it."""
+    size = len(payload)
+    return ByteArray(ctypes.cast(c_char_p(payload), c_void_p), size, size)
+
+
+@functools.cache
+def load() -> Rcl:
+    """Return the functions of the rclpy of this Python.
+
+    Raises:
+        TransportError: there is none, or one that is too old, or its middleware is missing.
+    """
+    if getattr(sys.modules.get("rclpy"), "__name__", "rclpy") != "rclpy":
+        raise TransportError(
+            "transport=rcl: in this process, rclpy is aionode's; a program that imports rclpy runs "
+            "over DDS with ROS's own, or uses aionode's names"
+        )
+    try:
+        from rclpy.impl.implementation_singleton import rclpy_implementation
+    except ImportError as error:
+        raise TransportError(
+            f"transport=rcl: rclpy is not installed in this Python ({error}); {INSTALL}"
+        ) from error
+    version = importlib.metadata.version("rclpy")
+    if tuple(map(int, version.split(".")[:2])) < OLDEST:
+        raise TransportError(
+            f"transport=rcl: rclpy {version} is too old; it needs ROS 2 Jazzy or later (rclpy "
+            f"{'.'.join(map(str, OLDEST))})"
+        )
+    if not hasattr(os, "eventfd"):
+        raise TransportError("transport=rcl: it needs Linux, whose eventfds wake the event loop")
+    try:
+        return Rcl(rclpy_implementation, version)
+    except (OSError, AttributeError) as error:
+        raise TransportError(
+            f"transport=rcl: the libraries of rclpy {version} lack something ({error}); it works "
+            "with those of ROS 2 Jazzy and Kilted"
+        ) from error
+    except Exception as error:  # rclpy's own kinds, of which none is public
+        raise TransportError(middleware_problem(error)) from error
+
+
+def middleware_problem(error: Exception) -> str:
+    """Return why no middleware could be loaded."""
+    name = os.environ.get(RMW_VARIABLE, "")
+    return (
+        f"transport=rcl: the middleware {RMW_VARIABLE}={name!r} cannot be used "
+        f"({str(error).partition(', at ')[0]}); unset it, or install that middleware"
+    )

@@ -1,0 +1,292 @@
+"""Publishers and subscriptions on rcl."""
+
+from __future__ import annotations
+
+import ctypes
+from collections import deque
+from ctypes import byref
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode.errors import DecodeError
+from aionode.graph import EndpointKind
+from aionode.qos import DurabilityPolicy, depth_of, keeps_all
+from aionode.transport._send_thread import SendQueue, SendThread
+from aionode.transport.base import SampleInfo, Writer
+from aionode.transport.rcl._bindings import UNNUMBERED, MessageInfo, load, view
+from aionode.transport.rcl._state import RclDeclaration
+from aionode.transport.rcl._types import rosidl_class
+from aionode.transport.rcl._wake import Wake
+from aionode.wire import cdr
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.graph import EndpointInfo
+    from aionode.transport.base import Reader
+    from aionode.transport.rcl._bindings import ByteArray, Rcl
+    from aionode.transport.rcl._state import RclState
+
+__all__ = ["RclReader", "RclWriter"]
+
+BULK_BYTES: Final = 60_000
+"""From this size on a message is sent by a thread, and taken without the GIL."""
+
+GIVE_UP_TRIES: Final = 20
+"""How often a publisher that is being destroyed tries to send one more message (0.1 s each)."""
+
+
+class RclWriter(RclDeclaration, Writer):
+    """A publisher for the subscriptions of others.
+
+    The loop sends small messages itself, which never waits with KEEP_LAST. Large ones are sent by
+    the context's thread; with KEEP_ALL, where DDS waits 0.1 s for readers and then refuses, all are
+    sent by a thread of this publisher, which tries again.
+    """
+
+    def __init__(self, state: RclState, endpoint: EndpointInfo, msg_type: type[Any]) -> None:
+        super().__init__(state, endpoint)
+        self._encode: Callable[[Any], bytes] = cdr.encoder(msg_type)
+        self._transient = endpoint.qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
+        self.bounded = keeps_all(endpoint.qos)
+        self._handle: Any = None
+        self._pointer = 0
+        self._publish: Callable[..., int] | None = None
+        # Published before the context was open, for late readers.
+        self._early: deque[bytes] = deque(maxlen=depth_of(endpoint.qos))
+        self._patient = SendThread("aionode-rcl-patient", state.waker) if self.bounded else None
+        self._queue: SendQueue = (self._patient or state.bulk).send_queue(
+            depth_of(endpoint.qos), keep_all=self.bounded
+        )
+        self._readers: set[EndpointInfo] = set()
+        self._unwatch: Callable[[], None] | None = None
+        self._closing = False
+        self._refused = 0
+        self.active = self._transient
+        state.add(self)
+
+    def declare(self, rcl: Rcl) -> None:
+        """Make the publisher, and send what was published before."""
+        ros_class = rosidl_class(self.endpoint.type_name, self.endpoint.type_hash)
+        self._closing = False
+        self._handle = self.make(rcl.module.Publisher, ros_class)
+        self._pointer = self._handle.pointer
+        self._publish = rcl.publish
+        gid = rcl.publisher_gid(self._pointer)
+        self.state.note_own(gid)
+        self.identify(gid)
+        if self.state.graph is not None:
+            self._unwatch = self.state.graph.watch(
+                EndpointKind.SUBSCRIPTION, self.endpoint.name, self._note_reader
+            )
+        while self._early:
+            self._send(self._early.popleft())
+
+    def _note_reader(self, reader: EndpointInfo, present: bool) -> None:
+        if present and reader.node.over_rcl and self.endpoint.matches(reader):
+            self._readers.add(reader)
+        else:
+            self._readers.discard(reader)
+        self.active = self._transient or bool(self._readers)
+
+    def undeclare(self) -> None:
+        """Destroy the publisher, after the messages that wait for a thread."""
+        handle, self._handle = self._handle, None
+        self._publish = None
+        self._closing = True
+        if self._unwatch is not None:
+            self._unwatch()
+            self._unwatch = None
+        self._readers.clear()
+        self.active = self._transient
+        if handle is None:
+            return
+        if not len(self._queue):
+            handle.destroy_when_not_in_use()
+        else:
+            (self._patient or self.state.bulk).submit(handle.destroy_when_not_in_use)
+        if self._patient is not None:
+            self._patient.close()
+
+    # Messages
+
+    def write(self, msg: Any, sample_info: SampleInfo) -> None:  # noqa: ARG002  # DDS numbers them
+        """Send `msg`."""
+        payload = self._encode(msg)
+        if self._publish is None:
+            if self._transient:
+                self._early.append(payload)
+        else:
+            self._send(payload)
+
+    def _send(self, payload: bytes) -> None:
+        if self.bounded or len(payload) >= BULK_BYTES or len(self._queue):
+            self._queue.put(partial(self._send_freely, self._handle, self._pointer, payload))
+        elif self._publish is not None and self._publish(self._pointer, byref(view(payload)), None):
+            self._note_refused()
+
+    def _send_freely(self, handle: Any, pointer: int, payload: bytes) -> None:  # noqa: ARG002
+        """Send a message in a thread; `handle` keeps the publisher alive meanwhile."""
+        rcl, array = load(), view(payload)
+        tries = 0
+        while rcl.publish_freely(pointer, byref(array), None):
+            if not self.bounded or (self._closing and tries >= GIVE_UP_TRIES):
+                self._note_refused()
+                return
+            rcl.forget_error()
+            tries += self._closing
+
+    def _note_refused(self) -> None:
+        self._refused += 1
+        self.state.note_refused(self.endpoint.name)
+
+    def has_room(self) -> bool:
+        """Whether one more message can wait for its turn."""
+        return not self.bounded or self._queue.has_room()
+
+    async def flush(self) -> None:
+        """Wait until everything was handed to the middleware."""
+        await self._queue.drain()
+
+    async def drain(self) -> None:
+        """Wait until everything was handed to the middleware."""
+        await self._queue.drain()
+
+    def assert_liveliness(self) -> None:
+        """Tell the readers, as DDS does it."""
+        if self._handle is not None and self.state.rcl is not None:
+            self.state.rcl.assert_liveliness(self._pointer)
+
+    @property
+    def dropped(self) -> int:
+        """How many messages were dropped on their way because it was slow."""
+        return self._queue.dropped + self._refused
+
+    def route_of(self, reader: EndpointInfo) -> str | None:
+        """Return ``rcl`` for the subscriptions of others."""
+        return "rcl" if reader in self._readers else None
+
+
+class RclReader(RclDeclaration):
+    """A subscription for the publishers of others.
+
+    It cannot leave out this context's own publishers, whom `LocalTransport` serves, so it drops
+    their messages.
+    """
+
+    def __init__(
+        self, state: RclState, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
+    ) -> None:
+        super().__init__(state, endpoint)
+        self._reader = reader
+        self._decode: Callable[[bytes], Any] = cdr.decoder(msg_type)
+        self._raw = reader.raw
+        self._keep_all = keeps_all(endpoint.qos)
+        self._handle: Any = None
+        self._pointer = 0
+        self._wake: Wake | None = None
+        self._array: ByteArray | None = None
+        self._info = MessageInfo()
+        self._take_it: Callable[..., int] | None = None
+        self._waits_for_room = False
+        self._counts: dict[bytes, int] = {}  # where the middleware does not number messages
+        state.add(self)
+
+    def declare(self, rcl: Rcl) -> None:
+        """Make the subscription."""
+        ros_class = rosidl_class(self.endpoint.type_name, self.endpoint.type_hash)
+        loop = self.state.loop
+        if loop is None:
+            return
+        self._handle = self.make(rcl.module.Subscription, ros_class)
+        self._pointer = self._handle.pointer
+        self._array = rcl.new_array()
+        self._take_it = rcl.take
+        gid = self._find_gid(rcl)
+        if gid is not None:
+            self.identify(gid)
+        self._wake = Wake(
+            loop, rcl.set_subscription_callback, self._pointer, rcl.notify, self._take
+        )
+
+    def _find_gid(self, rcl: Rcl) -> bytes | None:
+        """Return the gid of this subscription: the one of its node that is not known yet."""
+        node, graph = self.state.node(self.endpoint.node), self.state.graph
+        if graph is None:
+            return None
+        name = self.endpoint.name
+        with node:
+            found = rcl.module.rclpy_get_subscriptions_info_by_topic(node, name, False)
+        known = {one.gid for one in graph.endpoints(EndpointKind.SUBSCRIPTION, name=name)}
+        known |= self.state.own_gids
+        for one in found:
+            gid = bytes(one["endpoint_gid"])
+            names = (one["node_name"], one["node_namespace"])
+            own = (self.endpoint.node.name, self.endpoint.node.namespace)
+            if names == own and gid not in known:
+                self.state.note_own(gid)
+                return gid
+        return None
+
+    def undeclare(self) -> None:
+        """Destroy the subscription."""
+        wake, self._wake = self._wake, None
+        handle, self._handle = self._handle, None
+        array, self._array = self._array, None
+        if wake is not None:
+            wake.close()
+        if handle is not None:
+            handle.destroy_when_not_in_use()
+        if array is not None and self.state.rcl is not None:
+            self.state.rcl.free_array(array)
+
+    def _take(self, inline_deadline_ns: int) -> bool:
+        """Take one message; return whether there may be more."""
+        array, take, reader = self._array, self._take_it, self._reader
+        if array is None or take is None:
+            return False
+        if self._keep_all and not reader.has_room():
+            self._wait_for_room()
+            return False
+        info = self._info
+        if take(self._pointer, byref(array), byref(info), None):
+            if self.state.rcl is not None:
+                self.state.rcl.forget_error()
+            return False
+        gid = bytes(info.gid)
+        if self.state.is_own(gid):
+            return True
+        self._deliver(array, gid, inline_deadline_ns)
+        return True
+
+    def _deliver(self, array: ByteArray, gid: bytes, inline_deadline_ns: int) -> None:
+        info, reader = self._info, self._reader
+        size = array.length
+        if size >= BULK_BYTES and self.state.rcl is not None:
+            self._take_it = self.state.rcl.take_freely
+        payload = ctypes.string_at(array.buffer, size)
+        sequence = info.sequence
+        if sequence == UNNUMBERED:
+            sequence = self._counts[gid] = self._counts.get(gid, 0) + 1
+        sample_info = SampleInfo(gid, sequence, info.source_ns, True)
+        if self._raw:
+            reader.deliver(payload, sample_info, inline_deadline_ns)
+            return
+        try:
+            msg = self._decode(payload)
+        except DecodeError as error:
+            self.state.note_malformed(self.endpoint.name, str(error))
+            reader.reject(error)
+        else:
+            reader.deliver(msg, sample_info, inline_deadline_ns)
+
+    def _wait_for_room(self) -> None:
+        """Leave messages in the middleware, which holds their publishers back."""
+        if not self._waits_for_room:
+            self._waits_for_room = True
+            self._reader.when_room(self._go_on)
+
+    def _go_on(self) -> None:
+        self._waits_for_room = False
+        if self._wake is not None:
+            self._wake.again()

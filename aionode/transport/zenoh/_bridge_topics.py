@@ -1,0 +1,65 @@
+"""Publishers and subscriptions for the nodes behind bridges."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import zenoh
+
+from aionode.transport.base import SampleInfo
+from aionode.transport.zenoh._bridge_state import BridgeDeclaration
+from aionode.transport.zenoh._delivery import UNKNOWN_GID, sample_info_of
+from aionode.transport.zenoh._publisher import ZenohWriter
+from aionode.transport.zenoh._subscription import ZenohReader
+
+if TYPE_CHECKING:
+    from aionode.content_filter import ContentFilterOptions
+    from aionode.graph import EndpointInfo
+
+__all__ = ["BridgeReader", "BridgeWriter"]
+
+
+class BridgeWriter(BridgeDeclaration, ZenohWriter):
+    """A publisher for the subscriptions behind bridges.
+
+    Its messages have the attachment of rmw_zenoh, which bridges ignore: by it, other contexts of
+    aionode know that they get the message on the other key as well.
+    """
+
+    recovers: ClassVar[bool] = False
+
+    def _update(self) -> None:
+        """Update `active` from the subscriptions that bridges announce.
+
+        Without a bridge, what late subscriptions shall get is kept for the first one, unless it is
+        valid for some time only, as the log is.
+        """
+        super()._update()
+        if self._transient:
+            self.active = self._publisher is not None or not self._lifespan_ns
+
+    def assert_liveliness(self) -> None:
+        """Do nothing: a bridge does not carry it."""
+
+    def route_of(self, reader: EndpointInfo) -> str | None:
+        """Return ``bridge`` for subscriptions behind one."""
+        return "bridge" if reader.node.bridged else None
+
+
+class BridgeReader(BridgeDeclaration, ZenohReader):
+    """A subscription to the publishers behind bridges."""
+
+    recovers: ClassVar[bool] = False
+
+    def _take(self, sample: zenoh.Sample) -> None:
+        if sample.kind != zenoh.SampleKind.PUT or sample_info_of(sample.attachment) is not None:
+            return  # of a context of aionode, whose message comes on rmw_zenoh's key too
+        payload = sample.payload.to_bytes()
+        sample_info = SampleInfo(UNKNOWN_GID, 0, 0, True)
+        if self._keep_all:
+            self._accept_or_wait(payload, sample_info, None)
+        else:
+            self._hand_over(payload, sample_info)
+
+    def set_content_filter(self, content_filter: ContentFilterOptions) -> None:
+        """Do nothing: DDS nodes behind a bridge learn of no filter."""

@@ -1,0 +1,93 @@
+"""Zenoh publishers: one that keeps its last messages for late readers, and what has expired."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import zenoh
+from zenoh import ext
+
+from aionode.wire import _attachment as attachment
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["declare_keeping", "declare_plain", "unless_expired"]
+
+
+def declare_plain(
+    session: zenoh.Session, key: str, priority: zenoh.Priority, *, reliable: bool, waits: bool
+) -> zenoh.Publisher:
+    """Declare a publisher that keeps nothing; the arguments are as in `declare_keeping`."""
+    return session.declare_publisher(
+        key,
+        congestion_control=zenoh.CongestionControl.BLOCK if waits else zenoh.CongestionControl.DROP,
+        priority=priority,
+        reliability=zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT,
+        allowed_destination=zenoh.Locality.REMOTE,
+    )
+
+
+def declare_keeping(
+    session: zenoh.Session,
+    key: str,
+    depth: int,
+    priority: zenoh.Priority,
+    *,
+    reliable: bool,
+    waits: bool,
+    numbered: bool,
+) -> ext.AdvancedPublisher:
+    """Declare a publisher that keeps its last messages for late readers, expired or not.
+
+    Args:
+        session: The session.
+        key: Its key expression.
+        depth: How many messages it keeps.
+        priority: The Zenoh priority of its messages.
+        reliable: Whether no message may be lost on the way.
+        waits: Whether it waits for slow readers instead of dropping messages.
+        numbered: Whether readers may ask again for what they miss.
+    """
+    return ext.declare_advanced_publisher(
+        session,
+        key,
+        congestion_control=zenoh.CongestionControl.BLOCK if waits else zenoh.CongestionControl.DROP,
+        priority=priority,
+        reliability=zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT,
+        allowed_destination=zenoh.Locality.REMOTE,
+        cache=ext.CacheConfig(max_samples=depth),
+        publisher_detection=True,
+        # Samples are numbered, so that readers ask again for what is missing between two. No
+        # heartbeat, which would tell of a missing last one too: undeclaring waits for its task with
+        # the GIL held, and for 10 s if that task's thread needs the GIL for a callback just then
+        # (zenoh-python 1.10).
+        sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=None)
+        if reliable and numbered
+        else None,
+    )
+
+
+def unless_expired(
+    extra: bytes, lifespan_ns: int, now_ns: Callable[[], int], send: Callable[[], None]
+) -> Callable[[], None]:
+    """Return `send`, or what does nothing if the message has expired by then.
+
+    Only readers of aionode look at the age of what arrives.
+
+    Args:
+        extra: The attachment of the message, which says when it was published.
+        lifespan_ns: How long it is valid; 0 for ever.
+        now_ns: Returns nanoseconds since 1970.
+        send: Sends the message.
+    """
+    fields = attachment.unpack_fields(extra)
+    if not lifespan_ns or fields is None:
+        return send
+    expires_ns = fields[1] + lifespan_ns
+
+    def send_if_fresh() -> None:
+        if now_ns() < expires_ns:
+            send()
+
+    return send_if_fresh

@@ -1,0 +1,100 @@
+"""The contract of transports, for nodes on DDS behind `zenoh-bridge-ros2dds`."""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
+
+from aionode.transport.base import Registration, Transport
+from aionode.transport.zenoh._bridge_graph import BridgeWatcher
+from aionode.transport.zenoh._bridge_services import BridgeRequester, BridgeServer
+from aionode.transport.zenoh._bridge_state import BridgeState
+from aionode.transport.zenoh._bridge_topics import BridgeReader, BridgeWriter
+
+if TYPE_CHECKING:
+    from aionode.clock import TimeBase
+    from aionode.graph import EndpointInfo, Graph, NodeInfo
+    from aionode.transport.base import Reader, ReaderRegistration, Requester, Serve, Writer
+    from aionode.transport.zenoh._session_state import SessionState
+
+__all__ = ["BridgeTransport"]
+
+KNOWN_S = 0.3
+"""How long `open` waits for the graph of connected bridges; it takes a millisecond."""
+
+
+class Unannounced(Registration):
+    """A node: bridges know none of ours."""
+
+    def close(self) -> None:
+        """Do nothing."""
+
+
+class BridgeTransport(Transport):
+    """Reaches nodes on DDS through the bridges that the Zenoh session of a context is connected to.
+
+    Until a bridge is seen, nothing is declared for it.
+
+    Args:
+        session_state: The connection of the context, which is open while this is.
+        time_base: The time of the context; by default that of the machine.
+    """
+
+    def __init__(self, session_state: SessionState, time_base: TimeBase | None = None) -> None:
+        self._session_state = session_state
+        self._state = BridgeState(
+            session_state.participant, session_state.domain_id, time_base, session_state.waker
+        )
+        self._watcher = BridgeWatcher(session_state, self._state)
+
+    def __repr__(self) -> str:
+        return f"<BridgeTransport bridges={len(self._state.prefixes)}>"
+
+    @property
+    def dds_bridges(self) -> dict[str, bool]:
+        """The Zenoh ids of the bridges, each with whether nodes on Fast DDS are behind it."""
+        return {zid: zid in self._state.fast_dds for zid in self._state.prefixes}
+
+    async def open(self, graph: Graph) -> None:
+        """Look for bridges; return when the graphs of existing ones are known, if they answer."""
+        session = self._session_state.session
+        if session is not None:
+            with suppress(TimeoutError):
+                async with asyncio.timeout(KNOWN_S):
+                    await self._watcher.start(session, graph)
+
+    async def close(self) -> None:
+        """Withdraw everything, within a second after `SessionState.flush`; the session stays."""
+        await self._state.flush()
+        self._watcher.stop()
+        self._state.disconnect()
+
+    async def all_known(self, quiet_s: float) -> bool:  # noqa: ARG002  # a bridge has its own limit
+        """Ask the bridges for the nodes behind them."""
+        await self._watcher.ask_for_nodes()
+        return True
+
+    def create_node(self, node: NodeInfo) -> Registration:  # noqa: ARG002  # not announced
+        """Do nothing: a bridge shows our endpoints as its own."""
+        return Unannounced()
+
+    def create_writer(self, endpoint: EndpointInfo, msg_type: type[Any]) -> Writer:
+        """Declare a publisher, once there is a bridge."""
+        return BridgeWriter(self._state, endpoint, msg_type)
+
+    def create_reader(
+        self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
+    ) -> ReaderRegistration:
+        """Declare a subscription, once there is a bridge."""
+        return BridgeReader(self._state, endpoint, msg_type, reader)
+
+    def create_server(
+        self, endpoint: EndpointInfo, srv_type: type[Any], serve: Serve
+    ) -> Registration:
+        """Declare a server, once there is a bridge."""
+        return BridgeServer(self._state, endpoint, srv_type, serve)
+
+    def create_requester(self, endpoint: EndpointInfo, srv_type: type[Any]) -> Requester:
+        """Declare a client, once there is a bridge."""
+        return BridgeRequester(self._state, endpoint, srv_type)

@@ -1,0 +1,414 @@
+"""What is counted for one message: each case without Zenoh's threads, and in one process.
+
+A case is an async context manager that yields a function; each call of it begins one message, and
+a few turns of the event loop end it.
+"""
+
+# ruff: noqa: ARG002  # what the contract of transports passes
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import time
+from collections.abc import AsyncIterator, Callable
+from contextlib import AbstractAsyncContextManager, asynccontextmanager
+from typing import Any, Final
+
+import zenoh
+
+from aionode import Context, Node
+from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.std_msgs.msg import String
+from aionode.qos import qos_profile_sensor_data
+from aionode.transport._content_filters import ContentFilters
+from aionode.transport.base import Reader, Registration, Requester, Serve, Transport, Writer
+from aionode.transport.ipc import IpcTransport
+from aionode.transport.ipc import _protocol as protocol
+from aionode.transport.local import LocalTransport
+from aionode.transport.zenoh._publisher import ZenohWriter
+from aionode.transport.zenoh._session_state import SessionState
+from aionode.transport.zenoh._subscription import ZenohReader
+from aionode.wire import _attachment as attachment
+from aionode.wire import cdr
+from benchmarks.ipc_parts.common import TEXT, is_linked, node_of
+
+__all__ = ["CASES", "TURNS", "Count", "calibrate"]
+
+TURNS: Final = 3
+"""Turns of the event loop that end each message; a bare loop takes as many beside it."""
+
+SMALL: Final = 10  # depth of the queues
+
+
+class Count:
+    """How many messages, ticks or answers have arrived."""
+
+    def __init__(self) -> None:
+        self.count = 0
+
+    def take(self, _: object = None) -> None:
+        """Count one."""
+        self.count += 1
+
+
+Case = Callable[[Count], AbstractAsyncContextManager[Callable[[], Any]]]
+
+
+# Transports that reach no network
+
+
+class Silent(Writer, Requester):
+    """An endpoint that nothing is behind."""
+
+    active = False
+    bounded = False
+    servers = 1
+
+    def write(self, msg: Any, sample_info: Any) -> None:
+        """Send nothing."""
+
+    def send(self, request: Any, sample_info: Any, reply_to: Any) -> Any:
+        """Send nothing."""
+
+    def has_room(self) -> bool:
+        """Have room always."""
+        return True
+
+    async def drain(self) -> None:
+        """Have nothing to wait for."""
+
+    def close(self) -> None:
+        """Withdraw nothing."""
+
+
+class Introducer(Transport):
+    """In place of Zenoh: tells the contexts of this process of each other, and carries nothing."""
+
+    present: Final[dict[str, tuple[Introducer, Graph]]] = {}
+
+    def __init__(self, participant: str) -> None:
+        self.participant = participant
+        self.advertisement: str | None = None
+        self.on_advertisement: Callable[[str, bool], None] = lambda _, __: None
+        self.content_filters = ContentFilters()
+        self.has_unannounced_peers = False
+        self.on_unannounced_peers: Callable[[bool], None] = lambda _: None
+        self.on_retransmit: Callable[[bytes], None] = lambda _: None
+
+    def retransmit(self, participant: str, data: bytes) -> None:
+        """Send nothing."""
+
+    def announce_link(self, participant: str, on: bool) -> None:
+        """Tell no tools."""
+
+    async def open(self, graph: Graph) -> None:
+        """Introduce the context to those that are there, and them to it."""
+        for other, theirs in self.present.values():
+            for endpoint in theirs.endpoints():
+                if endpoint.node.participant == other.participant:
+                    graph.add_endpoint(endpoint)
+            for one, another in ((self, other), (other, self)):
+                if another.advertisement is not None:
+                    one.on_advertisement(another.advertisement, True)
+        self.present[self.participant] = (self, graph)
+
+    async def close(self) -> None:
+        """Leave."""
+        del self.present[self.participant]
+
+    def _announce(self, endpoint: EndpointInfo) -> Silent:
+        loop = asyncio.get_running_loop()
+        for other, graph in self.present.values():
+            if other is not self:
+                loop.call_soon(graph.add_endpoint, endpoint)
+        return Silent()
+
+    def create_node(self, node: NodeInfo) -> Registration:
+        """Announce no node."""
+        return Silent()
+
+    def create_writer(self, endpoint: EndpointInfo, msg_type: type[Any]) -> Writer:
+        """Announce a publisher."""
+        return self._announce(endpoint)
+
+    def create_reader(
+        self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
+    ) -> Registration:
+        """Announce a subscription."""
+        return self._announce(endpoint)
+
+    def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Registration:
+        """Announce a server."""
+        return self._announce(endpoint)
+
+    def create_requester(self, endpoint: EndpointInfo, srv_type: Any) -> Requester:
+        """Announce a client."""
+        return self._announce(endpoint)
+
+
+class NoSession:
+    """In place of a Zenoh session, and of all that it declares; `put` sends nothing."""
+
+    matching = True
+
+    def __getattr__(self, name: str) -> Any:
+        return self
+
+    def __call__(self, *_: object, **__: object) -> NoSession:
+        return self
+
+    def put(self, payload: bytes, attachment: bytes) -> None:
+        """Send nothing."""
+
+
+class Sample:
+    """What Zenoh hands over."""
+
+    def __init__(self, payload: bytes, extra: bytes) -> None:
+        self.payload = zenoh.ZBytes(payload)
+        self.attachment = zenoh.ZBytes(extra)
+
+
+class ZenohEndpoints(Introducer):
+    """aionode's endpoints of Zenoh, without a session."""
+
+    def __init__(self, participant: str) -> None:
+        super().__init__(participant)
+        self.state = SessionState(participant, 0)
+        self.reader: ZenohReader | None = None
+
+    async def open(self, graph: Graph) -> None:
+        """Connect to nothing."""
+        self.state.waker.open(asyncio.get_running_loop())
+        self.state.has_unannounced_peers = False
+        self.state.connect(NoSession(), graph)  # type: ignore[arg-type]  # as far as it is used
+
+    async def close(self) -> None:
+        """End."""
+        self.state.disconnect()
+        self.state.waker.close()
+
+    def create_writer(self, endpoint: EndpointInfo, msg_type: type[Any]) -> Writer:
+        """Return the writer that is measured."""
+        return ZenohWriter(self.state, endpoint, msg_type)
+
+    def create_reader(
+        self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
+    ) -> Registration:
+        """Return the reader that is measured."""
+        self.reader = ZenohReader(self.state, endpoint, msg_type, reader)
+        return self.reader
+
+
+# Cases
+
+
+@asynccontextmanager
+async def nothing(count: Count) -> AsyncIterator[Callable[[], Any]]:
+    """Turn the loop only."""
+    yield count.take
+
+
+@asynccontextmanager
+async def bare_socket(count: Count) -> AsyncIterator[Callable[[], Any]]:
+    """Send 72 bytes over a Unix socket to a function that the loop calls."""
+    ours, theirs = socket.socketpair()
+    ours.setblocking(False)
+    theirs.setblocking(False)
+    loop = asyncio.get_running_loop()
+    loop.add_reader(theirs, lambda: count.take(theirs.recv(1 << 15)))
+    data = bytes(72)
+    yield lambda: ours.send(data)
+    loop.remove_reader(theirs)
+
+
+@asynccontextmanager
+async def in_process(count: Count) -> AsyncIterator[Callable[[], Any]]:
+    """Publish to a callback of the same process."""
+    async with Context(transport="local") as context, node_of("one", context) as node:
+        publisher = node.create_publisher(String, "topic", SMALL)
+        node.create_subscription(String, "topic", count.take, SMALL)
+        yield lambda: publisher.publish(String(data=TEXT))
+
+
+@asynccontextmanager
+async def linked_nodes() -> AsyncIterator[tuple[Node, Node]]:
+    """Return two nodes in two contexts that are linked as soon as they have a match."""
+
+    def context() -> Context:
+        made = Context(transport="local")
+        made._transports = (LocalTransport(), link_of(made))  # noqa: SLF001  # with its own id
+        return made
+
+    def link_of(made: Context) -> IpcTransport:
+        introducer = Introducer(made.participant)
+        return IpcTransport(made.participant, 0, introducer, introducer)
+
+    async with context() as a, context() as b, node_of("a", a) as one, node_of("b", b) as two:
+        yield one, two
+
+
+@asynccontextmanager
+async def linked_pair(count: Count) -> AsyncIterator[tuple[Any, Any]]:
+    """Return a publisher and the connection at the other end, which hands over to `count`."""
+    async with linked_nodes() as (one, two):
+        publisher = one.create_publisher(String, "topic", SMALL)
+        two.create_subscription(String, "topic", count.take, SMALL)
+        while not (publisher.get_subscription_count() and is_linked(publisher)):
+            publisher.publish(String(data=TEXT))
+            await asyncio.sleep(0.02)
+        links = two.context.transports[1].manager._links  # type: ignore[attr-defined]  # noqa: SLF001  # no other way in
+        yield publisher, next(iter(links.values()))
+
+
+@asynccontextmanager
+async def link_publish(count: Count) -> AsyncIterator[Callable[[], Any]]:
+    """Publish over a link; what arrives is read from the socket and dropped."""
+    async with linked_pair(count) as (publisher, connection):
+        loop = asyncio.get_running_loop()
+        sock = connection._sock  # noqa: SLF001  # to read past it
+        loop.remove_reader(sock)
+
+        def publish() -> None:
+            publisher.publish(String(data=TEXT))
+            count.take(sock.recv(1 << 15))
+
+        yield publish
+        loop.add_reader(sock, connection._on_readable)  # noqa: SLF001  # as before
+
+
+@asynccontextmanager
+async def link_receive(count: Count) -> AsyncIterator[Callable[[], Any]]:
+    """Read frames from a link's socket, and call a callback."""
+    async with linked_pair(count) as (publisher, _):
+        gid = publisher._gid  # noqa: SLF001  # for its frames
+        (sender,) = publisher._writers[1]._send_queues  # noqa: SLF001  # its end of the link
+        sock = sender._sock  # noqa: SLF001  # to write past it
+        payload = cdr.encode(String(data=TEXT))
+        # One for each message, made before they are counted.
+        frames = iter(
+            [
+                protocol.pack(protocol.Kind.DATA, 1_000 + number, 1, gid, payload)
+                for number in range(2_000)
+            ]
+        )
+        yield lambda: sock.send(next(frames))
+
+
+@asynccontextmanager
+async def service_call(count: Count) -> AsyncIterator[Callable[[], Any]]:
+    """Call a service over a link: client and server."""
+    async with linked_nodes() as (one, two):
+        client = one.create_client(AddTwoInts, "add")
+        response = AddTwoInts.Response(sum=3)
+        two.create_service(AddTwoInts, "add", lambda _: response)
+        one.create_publisher(String, "topic", SMALL)  # a match, for which they are linked
+        two.create_subscription(String, "topic", count.take, SMALL)
+        await client.wait_for_service()
+        request = AddTwoInts.Request(a=1, b=2)
+
+        async def call() -> None:
+            await client.call(request)
+            count.take()
+
+        while not one.context.transports[1].manager.links:  # type: ignore[attr-defined]  # noqa: ASYNC110  # nothing tells
+            await asyncio.sleep(0.02)
+        yield call
+
+
+@asynccontextmanager
+async def zenoh_node() -> AsyncIterator[tuple[Node, ZenohEndpoints]]:
+    """Return a node on Zenoh's endpoints without a session."""
+    transport = ZenohEndpoints("ab")
+    async with Context(transport=transport) as context, node_of("one", context) as node:
+        yield node, transport
+
+
+@asynccontextmanager
+async def zenoh_publish(count: Count) -> AsyncIterator[Callable[[], Any]]:
+    """Publish up to the call of Zenoh's `put`."""
+    async with zenoh_node() as (node, transport):
+        publisher = node.create_publisher(String, "topic", qos_profile_sensor_data)
+        graph = transport.state.graph
+        assert graph is not None  # noqa: S101  # open
+        own = publisher._graph_entry.endpoint  # noqa: SLF001  # for a match
+        theirs = NodeInfo("cd", 1, "other", "/")
+        graph.add_endpoint(
+            EndpointInfo(
+                EndpointKind.SUBSCRIPTION, theirs, 1, own.name, own.type_name, own.type_hash,
+                own.qos, bytes(16),
+            )
+        )  # fmt: skip
+        transport.state._readers_changed()  # noqa: SLF001  # as the watcher does
+
+        def publish() -> None:
+            publisher.publish(String(data=TEXT))
+            count.take()
+
+        yield publish
+
+
+@asynccontextmanager
+async def zenoh_receive(count: Count) -> AsyncIterator[Callable[[], Any]]:
+    """Take a sample from Zenoh's queue, and call a callback."""
+    async with zenoh_node() as (node, transport):
+        node.create_subscription(String, "topic", count.take, qos_profile_sensor_data)
+        assert transport.reader is not None  # noqa: S101  # just made
+        queue = transport.reader._queue  # noqa: SLF001  # where Zenoh's threads put
+        payload = cdr.encode(String(data=TEXT))
+        gid = bytes(range(16))
+        samples = iter(
+            [Sample(payload, attachment.pack(number, 1, gid)) for number in range(1, 2_001)]
+        )
+        yield lambda: queue.put(next(samples))  # type: ignore[arg-type]  # as far as it is used
+
+
+@asynccontextmanager
+async def timer_tick(count: Count) -> AsyncIterator[Callable[[], Any]]:
+    """Call the callback of a timer that is due."""
+    async with Context(transport="local") as context, node_of("one", context) as node:
+        timer = node.create_timer(0.05, count.take)
+
+        def until_due() -> None:
+            time.sleep(max(timer.time_until_next_call() or 0, 0) / 1e9 + 0.001)
+
+        yield until_due
+
+
+CASES: Final[dict[str, Case]] = {
+    "nothing": nothing,
+    "bare socket": bare_socket,
+    "publish to callback, in process": in_process,
+    "publish, link": link_publish,
+    "receive to callback, link": link_receive,
+    "publish, Zenoh": zenoh_publish,
+    "receive to callback, Zenoh": zenoh_receive,
+    "timer tick": timer_tick,
+    "service call and response, link": service_call,
+}
+
+PILE: Final = bytes(2 << 20)  # twice the cache that is simulated
+WARM_UP: Final = 64
+
+
+def empty_caches() -> None:
+    """Push everything else out of the caches, as what a processor does between messages does."""
+    PILE.find(b"\x01")
+
+
+async def calibrate(name: str, messages: int) -> int:
+    """Play so many messages of a case, with empty caches before each; return how many arrived."""
+    count = Count()
+    async with CASES[name](count) as begin:
+        for number in range(WARM_UP + messages):
+            if number == WARM_UP:
+                count.count = 0
+            empty_caches()
+            begun = begin()
+            if begun is not None and asyncio.iscoroutine(begun):
+                await begun
+            for _ in range(TURNS):
+                await asyncio.sleep(0)
+        return count.count

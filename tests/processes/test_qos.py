@@ -1,0 +1,68 @@
+"""Liveliness of a process that hangs: the system runs it no more, and no peer is told."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+from typing import TYPE_CHECKING
+
+import pytest
+
+from aionode._concurrency import checkpoint
+from aionode.context import Context
+from aionode.endpoints.events import QoSLivelinessChangedInfo
+from aionode.interfaces.std_msgs.msg import Int32
+from tests.processes.process import Process
+from tests.processes.qos_member import PROFILE
+from tests.support.links import folder
+from tests.support.peers import quiet_node
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator
+
+    from aionode.endpoints.subscription import Subscription
+
+__all__ = ["folder"]  # a fixture
+
+ZENOH_LEASE_S = 10.0
+"""How long Zenoh waits before it takes a process that hangs for gone."""
+
+
+@pytest.mark.parametrize("link", [True, False], ids=["link", "zenoh"])
+async def test_a_frozen_process_is_not_alive_within_its_lease(link: bool) -> None:
+    """And alive again when it goes on."""
+    context = Context(link=link)
+    setting = {"AIONODE_LINK": "on" if link else "off"}
+    with Process("tests/processes/qos_member.py", env=setting) as member:
+        async with context, quiet_node("node", context) as node:
+            subscription = node.create_subscription(Int32, "n", None, PROFILE)
+            changes = liveliness(subscription.events)
+            assert (await anext(changes)).alive_count == 1
+            await until_asserted(subscription)
+
+            loop = asyncio.get_running_loop()
+            began_s = loop.time()
+            member.send(signal.SIGSTOP)
+            change = await anext(changes)
+            assert (change.alive_count, change.not_alive_count) == (0, 1)
+            assert loop.time() - began_s < ZENOH_LEASE_S / 2
+
+            member.send(signal.SIGCONT)
+            change = await anext(changes)
+            assert (change.alive_count, change.not_alive_count) == (1, 0)
+
+
+async def until_asserted(subscription: Subscription[Int32]) -> None:
+    """Wait until the only publisher has asserted its liveliness."""
+    known = subscription._monitor._liveliness
+    assert known is not None
+    (lease,) = known._leases.values()
+    while not lease.asserts:
+        await checkpoint()
+
+
+async def liveliness(events: AsyncIterator[object]) -> AsyncIterator[QoSLivelinessChangedInfo]:
+    """Yield the changes of liveliness among other events."""
+    async for event in events:
+        if isinstance(event, QoSLivelinessChangedInfo):
+            yield event

@@ -1,0 +1,327 @@
+"""Actions of rclpy's API, servers and clients in one context."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any, get_origin
+
+import pytest
+
+import aionode.rclpy
+from aionode.action import GoalStatus
+from aionode.interfaces.example_interfaces.action import Fibonacci as OwnFibonacci
+from aionode.rclpy._impl.errors import RCLError
+from aionode.rclpy._rosidl import action_class
+from aionode.rclpy.action import (
+    ActionClient,
+    ActionServer,
+    CancelResponse,
+    GoalResponse,
+    get_action_client_names_and_types_by_node,
+    get_action_names_and_types,
+    get_action_server_names_and_types_by_node,
+)
+from aionode.rclpy.action.client import ClientGoalHandle
+from aionode.rclpy.action.server import ServerGoalHandle
+from aionode.rclpy.clock import Clock
+from aionode.rclpy.clock_type import ClockType
+from aionode.rclpy.executors import SingleThreadedExecutor
+from aionode.rclpy.node import Node
+from aionode.rclpy.qos import qos_profile_services_default
+from aionode.rclpy.service_introspection import ServiceIntrospectionState
+from aionode.rclpy.task import Future
+from tests.support.peers import DOMAIN_ID, isolated_environment
+
+Fibonacci = action_class("example_interfaces/action/Fibonacci")
+Goal = ServerGoalHandle[Any, Any, Any]
+
+PATIENCE_S = 20.0
+
+
+@pytest.fixture
+def context(monkeypatch: pytest.MonkeyPatch) -> Iterator[aionode.rclpy.Context]:
+    """A context that hears nothing else on the machine."""
+    for name, value in isolated_environment().items():
+        monkeypatch.setenv(name, value)
+    context = aionode.rclpy.Context()
+    aionode.rclpy.init(args=[], context=context, domain_id=DOMAIN_ID)
+    yield context
+    aionode.rclpy.shutdown(context=context)
+
+
+@pytest.fixture
+def node(context: aionode.rclpy.Context) -> Node:
+    """A node."""
+    return Node("node", context=context)
+
+
+@pytest.fixture
+def executor(context: aionode.rclpy.Context, node: Node) -> SingleThreadedExecutor:
+    """An executor that spins it when a test says so."""
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    return executor
+
+
+@pytest.fixture
+def result_of(executor: SingleThreadedExecutor) -> Callable[[Future[Any]], Any]:
+    """Return a function that spins until a future is done, and returns its result."""
+
+    def wait(future: Future[Any]) -> Any:
+        executor.spin_until_future_complete(future, timeout_sec=PATIENCE_S)
+        assert future.done()
+        return future.result()
+
+    return wait
+
+
+class Server:
+    """An action server whose goals the test ends."""
+
+    def __init__(self, node: Node, action_type: Any = Fibonacci, **options: Any) -> None:
+        self.action_type = action_type
+        self.begun: list[Goal] = []
+        self.may_end: Future[Any] = Future()
+        options = {"cancel_callback": lambda _: CancelResponse.ACCEPT, **options}
+        self.server: ActionServer[Any, Any, Any] = ActionServer(
+            node, action_type, "fibonacci", self.execute, **options
+        )
+
+    async def execute(self, goal: Goal) -> Any:
+        """Wait until the test lets goals end; those to be cancelled are."""
+        self.begun.append(goal)
+        await self.may_end
+        if goal.is_cancel_requested:
+            goal.canceled()
+        else:
+            goal.succeed()
+        return self.action_type.Result(sequence=[goal.request.order])
+
+
+def client_of(node: Node, action_type: Any = Fibonacci) -> ActionClient[Any, Any, Any]:
+    """Return a client whose server is there."""
+    client: ActionClient[Any, Any, Any] = ActionClient(node, action_type, "fibonacci")
+    assert client.wait_for_server(PATIENCE_S)
+    return client
+
+
+@pytest.mark.parametrize("action_type", [Fibonacci, OwnFibonacci], ids=["rosidl", "aionode"])
+def test_a_goal_of_either_message_family_succeeds(
+    node: Node, result_of: Callable[..., Any], action_type: Any
+) -> None:
+    """A program that is moved to aionode may have both kinds of classes."""
+    server = Server(node, action_type)
+    client = client_of(node, action_type)
+    handle = result_of(client.send_goal_async(action_type.Goal(order=7)))
+    server.may_end.set_result(None)
+
+    response = result_of(handle.get_result_async())
+
+    assert (response.status, list(response.result.sequence)) == (GoalStatus.SUCCEEDED, [7])
+
+
+@pytest.mark.parametrize("action_type", [Fibonacci, OwnFibonacci], ids=["rosidl", "aionode"])
+def test_a_goal_of_either_message_family_is_cancelled(
+    node: Node, result_of: Callable[..., Any], action_type: Any
+) -> None:
+    """The answer lists the goal as the type's own messages."""
+    server = Server(node, action_type)
+    client = client_of(node, action_type)
+    handle = result_of(client.send_goal_async(action_type.Goal(order=7)))
+
+    response = result_of(handle.cancel_goal_async())
+    server.may_end.set_result(None)
+
+    assert [info.goal_id for info in response.goals_canceling] == [handle.goal_id]
+    assert result_of(handle.get_result_async()).status == GoalStatus.CANCELED
+
+
+def test_every_goal_of_a_cancel_request_is_decided_about(
+    node: Node, result_of: Callable[..., Any]
+) -> None:
+    """A request without an id means all goals; refused ones are left out of the answer."""
+    asked: list[int] = []
+
+    def refuse(goal: Goal) -> CancelResponse:
+        asked.append(goal.request.order)
+        return CancelResponse.REJECT
+
+    Server(node, cancel_callback=refuse)
+    client = client_of(node)
+    for order in range(3):
+        result_of(client.send_goal_async(Fibonacci.Goal(order=order)))
+    service = Fibonacci.Impl.CancelGoalService
+    plain = node.create_client(service, "fibonacci/_action/cancel_goal")
+    assert plain.wait_for_service(PATIENCE_S)
+
+    response = result_of(plain.call_async(service.Request()))
+
+    assert asked == [0, 1, 2]
+    assert response.goals_canceling == []
+
+
+def test_a_goal_that_has_ended_cannot_be_cancelled(
+    node: Node, result_of: Callable[..., Any]
+) -> None:
+    """The code says so, as rcl_action's does."""
+    server = Server(node)
+    handle = result_of(client_of(node).send_goal_async(Fibonacci.Goal(order=1)))
+    server.may_end.set_result(None)
+    result_of(handle.get_result_async())
+
+    response = result_of(handle.cancel_goal_async())
+
+    assert response.return_code == response.ERROR_GOAL_TERMINATED
+
+
+def test_a_goal_cannot_end_twice(node: Node, result_of: Callable[..., Any]) -> None:
+    """A state that cannot follow is an error of the program."""
+    server = Server(node)
+    handle = result_of(client_of(node).send_goal_async(Fibonacci.Goal(order=1)))
+    server.may_end.set_result(None)
+    result_of(handle.get_result_async())
+
+    with pytest.raises(RCLError, match="Failed to update goal state"):
+        server.begun[0].abort()
+
+
+def test_results_are_forgotten_after_their_time(
+    node: Node, executor: SingleThreadedExecutor, result_of: Callable[..., Any]
+) -> None:
+    """Who asks later learns that the goal is unknown."""
+    server = Server(node, result_timeout=0.01)
+    handle = result_of(client_of(node).send_goal_async(Fibonacci.Goal(order=1)))
+    server.may_end.set_result(None)
+    while server.server._goal_handles:
+        executor.spin_once(timeout_sec=PATIENCE_S)
+
+    assert result_of(handle.get_result_async()).status == GoalStatus.UNKNOWN
+
+
+def test_a_client_that_waits_gets_a_result_that_is_not_kept(
+    node: Node, executor: SingleThreadedExecutor, result_of: Callable[..., Any]
+) -> None:
+    """A goal may expire after `succeed` and before its callback returns."""
+    may_return: Future[Any] = Future()
+
+    async def execute(goal: Goal) -> Any:
+        goal.succeed()
+        await may_return
+        return Fibonacci.Result(sequence=[3])
+
+    server: ActionServer[Any, Any, Any] = ActionServer(
+        node, Fibonacci, "fibonacci", execute, result_timeout=0.05
+    )
+    client = client_of(node)
+    handle = result_of(client.send_goal_async(Fibonacci.Goal(order=1)))
+    result = handle.get_result_async()
+    while server._goal_handles:
+        executor.spin_once(timeout_sec=PATIENCE_S)
+    may_return.set_result(None)
+
+    assert list(result_of(result).result.sequence) == [3]
+
+
+def test_nothing_is_kept_of_requests_whose_callback_fails(
+    node: Node, executor: SingleThreadedExecutor
+) -> None:
+    """The exception comes out of the spin, as in rclpy, and the server does not grow."""
+
+    def fail(_: Any) -> GoalResponse:
+        raise LookupError("on purpose")
+
+    server = Server(node, goal_callback=fail)
+    future = client_of(node).send_goal_async(Fibonacci.Goal(order=1))
+
+    with pytest.raises(LookupError, match="on purpose"):
+        executor.spin_until_future_complete(future, timeout_sec=PATIENCE_S)
+
+    assert server.server._handle.goal._taken == {}
+
+
+def test_the_feedback_callback_of_a_rejected_goal_is_forgotten(
+    node: Node, result_of: Callable[..., Any]
+) -> None:
+    """A client that is refused again and again does not grow."""
+    Server(node, goal_callback=lambda _: GoalResponse.REJECT)
+    client = client_of(node)
+
+    handle = result_of(client.send_goal_async(Fibonacci.Goal(order=1), feedback_callback=print))
+
+    assert not handle.accepted
+    assert client._feedback_callbacks == {}
+
+
+def test_a_client_knows_the_state_of_its_goals(
+    node: Node, executor: SingleThreadedExecutor, result_of: Callable[..., Any]
+) -> None:
+    """The server publishes it at each change."""
+    server = Server(node)
+    handle = result_of(client_of(node).send_goal_async(Fibonacci.Goal(order=1)))
+    while handle.status != GoalStatus.EXECUTING:
+        executor.spin_once(timeout_sec=PATIENCE_S)
+    server.may_end.set_result(None)
+    while handle.status != GoalStatus.SUCCEEDED:
+        executor.spin_once(timeout_sec=PATIENCE_S)
+
+
+def test_the_classes_can_be_given_types() -> None:
+    """Programs annotate their callbacks so; without that a module could not be imported."""
+    for cls in (ServerGoalHandle, ClientGoalHandle, ActionServer, ActionClient):
+        assert get_origin(cls[Any, Any, Any]) is cls
+
+
+def test_an_invalid_name_is_refused(node: Node) -> None:
+    """As a ValueError, which rclpy raises, too."""
+    with pytest.raises(ValueError, match="nvalid topic name"):
+        ActionServer(node, Fibonacci, "no such name", print)
+    with pytest.raises(ValueError, match="nvalid topic name"):
+        ActionClient(node, Fibonacci, "no such name")
+
+
+def test_the_graph_has_actions(node: Node) -> None:
+    """By their names, and by the nodes that serve and use them."""
+    Server(node)
+    client_of(node)
+    expected = [("/fibonacci", ["example_interfaces/action/Fibonacci"])]
+
+    assert get_action_names_and_types(node) == expected
+    assert get_action_server_names_and_types_by_node(node, "node", "/") == expected
+    assert get_action_client_names_and_types_by_node(node, "node", "/") == expected
+
+
+def test_the_services_of_an_action_can_be_watched(
+    node: Node, executor: SingleThreadedExecutor, result_of: Callable[..., Any]
+) -> None:
+    """Each has a topic for that, on either side."""
+    server = Server(node)
+    client = client_of(node)
+    clock = Clock(clock_type=ClockType.SYSTEM_TIME)
+    for side in (server.server, client):
+        side.configure_introspection(
+            clock, qos_profile_services_default, ServiceIntrospectionState.METADATA
+        )
+    events: list[int] = []
+    node.create_subscription(
+        Fibonacci.Impl.SendGoalService.Event,
+        "fibonacci/_action/send_goal/_service_event",
+        lambda event: events.append(event.info.event_type),
+        10,
+    )
+
+    result_of(client.send_goal_async(Fibonacci.Goal(order=1)))
+    while len(events) < 4:
+        executor.spin_once(timeout_sec=PATIENCE_S)
+
+    assert sorted(events) == [0, 1, 2, 3]
+
+
+def test_a_destroyed_server_is_not_found(node: Node) -> None:
+    """And its node goes on without it."""
+    server = Server(node)
+    client = client_of(node)
+
+    server.server.destroy()
+
+    assert list(node.waitables) == [client]
+    assert not client.wait_for_server(0.0)

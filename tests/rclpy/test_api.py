@@ -1,0 +1,270 @@
+"""What rclpy's API does on aionode where no other rclpy is at hand to compare with."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import subprocess
+import sys
+import threading
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from aionode import rclpy
+from aionode.interfaces.std_msgs.msg import String as OwnString
+from aionode.rclpy._rosidl import action_class, message_class, service_class
+from aionode.rclpy.action import ActionClient, ActionServer, CancelResponse
+from aionode.rclpy.executors import SingleThreadedExecutor
+from aionode.rclpy.experimental.asyncio import AsyncNode
+from aionode.rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
+from aionode.rclpy.task import Future
+from tests.support.peers import isolated_environment
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+String = message_class("std_msgs/msg/String")
+AddTwoInts = service_class("example_interfaces/srv/AddTwoInts")
+Fibonacci = action_class("example_interfaces/action/Fibonacci")
+
+LIMIT_S = 20.0
+
+
+@pytest.fixture
+def initialised(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Initialise the default context, and see that nothing of it is left afterwards."""
+    for name, value in isolated_environment().items():
+        monkeypatch.setenv(name, value)
+    before = set(threading.enumerate())
+    rclpy.init(args=[])
+    yield
+    rclpy.try_shutdown()
+    assert [each.name for each in threading.enumerate() if each not in before] == []
+
+
+def spin_until(node: Any, future: Any) -> Any:
+    """Spin until a future is done, and return its result."""
+    rclpy.spin_until_future_complete(node, future, timeout_sec=LIMIT_S)
+    assert future.done()
+    return future.result()
+
+
+@pytest.mark.usefixtures("initialised")
+def test_message_classes_of_both_families_meet_on_a_topic() -> None:
+    """A program may move to aionode's messages file by file."""
+    node = rclpy.create_node("families")
+    got: Future[Any] = Future()
+    node.create_subscription(String, "words", got.set_result, 10)
+    own: list[Any] = []
+    node.create_subscription(OwnString, "words", own.append, 10)
+
+    node.create_publisher(OwnString, "words", 10).publish(OwnString(data="typed"))
+
+    assert spin_until(node, got) == String(data="typed")
+    rclpy.spin_once(node, timeout_sec=1.0)
+    assert own == [OwnString(data="typed")]
+
+
+@pytest.mark.usefixtures("initialised")
+def test_a_call_in_a_callback_is_answered_by_another_executor() -> None:
+    """Its thread waits for the response itself, so nothing needs to spin the client's node."""
+    node, server = rclpy.create_node("caller"), rclpy.create_node("server")
+
+    def add(request: Any, response: Any) -> Any:
+        response.sum = request.a + request.b
+        return response
+
+    server.create_service(AddTwoInts, "add", add)
+    client = node.create_client(AddTwoInts, "add")
+    executor = SingleThreadedExecutor()
+    executor.add_node(server)
+    worker = threading.Thread(target=lambda: executor.spin_until_future_complete(stop))
+    stop: Future[None] = Future()
+    worker.start()
+    answer: Future[int] = Future()
+
+    def callback() -> None:
+        timer.cancel()
+        response = client.call(AddTwoInts.Request(a=2, b=3), timeout_sec=LIMIT_S)
+        assert response is not None
+        answer.set_result(response.sum)
+
+    timer = node.create_timer(0.01, callback)
+    try:
+        assert spin_until(node, answer) == 5
+    finally:
+        stop.set_result(None)
+        worker.join(LIMIT_S)
+
+
+@pytest.mark.usefixtures("initialised")
+def test_a_goal_has_feedback_and_a_result() -> None:
+    """The whole way of a goal, client and server in one executor."""
+    node = rclpy.create_node("actions")
+
+    def execute(goal_handle: Any) -> Any:
+        feedback = Fibonacci.Feedback()
+        feedback.sequence = [0, 1]
+        goal_handle.publish_feedback(feedback)
+        goal_handle.succeed()
+        result = Fibonacci.Result()
+        result.sequence = [0, 1, goal_handle.request.order]
+        return result
+
+    server: ActionServer[Any, Any, Any] = ActionServer(node, Fibonacci, "fibonacci", execute)
+    client: ActionClient[Any, Any, Any] = ActionClient(node, Fibonacci, "fibonacci")
+    assert client.wait_for_server(timeout_sec=LIMIT_S)
+    feedback: list[list[int]] = []
+
+    handle = spin_until(
+        node,
+        client.send_goal_async(
+            Fibonacci.Goal(order=7),
+            feedback_callback=lambda msg: feedback.append(list(msg.feedback.sequence)),
+        ),
+    )
+    assert handle.accepted
+    result = spin_until(node, handle.get_result_async())
+
+    assert list(result.result.sequence) == [0, 1, 7]
+    assert feedback == [[0, 1]]
+    client.destroy()
+    server.destroy()
+
+
+@pytest.mark.usefixtures("initialised")
+def test_a_goal_that_waits_is_cancelled() -> None:
+    """A coroutine that awaits a future leaves the executor free for the request to cancel."""
+    node = rclpy.create_node("cancelling")
+    cancelled: Future[None] = Future()
+
+    async def execute(goal_handle: Any) -> Any:
+        await cancelled
+        goal_handle.canceled()
+        return Fibonacci.Result()
+
+    def accept(goal_handle: Any) -> CancelResponse:
+        node.create_timer(0.01, lambda: cancelled.set_result(None))
+        return CancelResponse.ACCEPT
+
+    ActionServer(node, Fibonacci, "fibonacci", execute, cancel_callback=accept)
+    client: ActionClient[Any, Any, Any] = ActionClient(node, Fibonacci, "fibonacci")
+    client.wait_for_server(timeout_sec=LIMIT_S)
+    handle = spin_until(node, client.send_goal_async(Fibonacci.Goal(order=1)))
+    result = handle.get_result_async()
+
+    answer = spin_until(node, handle.cancel_goal_async())
+    assert len(answer.goals_canceling) == 1
+    assert spin_until(node, result).status == 5
+
+
+@pytest.mark.usefixtures("initialised")
+def test_a_managed_publisher_is_silent_until_its_node_is_active() -> None:
+    """What is published before is dropped without a word, as in rclpy."""
+    node = LifecycleNode("managed")
+    got: list[str] = []
+    node.create_subscription(String, "words", lambda msg: got.append(msg.data), 10)
+    publisher = node.create_lifecycle_publisher(String, "words", 10)
+
+    publisher.publish(String(data="early"))
+    assert node.trigger_configure() is TransitionCallbackReturn.SUCCESS
+    assert node.trigger_activate() is TransitionCallbackReturn.SUCCESS
+    publisher.publish(String(data="active"))
+    rclpy.spin_once(node, timeout_sec=1.0)
+
+    assert got == ["active"]
+    assert node.trigger_shutdown() is TransitionCallbackReturn.SUCCESS
+
+
+@pytest.mark.usefixtures("initialised")
+async def test_an_async_node_needs_no_executor() -> None:
+    """Its callbacks run in the loop that awaits it."""
+    async with AsyncNode("awaited") as node, asyncio.timeout(LIMIT_S):
+        got: asyncio.Queue[str] = asyncio.Queue()
+
+        async def keep(msg: Any) -> None:
+            await got.put(msg.data)
+
+        async def add(request: Any, response: Any) -> Any:
+            response.sum = request.a + request.b
+            return response
+
+        node.create_subscription(String, "words", keep, 10)
+        publisher = node.create_publisher(String, "words", 10)
+        node.create_service(AddTwoInts, "add", add)
+        client = node.create_client(AddTwoInts, "add")
+        node.create_timer(0.01, lambda: publisher.publish(String(data="tick")))
+
+        assert await got.get() == "tick"
+        await client.wait_for_service()
+        assert (await client.call(AddTwoInts.Request(a=2, b=3))).sum == 5
+        await node.get_clock().sleep(0.01)
+
+
+ENDING = """\
+import sys
+import rclpy
+from std_msgs.msg import String
+
+rclpy.init()
+node = rclpy.create_node("ending")
+node.create_publisher(String, "words", 10).publish(String(data="last words"))
+
+
+def fail():
+    raise LookupError("on purpose")
+
+
+def say():
+    timer.cancel()
+    print("spins", flush=True)
+
+
+timer = node.create_timer(0.01, say)
+if sys.argv[1] == "spin":
+    try:
+        rclpy.spin(node)
+    except KeyboardInterrupt:
+        print("interrupted")
+    except rclpy.executors.ExternalShutdownException:
+        pass  # it was waiting; between two callbacks, `spin` returns
+    print("ended", rclpy.ok())
+if sys.argv[1] == "fail":
+    node.create_timer(0.02, fail)
+    rclpy.spin(node)
+"""
+
+
+@pytest.mark.parametrize(
+    ("how", "number", "said", "status"),
+    [
+        ("exit", None, "", 0),
+        ("spin", signal.SIGINT, "spins\ninterrupted\nended False\n", 0),
+        ("spin", signal.SIGTERM, "spins\nended False\n", 0),
+        ("fail", None, "spins\n", 1),
+    ],
+)
+def test_a_program_ends_however_it_ends(
+    how: str, number: int | None, said: str, status: int, tmp_path: Path
+) -> None:
+    """At its end, by a signal or an exception; without `shutdown`, and without a hang."""
+    program = tmp_path / "ending.py"
+    program.write_text(ENDING)
+    process = subprocess.Popen(
+        [sys.executable, "-m", "aionode.rclpy", str(program), how],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, **isolated_environment()},
+    )
+    assert process.stdout is not None
+    first = process.stdout.readline()
+    if number is not None:
+        process.send_signal(number)
+    rest, errors = process.communicate(timeout=LIMIT_S)
+
+    assert (first + rest, process.returncode) == (said, status), errors
+    assert ("LookupError: on purpose" in errors) == (how == "fail")

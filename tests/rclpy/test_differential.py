@@ -1,0 +1,71 @@
+"""The same scenes on rclpy and on aionode: what can be seen of them is the same.
+
+`scenarios.py` has the scenes. ``expected.json`` is what rclpy 9.1.2 (ROS 2 Kilted) shows. With the
+path of an interpreter that has rclpy in ``RCLPY_PYTHON`` it is asked again::
+
+    python -m venv kilted; kilted/bin/pip install 'ros-rclpy[fastrtps]' ros-std-msgs
+    RCLPY_PYTHON=kilted/bin/python python -m pytest tests/rclpy/test_differential.py
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.support.peers import isolated_environment
+
+HERE = Path(__file__).parent
+SCENARIOS = HERE / "scenarios.py"
+EXPECTED = HERE / "expected.json"
+INTERPRETER = "RCLPY_PYTHON"
+NAMES = re.findall(r"^@scene\ndef (\w+)", SCENARIOS.read_text(encoding="utf-8"), re.MULTILINE)
+
+
+def play(*command: str, environment: dict[str, str]) -> dict[str, Any]:
+    """Return the traces of all scenes, played in one process."""
+    process = subprocess.run(
+        [*command, str(SCENARIOS)],
+        capture_output=True,
+        text=True,
+        timeout=110,
+        env={**os.environ, **environment},
+        check=False,
+    )
+    assert process.stdout, process.stderr
+    traces: dict[str, Any] = json.loads(process.stdout.splitlines()[-1])
+    return traces
+
+
+@pytest.fixture(scope="module")
+def played() -> dict[str, Any]:
+    """Return what aionode shows."""
+    return play(sys.executable, "-m", "aionode.rclpy", environment=isolated_environment())
+
+
+@pytest.mark.timeout(120)
+@pytest.mark.parametrize("name", NAMES)
+def test_a_scene_shows_what_it_shows_on_rclpy(name: str, played: dict[str, Any]) -> None:
+    """The same callbacks in the same order and threads, results and exceptions."""
+    assert played[name] == json.loads(EXPECTED.read_text(encoding="utf-8"))[name]
+
+
+@pytest.mark.timeout(120)
+@pytest.mark.skipif(
+    INTERPRETER not in os.environ,
+    reason=f"{INTERPRETER} is not set: no interpreter that has rclpy to compare with",
+)
+def test_rclpy_shows_what_is_expected() -> None:
+    """What aionode is compared with is what rclpy does, not what was once written down."""
+    shown = play(
+        os.environ[INTERPRETER],
+        environment={"ROS_DOMAIN_ID": "87", "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"},
+    )
+
+    assert shown == json.loads(EXPECTED.read_text(encoding="utf-8"))

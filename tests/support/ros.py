@@ -1,0 +1,54 @@
+"""Whether tests over an installed ROS 2 can run, and its processes."""
+
+from __future__ import annotations
+
+import functools
+import importlib.util
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+__all__ = ["ros_domain", "ros_missing", "ros_peer"]
+
+
+@functools.cache
+def ros_missing() -> str:
+    """Return why tests with an installed ROS 2 cannot run here; empty if they can."""
+    for package in ("rclpy", "std_msgs", "test_msgs"):
+        if importlib.util.find_spec(package) is None:
+            return (
+                f"{package} is not installed: pip install 'aionode[ros]' (Linux x86-64), or source "
+                "a ROS 2; see CONTRIBUTING.md"
+            )
+    return ""
+
+
+def ros_domain(offset: int = 0) -> int:
+    """Return a domain of this process alone, below 102, from where on ports are ephemeral."""
+    return 1 + (os.getpid() + offset) % 100
+
+
+@contextmanager
+def ros_peer(domain_id: int) -> Iterator[subprocess.Popen[str]]:
+    """Run `tests.support.ros_peer` in a domain."""
+    environ = {
+        **os.environ,
+        "ROS_DOMAIN_ID": str(domain_id),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+    }
+    program = [sys.executable, "-W", "ignore", "-m", "tests.support.ros_peer"]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(program, env=environ, stdin=pipe, stdout=pipe, text=True) as peer:
+        try:
+            if peer.stdout is None or peer.stdout.readline() != "ready\n":
+                raise RuntimeError("the peer has not started; its output is above")
+            yield peer
+        finally:
+            if peer.stdin is not None:
+                peer.stdin.close()
+            try:
+                peer.wait(5)
+            except subprocess.TimeoutExpired:
+                peer.kill()

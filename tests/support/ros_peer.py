@@ -1,0 +1,147 @@
+"""A program of plain rclpy for tests: it serves, echoes, and does what it is told on a topic.
+
+Commands are strings on ``/commands``, such as ``call 7``; the results go to ``/results``.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from functools import partial
+from typing import Any
+
+import rclpy  # noqa: TID251  # it plays the other process
+from rclpy.action import (  # noqa: TID251  # the same
+    ActionClient,
+    ActionServer,
+    CancelResponse,
+)
+from rclpy.callback_groups import ReentrantCallbackGroup  # noqa: TID251  # the same
+from rclpy.executors import MultiThreadedExecutor  # noqa: TID251  # the same
+from rclpy.node import Node  # noqa: TID251  # the same
+from rclpy.parameter import Parameter  # noqa: TID251  # the same
+from rclpy.parameter_client import AsyncParameterClient  # noqa: TID251  # the same
+from rclpy.qos import DurabilityPolicy, QoSProfile  # noqa: TID251  # the same
+from rclpy.task import Future  # noqa: TID251  # the same
+from std_msgs.msg import String, UInt8MultiArray
+from test_msgs.action import Fibonacci
+from test_msgs.srv import BasicTypes
+
+
+class Peer(Node):  # type: ignore[misc]  # rclpy has no types here
+    """The node ``/peer``."""
+
+    def __init__(self) -> None:
+        super().__init__("peer", namespace="")
+        self.declare_parameter("speed", 1.5)
+        group = ReentrantCallbackGroup()
+        self.results = self.create_publisher(String, "results", 100)
+        self.create_subscription(String, "commands", self.obey, 100, callback_group=group)
+        self.echoed = self.create_publisher(String, "echoed", 100)
+        self.create_subscription(String, "to_echo", self.echoed.publish, 100)
+        self.large = self.create_publisher(UInt8MultiArray, "large_echoed", 10)
+        self.create_subscription(UInt8MultiArray, "large", self.large.publish, 10)
+        kept = QoSProfile(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.map = self.create_publisher(String, "map", kept)
+        for number in range(5):
+            self.map.publish(String(data=str(number)))
+        self.create_service(BasicTypes, "add", add)
+        self.create_service(BasicTypes, "silent", never, callback_group=group)
+        self.client = self.create_client(BasicTypes, "ours/add", callback_group=group)
+        self.server = ActionServer(
+            self,
+            Fibonacci,
+            "fibonacci",
+            self.execute,
+            cancel_callback=lambda goal: CancelResponse.ACCEPT,
+            callback_group=group,
+        )
+        self.goals = ActionClient(self, Fibonacci, "ours/fibonacci", callback_group=group)
+        self.parameters = AsyncParameterClient(self, "ours")
+
+    async def obey(self, command: Any) -> None:
+        """Do what a command says."""
+        word, _, value = command.data.partition(" ")
+        await getattr(self, word)(value)
+
+    def tell(self, result: object) -> None:
+        """Publish a result."""
+        self.results.publish(String(data=str(result)))
+
+    async def call(self, value: str) -> None:
+        """Call the service of the test."""
+        self.client.wait_for_service()
+        answer = await self.client.call_async(BasicTypes.Request(int64_value=int(value)))
+        self.tell(answer.int64_value)
+
+    async def goal(self, order: str) -> None:
+        """Send a goal to the test."""
+        self.goals.wait_for_server()
+        goal = await self.goals.send_goal_async(Fibonacci.Goal(order=int(order)))
+        result = await goal.get_result_async()
+        self.tell((result.status, list(result.result.sequence)))
+
+    async def cancel(self, order: str) -> None:
+        """Send a goal to the test, and cancel it."""
+        self.goals.wait_for_server()
+        goal = await self.goals.send_goal_async(Fibonacci.Goal(order=int(order)))
+        await goal.cancel_goal_async()
+        result = await goal.get_result_async()
+        self.tell(result.status)
+
+    async def speed(self, value: str) -> None:
+        """Set a parameter of the test's node."""
+        self.parameters.wait_for_services()
+        parameter = Parameter("speed", value=float(value)).to_parameter_msg()
+        answer = await self.parameters.set_parameters([parameter])
+        self.tell(answer.results[0].successful)
+
+    async def execute(self, goal: Any) -> Any:
+        """Execute a goal; one of order 0 runs until it is cancelled."""
+        feedback = Fibonacci.Feedback(sequence=[0, 1])
+        goal.publish_feedback(feedback)
+        rate = self.create_rate(100)
+        while goal.request.order == 0 and not goal.is_cancel_requested:
+            rate.sleep()
+        if goal.is_cancel_requested:
+            goal.canceled()
+            return Fibonacci.Result()
+        sequence = [0, 1]
+        for _ in range(goal.request.order - 2):
+            sequence.append(sequence[-1] + sequence[-2])
+        goal.succeed()
+        return Fibonacci.Result(sequence=sequence)
+
+
+def add(request: Any, response: Any) -> Any:
+    """Answer a request."""
+    response.int64_value = request.int64_value + 1
+    return response
+
+
+async def never(request: Any, response: Any) -> Any:
+    """Take a request, and answer none."""
+    await Future()
+    return response
+
+
+def main() -> None:
+    """Spin until stdin is closed."""
+    rclpy.init()
+    executor = MultiThreadedExecutor(4)
+    peer = Peer()
+    executor.add_node(peer)
+    executor.create_task(partial(print, "ready", flush=True))
+    import threading
+
+    threading.Thread(target=executor.spin, daemon=True).start()
+    sys.stdin.read()
+    executor.shutdown(3)
+    peer.destroy_node()
+    rclpy.shutdown()
+    peer.context.destroy()
+    os._exit(0)  # whatever callbacks wait for
+
+
+if __name__ == "__main__":
+    main()
