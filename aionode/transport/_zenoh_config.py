@@ -67,8 +67,11 @@ OPEN_MS: Final = 30_000
 
 Where many processes start at once it takes seconds, and Zenoh must not give up meanwhile: the end
 that gives up while it takes the connection into use keeps one for good which it sends on, but never
-reads (zenoh 1.10). It sees no token of that peer, and refuses further connections with it.
+reads (zenoh 1.10). It sees no token of that peer, and the peer refuses further connections.
 """
+
+FAR_OPEN_MS: Final = 3_000
+"""The same where other machines may be dialled: `close` waits for one that is switched off."""
 
 RETRY: Final = {"period_init_ms": 100, "period_max_ms": 2000, "period_increase_factor": 2}
 """How often what does not answer is dialled again."""
@@ -369,7 +372,7 @@ def session_settings(network: Network, taken: Iterable[int]) -> dict[str, Any]:
         # mappings for each restart of a publisher (1.10). Links have shared memory of their own;
         # processes of other users cannot open Zenoh's, and ROS 2 nodes have it switched off.
         "transport/shared_memory/enabled": False,
-        "transport/unicast/open_timeout": OPEN_MS,
+        "transport/unicast/open_timeout": FAR_OPEN_MS if network.may_reach_far else OPEN_MS,
         "transport/unicast/accept_timeout": OPEN_MS,
         "scouting/multicast/enabled": subnet,
         "scouting/gossip/enabled": not off,
