@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import threading
+from typing import Self
 
 import pytest
 
@@ -17,7 +18,7 @@ def test_a_thread_that_is_still_opening_can_be_stopped() -> None:
     opening, may_open = threading.Event(), threading.Event()
 
     class SlowContext(Context):
-        async def __aenter__(self) -> Context:
+        async def __aenter__(self) -> Self:
             opening.set()
             await asyncio.to_thread(may_open.wait)
             return await super().__aenter__()
