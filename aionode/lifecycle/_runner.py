@@ -5,6 +5,7 @@ However a transition ends, the node is in a primary state afterwards::
     the callback returns SUCCESS, FAILURE or ERROR    according to the table in `_states`
     it returns anything else, or raises               as for ERROR, with the exception
     it is canceled: its task, `cancel`, a timeout     as for FAILURE, at once
+    something that it awaits is canceled              as for ERROR, with `CallbackCancelledError`
 
 ERROR leads through `errorprocessing`, in which `on_error` runs; if that is canceled or raises, the
 node is finalized. Nothing is awaited between the end of a callback and the next state, so no
@@ -20,7 +21,7 @@ from collections import deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from aionode.errors import TransitionError
+from aionode.errors import CallbackCancelledError, TransitionError
 from aionode.lifecycle._managed import SimpleManagedEntity
 from aionode.lifecycle.states import (
     ACTIVE,
@@ -155,11 +156,17 @@ class TransitionRunner:
                 if inspect.isawaitable(returned):
                     returned = await returned
             result = self._checked(name, returned)
-        except asyncio.CancelledError:
-            self._logger.warning(f"on_{name} was canceled")
-            raise
+        except asyncio.CancelledError as lost:
+            if is_cancelled_task():
+                self._logger.warning(f"on_{name} was canceled")
+                raise
+            # Something that the callback awaited was cancelled, and not this task.
+            error = CallbackCancelledError(f"{self._node}: on_{name}")
+            error.__cause__ = lost
+            self._fail(name, error)
+            result = ERROR
         except Exception as error:  # noqa: BLE001  # passed to the log, on_error and the caller
-            if self._scope is not None and self._scope.expired():
+            if self._is_own_timeout(error):
                 self._logger.warning(f"on_{name} was canceled by a request")
                 result = self._wanted
             else:
@@ -169,6 +176,15 @@ class TransitionRunner:
             self._scope = None
             self._move(lambda: self.machine.finish(result))
         return result
+
+    def _is_own_timeout(self, error: Exception) -> bool:
+        """Whether `cancel` cancelled the callback, and it raised nothing else in its place."""
+        return (
+            isinstance(error, TimeoutError)
+            and isinstance(error.__cause__, asyncio.CancelledError)
+            and self._scope is not None
+            and self._scope.expired()
+        )
 
     def _checked(self, name: str, returned: object) -> TransitionCallbackReturn:
         """Return the result of a callback; raise TypeError if it is something else."""
@@ -244,6 +260,12 @@ class TransitionRunner:
                 yield await reader.get()
         finally:
             self._readers.discard(reader)
+
+
+def is_cancelled_task() -> bool:
+    """Whether the running task is being cancelled."""
+    task = asyncio.current_task()
+    return task is not None and task.cancelling() > 0
 
 
 class EventQueue:

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Literal
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from aionode import Node
-from aionode.errors import CallbackSignatureError, ServiceError, TransitionError
+from aionode.errors import (
+    CallbackCancelledError,
+    CallbackSignatureError,
+    ServiceError,
+    TransitionError,
+)
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.lifecycle_msgs.msg import Transition, TransitionEvent
 from aionode.interfaces.lifecycle_msgs.srv import ChangeState, GetAvailableTransitions, GetState
@@ -302,6 +307,46 @@ async def test_shutdown_cancels_what_is_under_way(node: Node, managed: Managed) 
         assert await change(node, transition_id=Transition.TRANSITION_UNCONFIGURED_SHUTDOWN)
 
     assert managed.lifecycle_state.label == "finalized"
+
+
+async def test_an_exception_during_the_cancellation_is_an_error(
+    node: Node, managed: Managed
+) -> None:
+    """A camera that does not close has to reach the log and `on_error`, as at any other time."""
+
+    class Stuck(asyncio.Event):
+        async def wait(self) -> Literal[True]:
+            try:
+                return await super().wait()
+            except asyncio.CancelledError as error:
+                raise OSError("the camera does not close") from error
+
+    managed.outcomes["configure"] = Stuck()
+    managed.outcomes["error"] = SUCCESS
+    async with asyncio.TaskGroup() as tasks:
+        changing = tasks.create_task(change(node, "configure"))
+        await settle()
+        await change(node, "transition_failure")
+
+    assert not changing.result()
+    assert managed.calls[-1] == ("error", "unconfigured")
+    assert isinstance(managed.error, OSError)
+
+
+async def test_the_cancellation_of_what_a_callback_awaits_is_an_error(
+    node: Node, managed: Managed
+) -> None:
+    """A client that was destroyed must not leave the request unanswered, and end the node."""
+    lost: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+    lost.cancel()
+    managed.outcomes["configure"] = lost.result
+    managed.outcomes["error"] = SUCCESS
+
+    assert not await change(node, "configure")
+    assert managed.calls[-1] == ("error", "unconfigured")
+    with pytest.raises(TransitionError) as info:
+        await managed.trigger_configure()
+    assert isinstance(info.value.__cause__, CallbackCancelledError)
 
 
 async def test_the_end_of_a_node_cancels_its_transition(

@@ -1,23 +1,28 @@
 """A program that manages nodes and knows only the wire format: Zenoh and its own CDR, no aionode.
 
-It drives the nodes that `test_lifecycle` runs through every transition, error and refusal, and
-compares what they answer and publish with the tables of `rcl_lifecycle`. It prints each step, and
-ends with an error if anything is different.
+It drives nodes that `test_lifecycle` runs through every transition, error and refusal, and compares
+what they answer and publish with the tables of `rcl_lifecycle`. Two services of the test, which
+have the type of `change_state` too, tell the callbacks what to do, and check what was called. It
+prints each step, and ends with an error if anything is different.
 """
 
 from __future__ import annotations
 
+import itertools
 import os
 import queue
 import struct
 import sys
 import time  # noqa: TID251  # this program knows nothing of aionode
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import zenoh  # noqa: TID251  # the same
 
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
 DOMAIN = os.environ["ROS_DOMAIN_ID"]
-PATIENCE_S = 20.0
+PATIENCE_S = 5.0
 GID = bytes(range(16))
 
 STATES = {
@@ -57,6 +62,22 @@ TRANSITIONS = [
     *outcomes(60, 15, 1, 4, 4),
 ]
 """Number, label, start and goal; in this order."""
+
+REQUESTS = [one for one in TRANSITIONS if one[0] < 10]
+"""Those that can be requested; the others are results of callbacks."""
+
+LABELS = [
+    *dict.fromkeys(one[1] for one in TRANSITIONS),
+    *(STATES[number] for number in STATES),
+    "fly",
+    "Configure",
+    " configure",
+    "shutdown ",
+    "1",
+    "transition_callback_success",
+    "konfigurieren für später",
+]
+"""All labels of transitions, and some that are none."""
 
 
 def say(text: str) -> None:
@@ -123,6 +144,10 @@ class Peer:
         config.insert_json5("scouting/multicast/enabled", "false")
         self.session = zenoh.open(config)
         self.sequence = 0
+        self.events: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        topic = f"{DOMAIN}/*/transition_event/**"  # of all nodes
+        self.subscriber = self.session.declare_subscriber(topic, self.events.put)
+        time.sleep(0.5)  # Zenoh says nothing when a publisher has matched
 
     def token(self, kind: str, name: str) -> list[str]:
         """Wait for a server's or publisher's token; return its chunks."""
@@ -182,11 +207,9 @@ class Managed:
         }
         assert "lifecycle_msgs::srv::dds_::ChangeState_" in self.keys["change_state"]
         assert peer.token("MP", f"/{name}/transition_event")[12] == "::,10:,:,:,,"
-        self.events: queue.SimpleQueue[Any] = queue.SimpleQueue()
-        topic = peer.data_key("MP", f"/{name}/transition_event")
-        assert "lifecycle_msgs::msg::dds_::TransitionEvent_" in topic
-        self.subscriber = peer.session.declare_subscriber(topic, self.events.put)
-        time.sleep(0.5)  # Zenoh says nothing when a publisher has matched
+        assert "lifecycle_msgs::msg::dds_::TransitionEvent_" in peer.data_key(
+            "MP", f"/{name}/transition_event"
+        )
 
     def call(self, service: str, request: bytes = EMPTY) -> Reading:
         """Call a service and wait for its reply."""
@@ -213,77 +236,247 @@ class Managed:
         """Wait for so many events; return start and goal of each."""
         found = []
         for _ in range(count):
-            event = Reading(self.events.get(timeout=PATIENCE_S).payload.to_bytes())
+            sample = self.peer.events.get(timeout=PATIENCE_S)
+            assert str(sample.key_expr).split("/")[1] == self.name
+            event = Reading(sample.payload.to_bytes())
             assert event.take("Q") == 0
             assert event.transition() == (0, "")
             found.append((event.state(), event.state()))
         return found
 
-    def expect(self, label: str, success: bool, *states: int, number: int = 0) -> None:
-        """Ask for a transition; expect its success, its states, and what is available then."""
-        say(f"{self.name}: {label or number}")
-        start = self.state()
-        assert self.change(label, number) is success
-        assert self.take_events(len(states)) == list(zip((start, *states), states, strict=False))
-        end = states[-1] if states else start
-        assert self.state() == end
-        available = [one for one in TRANSITIONS if one[2] == end]
+    def expect_events(self, start: int, *states: int) -> None:
+        """Wait for the events of these state changes, after which there is no other event."""
+        assert self.take_events(len(states)) == list(itertools.pairwise((start, *states)))
+        assert self.peer.events.empty()
+
+    def expect_state(self, state: int) -> None:
+        """Expect what the node tells about itself in this state."""
+        assert self.state() == state
+        available = [one for one in TRANSITIONS if one[2] == state]
         assert self.transitions("get_available_transitions") == available
-        assert self.events.empty()
+        assert self.transitions("get_transition_graph") == TRANSITIONS
+
+    def expect_refused(self, requests: Iterable[tuple[str, int]]) -> None:
+        """Make requests, many at a time; expect that each is refused, and changes nothing."""
+        state = self.state()
+        waiting = list(requests)
+        while waiting:
+            answers = [(one, self.begin(*one)) for one in waiting[:32]]
+            del waiting[:32]
+            for one, answer in answers:
+                assert not self.peer.end(answer).take("B"), (STATES[state], one)
+        self.expect_state(state)
+        assert self.peer.events.empty()
 
 
-def manage(node: Managed) -> None:
-    """Take one node through everything; what its callbacks return is in `test_lifecycle`."""
-    states = node.call("get_available_states")
+class Stage:
+    """The nodes of the test: one at a time, and a new one after that has been finalized."""
+
+    def __init__(self, peer: Peer) -> None:
+        self.peer = peer
+        self.key = peer.data_key("SS", "/stage/prepare")
+        self.calls_key = peer.data_key("SS", "/stage/check_calls")
+        self.count = 0
+        self.node = self.new_node()
+
+    def tell(self, key: str, text: str) -> bool:
+        """Call a service of the test."""
+        return bool(self.peer.end(self.peer.begin(key, change_request(0, text))).take("B"))
+
+    def new_node(self) -> Managed:
+        """Replace the node by a new one, which is unconfigured."""
+        self.count += 1
+        name = f"managed_{self.count}"
+        assert self.tell(self.key, f"node={name}")
+        return Managed(self.peer, name)
+
+    def begin(self, start: int, **script: str) -> Managed:
+        """Bring a node to a primary state; there its callbacks do what the script says."""
+        if self.node.state() == 4:
+            self.node = self.new_node()
+        assert self.tell(self.key, "")  # on the way all callbacks succeed
+        while (state := self.node.state()) != start:
+            up = {1: "configure", 2: "activate"}
+            down = {3: "deactivate", 2: "cleanup"}
+            assert self.node.change((up if state < start else down)[state])
+            self.node.take_events(2)
+        assert self.tell(self.key, " ".join(f"{name}={what}" for name, what in script.items()))
+        assert self.peer.events.empty()
+        return self.node
+
+    def expect_calls(self, start: int, *names: str) -> None:
+        """Expect that these callbacks were called, each with the state of the start."""
+        calls = " ".join(f"{name}:{STATES[start]}" for name in names)
+        assert self.tell(self.calls_key, calls), calls
+
+
+def goal_of(state: int, result: str) -> int:
+    """Return where the result of a callback leads."""
+    label = f"transition_{result.lower()}"
+    return next(one[3] for one in TRANSITIONS if one[1:3] == (label, state))
+
+
+RESULTS = {
+    "SUCCESS": "SUCCESS",
+    "FAILURE": "FAILURE",
+    "ERROR": "ERROR",
+    "RAISE": "ERROR",  # an exception
+    "NONE": "ERROR",  # something that is no result
+    "LOSE": "ERROR",  # what it awaits is canceled
+}
+"""What a callback may do, and the result as which that counts."""
+
+
+RESULTS_OF_RCL = ("SUCCESS", "FAILURE", "ERROR", "RAISE")
+
+
+def make_transitions(stage: Stage) -> None:
+    """From each state each transition, with all a callback may do, and in `on_error` as well."""
+    for number, label, start, running in REQUESTS:
+        for does, result in RESULTS.items():
+            handlings = {"ERROR": RESULTS, "RAISE": RESULTS_OF_RCL}.get(does, ("SUCCESS",))
+            for handles in handlings if result == "ERROR" else ("",):
+                say(f"{STATES[start]}: {label} [{number}] {does} {handles}")
+                states = [running, goal_of(running, result)]
+                calls = [label]
+                if states[-1] == 15:
+                    states.append(goal_of(15, RESULTS[handles]))
+                    calls.append("error")
+                node = stage.begin(start, **{label: does, "error": handles or "SUCCESS"})
+                assert node.change(number=number) is (result == "SUCCESS")
+                node.expect_events(start, *states)
+                node.expect_state(states[-1])
+                stage.expect_calls(start, *calls)
+
+
+def name_transitions(stage: Stage) -> None:
+    """A label is enough, and it wins over any number."""
+    for number, label, start, running in REQUESTS:
+        for misleading in (0, 200, number, number % 7 + 1):
+            say(f"{STATES[start]}: {label!r} [{misleading}]")
+            node = stage.begin(start)
+            assert node.change(label, misleading)
+            node.expect_events(start, running, goal_of(running, "SUCCESS"))
+
+
+def refuse_in_primary_states(stage: Stage) -> None:
+    """All numbers and labels that are not available, with and without a number that is."""
+    for start in (1, 2, 3, 4):
+        say(f"{STATES[start]}: refusals")
+        node = stage.begin(start if start < 4 else 1)
+        if start == 4:
+            assert node.change("shutdown")
+            node.expect_events(1, 12, 4)
+        possible = {one[0]: one[1] for one in TRANSITIONS if one[2] == start}
+        node.expect_state(start)
+        node.expect_refused(("", number) for number in range(256) if number not in possible)
+        node.expect_refused(
+            (label, number)
+            for label in LABELS
+            if label not in possible.values()
+            for number in (0, *possible)
+        )
+        # Serialized data that ends too early, or has a string without an end.
+        for data in (b"", b"\0\1\0\0", change_request(1, "configure")[:-4]):
+            answers = node.peer.begin(node.keys["change_state"], data)
+            assert answers.get(timeout=PATIENCE_S).ok is None
+        node.expect_state(start)
+        assert stage.peer.events.empty()
+
+
+def refuse_in_transition(node: Managed) -> None:
+    """In a transition state only a shutdown can be requested, and how the callback is to end."""
+    available = [one for one in TRANSITIONS if one[2] == node.state()]
+    ends = [] if node.state() == 15 else available[1:]  # failure and error
+    numbers = {5, 6, 7, *(one[0] for one in ends)}
+    labels = {"shutdown", *(one[1] for one in ends)}
+    node.expect_refused(("", number) for number in range(256) if number not in numbers)
+    node.expect_refused(
+        (label, number) for label in LABELS if label not in labels for number in (0, *numbers)
+    )
+
+
+def end_transitions(stage: Stage) -> None:
+    """End each transition while its callback runs, in each way in which that can be requested."""
+    for number, label, start, running in REQUESTS:
+        ends = [one for one in TRANSITIONS if one[2] == running][1:]
+        requests = [request for end in ends for request in (("", end[0]), (end[1], 0))]
+        for refuse, end in enumerate([*requests, ("shutdown", 0), *(("", n) for n in (5, 6, 7))]):
+            say(f"{STATES[running]}: {end[0]!r} [{end[1]}]")
+            node = stage.begin(start, **{label: "WAIT"})
+            request = node.begin(number=number)
+            node.expect_events(start, running)
+            node.expect_state(running)
+            if not refuse:
+                refuse_in_transition(node)
+            result = "ERROR" if end in requests[2:] else "FAILURE"
+            shut_down = end not in requests and running != 12
+            success = node.change(*end)
+            assert success is (end in requests or shut_down)
+            assert not node.peer.end(request).take("B")
+            states = [running, goal_of(running, result)]
+            calls = [label]
+            if states[-1] == 15:
+                states.append(1)
+                calls.append("error")
+            if shut_down:  # from the state to which a failure leads
+                states += [12, 4]
+                calls.append("shutdown")
+            node.expect_events(*states)
+            node.expect_state(states[-1])
+            stage.expect_calls(start, *calls)
+
+
+def end_error_processing(stage: Stage) -> None:
+    """While `on_error` runs only a shutdown can be requested, which finalizes the node at once."""
+    for number, label, start, running in REQUESTS:
+        say(f"errorprocessing of {label} [{number}]")
+        node = stage.begin(start, **{label: "ERROR", "error": "WAIT"})
+        request = node.begin(number=number)
+        node.expect_events(start, running, 15)
+        node.expect_state(15)
+        if number == 1:
+            refuse_in_transition(node)
+        shutdown = ("shutdown", 0) if number < 5 else ("", number)
+        assert not node.change(*shutdown)  # a finalized node cannot be shut down
+        assert not node.peer.end(request).take("B")
+        node.expect_events(15, 4)
+        stage.expect_calls(start, label, "error")
+
+
+def resist(stage: Stage) -> None:
+    """A callback that handles its cancellation decides itself how the transition ends."""
+    for number, label, start, running in REQUESTS:
+        for does, result in (("KEEP", "SUCCESS"), ("SPOIL", "ERROR")):
+            say(f"{STATES[running]}: {does}")
+            node = stage.begin(start, **{label: does})
+            request = node.begin(number=number)
+            node.expect_events(start, running)
+            node.change("transition_failure")
+            assert bool(node.peer.end(request).take("B")) is (result == "SUCCESS")
+            states = [running, goal_of(running, result)]
+            if states[-1] == 15:
+                states.append(1)
+            node.expect_events(*states)
+            node.expect_state(states[-1])
+            stage.expect_calls(start, label, *(["error"] if 15 in states else []))
+
+
+def manage(stage: Stage) -> None:
+    """Take nodes through everything."""
+    states = stage.node.call("get_available_states")
     assert [states.state() for _ in range(states.take("I"))] == list(STATES)
-    assert node.transitions("get_transition_graph") == TRANSITIONS
-
-    # Refused: not available in this state, unknown, or by the number of another state.
-    for label, number in (("activate", 0), ("fly", 0), ("", 3), ("", 6), ("", 200), ("", 10)):
-        node.expect(label, False, number=number)
-    # The label is looked at first, whatever the number says; without one the number counts.
-    node.expect("configure", False, 10, 1, number=3)  # FAILURE
-    node.expect("", False, 10, 15, 1, number=1)  # ERROR, and on_error returns SUCCESS
-    node.expect("configure", False, 10, 15, 1)  # an exception
-
-    # During a transition: states and transitions are told, requests refused, results requested.
-    running = node.begin("configure")
-    assert node.take_events(1) == [(1, 10)]
-    assert node.state() == 10
-    assert node.transitions("get_available_transitions") == TRANSITIONS[1:4]
-    assert not node.change("activate")
-    assert not node.change("transition_success")
-    assert node.change("transition_failure")
-    assert not node.peer.end(running).take("B")
-    assert node.take_events(1) == [(10, 1)]
-
-    node.expect("configure", True, 10, 2)
-    node.expect("activate", False, 13, 2)  # FAILURE
-    node.expect("activate", True, 13, 3)
-    node.expect("deactivate", False, 14, 3)  # FAILURE
-    node.expect("cleanup", False)
-    node.expect("deactivate", True, 14, 2)
-    node.expect("cleanup", False, 11, 2)  # FAILURE
-    node.expect("cleanup", True, 11, 1)
-    node.expect("configure", True, 10, 2)
-    node.expect("activate", True, 13, 3)
-    node.expect("deactivate", False, 14, 15, 4)  # ERROR, and on_error returns FAILURE
-    for label in ("configure", "activate", "deactivate", "cleanup", "shutdown"):
-        node.expect(label, False)  # nothing is available when finalized
-
-
-def shut_down(peer: Peer) -> None:
-    """Shut a node down from each state, with each result."""
-    node = Managed(peer, "from_unconfigured")
-    node.expect("", True, 12, 4, number=5)
-    node = Managed(peer, "from_inactive")
-    node.expect("configure", True, 10, 2)
-    node.expect("", False, 12, 4, number=6)  # FAILURE leads to finalized, too
-    node = Managed(peer, "from_active")
-    node.expect("configure", True, 10, 2)
-    node.expect("activate", True, 13, 3)
-    node.expect("", False, 12, 15, 1, number=7)  # ERROR, and on_error returns SUCCESS
-    node.expect("shutdown", True, 12, 4)
+    for part in (
+        make_transitions,
+        name_transitions,
+        refuse_in_primary_states,
+        end_transitions,
+        end_error_processing,
+        resist,
+    ):
+        began = time.monotonic()
+        part(stage)
+        say(f"{part.__name__}: {time.monotonic() - began:.1f} s, {stage.count} nodes so far")
 
 
 def hurry(node: Managed, count: int) -> None:
@@ -299,10 +492,11 @@ def hurry(node: Managed, count: int) -> None:
 
 if __name__ == "__main__":
     one = Peer()
-    if sys.argv[1] == "all":
-        manage(Managed(one, "managed"))
-        shut_down(one)
-    else:
-        hurry(Managed(one, "managed"), int(sys.argv[1]))
-    say("done")
-    one.session.close()
+    try:
+        if sys.argv[1] == "all":
+            manage(Stage(one))
+        else:
+            hurry(Managed(one, "managed"), int(sys.argv[1]))
+        say("done")
+    finally:
+        one.session.close()

@@ -4,68 +4,125 @@ from __future__ import annotations
 
 import asyncio
 import sys
-from contextlib import AsyncExitStack
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from aionode import Context, Node
+from aionode.interfaces.lifecycle_msgs.srv import ChangeState
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.lifecycle import LifecycleNode, State, TransitionCallbackReturn
 from tests.processes.process import ROOT
-
-SUCCESS = TransitionCallbackReturn.SUCCESS
-FAILURE = TransitionCallbackReturn.FAILURE
-ERROR = TransitionCallbackReturn.ERROR
 
 PEER = str(Path(__file__).with_name("lifecycle_peer.py"))
 
 
 class Scripted(LifecycleNode):
-    """Its callbacks return what a list says, in this order, and then SUCCESS."""
+    """Each callback does what the script says under its name; without a word, it succeeds.
 
-    def __init__(self, name: str, context: Context, **scripts: list[Any]) -> None:
-        super().__init__(name, context=context)
-        self.scripts = scripts
+    Attributes:
+        script: Name of a callback, and the word for what it does.
+        calls: Each callback that was called, with the state it got.
+    """
 
-    async def follow(self, name: str) -> TransitionCallbackReturn:
-        """Do what the list says next."""
-        script = self.scripts.get(name, [])
-        outcome = script.pop(0) if script else SUCCESS
-        if isinstance(outcome, Exception):
-            raise outcome
-        if outcome is None:
-            await asyncio.Event().wait()  # until it is canceled
-        return outcome
+    def __init__(self, name: str, context: Context) -> None:
+        super().__init__(name, context=context, enable_rosout=False, start_parameter_services=False)
+        self.script: dict[str, str] = {}
+        self.calls: list[str] = []
 
-    async def on_configure(self, state: State) -> TransitionCallbackReturn:
+    async def follow(self, name: str, state: State) -> Any:
+        """Do what the script says."""
+        self.calls.append(f"{name}:{state.label}")
+        does = self.script.get(name, "SUCCESS")
+        if does in TransitionCallbackReturn.__members__:
+            return TransitionCallbackReturn[does]
+        if does == "NONE":
+            return None
+        if does == "RAISE":
+            raise OSError("no camera")
+        forever: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        if does == "LOSE":
+            forever.cancel()
+        try:
+            await forever
+        except asyncio.CancelledError as error:
+            if does == "KEEP":
+                return TransitionCallbackReturn.SUCCESS
+            if does == "SPOIL":
+                raise OSError("the camera does not close") from error
+            raise
+
+    async def on_configure(self, state: State) -> Any:
         """Follow the script."""
-        return await self.follow("configure")
+        return await self.follow("configure", state)
 
-    async def on_activate(self, state: State) -> TransitionCallbackReturn:
+    async def on_activate(self, state: State) -> Any:
         """Follow the script."""
         super().on_activate(state)
-        return await self.follow("activate")
+        return await self.follow("activate", state)
 
-    async def on_deactivate(self, state: State) -> TransitionCallbackReturn:
+    async def on_deactivate(self, state: State) -> Any:
         """Follow the script."""
         super().on_deactivate(state)
-        return await self.follow("deactivate")
+        return await self.follow("deactivate", state)
 
-    async def on_cleanup(self, state: State) -> TransitionCallbackReturn:
+    async def on_cleanup(self, state: State) -> Any:
         """Follow the script."""
-        return await self.follow("cleanup")
+        return await self.follow("cleanup", state)
 
-    async def on_shutdown(self, state: State) -> TransitionCallbackReturn:
+    async def on_shutdown(self, state: State) -> Any:
         """Follow the script."""
-        return await self.follow("shutdown")
+        return await self.follow("shutdown", state)
 
-    async def on_error(
-        self, state: State, error: Exception | None = None
-    ) -> TransitionCallbackReturn:
+    async def on_error(self, state: State, error: Exception | None = None) -> Any:
         """Follow the script."""
-        return await self.follow("error")
+        return await self.follow("error", state)
+
+
+class Stage(Node):
+    """Runs one managed node at a time, as the program says."""
+
+    def __init__(self, context: Context, group: asyncio.TaskGroup) -> None:
+        super().__init__("stage", context=context)
+        self.group = group
+        self.replaced = asyncio.Event()
+        self.managed: Scripted | None = None
+        self.create_service(ChangeState, "~/prepare", self.prepare)
+        self.create_service(ChangeState, "~/check_calls", self.check_calls)
+
+    async def host(self, managed: Scripted, runs: asyncio.Event) -> None:
+        """Run a managed node until another one takes its place."""
+        async with managed:
+            self.replaced.clear()
+            runs.set()
+            await self.replaced.wait()
+
+    async def prepare(
+        self, request: ChangeState.Request, response: ChangeState.Response
+    ) -> ChangeState.Response:
+        """Replace the node by one of a name (``node=name``), or take a script for it."""
+        words = dict(word.split("=") for word in request.transition.label.split())
+        name = words.pop("node", None)
+        if name is not None:
+            self.replaced.set()
+            self.managed = Scripted(name, self.context)
+            runs = asyncio.Event()
+            self.group.create_task(self.host(self.managed, runs))
+            await runs.wait()
+        assert self.managed is not None
+        self.managed.script = words
+        self.managed.calls.clear()
+        response.success = True
+        return response
+
+    def check_calls(
+        self, request: ChangeState.Request, response: ChangeState.Response
+    ) -> ChangeState.Response:
+        """Tell whether these callbacks were called."""
+        assert self.managed is not None
+        response.success = " ".join(self.managed.calls) == request.transition.label
+        return response
 
 
 async def output_of_peer(*arguments: str) -> str:
@@ -91,25 +148,13 @@ async def output_of_peer(*arguments: str) -> str:
 @pytest.mark.timeout(60)
 async def test_a_program_of_another_kind_manages_nodes() -> None:
     """Every transition, error and refusal, with states, events and what is available."""
-    async with AsyncExitStack() as stack:
-        context = await stack.enter_async_context(Context())
-        for node in (
-            Scripted(
-                "managed",
-                context,
-                configure=[FAILURE, ERROR, OSError("no camera"), None, SUCCESS],
-                activate=[FAILURE],
-                deactivate=[FAILURE, SUCCESS, ERROR],
-                cleanup=[FAILURE],
-                error=[SUCCESS, SUCCESS, FAILURE],
-            ),
-            Scripted("from_unconfigured", context),
-            Scripted("from_inactive", context, shutdown=[FAILURE]),
-            Scripted("from_active", context, shutdown=[ERROR]),
-        ):
-            await stack.enter_async_context(node)
-
+    async with (
+        Context() as context,
+        asyncio.TaskGroup() as group,
+        Stage(context, group) as stage,
+    ):
         assert (await output_of_peer("all")).endswith("done\n")
+        stage.replaced.set()
 
 
 @pytest.mark.timeout(60)
