@@ -16,7 +16,7 @@ from aionode.interfaces.lifecycle_msgs.srv import (
     GetState,
 )
 from aionode.lifecycle._managed import Gate, LifecyclePublisher, LifecycleTimer, ManagedEntity
-from aionode.lifecycle._runner import FAILURE, SUCCESS, TransitionRunner
+from aionode.lifecycle._runner import SUCCESS, TransitionRunner
 from aionode.lifecycle.states import (
     ERROR_PROCESSING,
     STATES,
@@ -204,7 +204,7 @@ class LifecycleNode(Node):
 
     async def trigger_shutdown(self) -> TransitionCallbackReturn:
         """Shut the node down, cancelling a transition in progress; see `trigger_configure`."""
-        await self._cancel_transition()
+        await self._transitions.make_way_for_shutdown()
         return await self._transitions.trigger("shutdown")
 
     # Entities
@@ -309,10 +309,10 @@ class LifecycleNode(Node):
         """Carry out a request; return whether it succeeded."""
         machine = self._transitions.machine
         if machine.in_transition and is_shutdown(label, transition_id):
-            await self._cancel_transition()
-            transition = machine.find("shutdown")
+            await self._transitions.make_way_for_shutdown()
+            transition = self._transitions.find("shutdown")
         else:
-            transition = machine.find(label, transition_id)
+            transition = self._transitions.find(label, transition_id)
         if transition is None:
             return False
         if not machine.in_transition:
@@ -321,12 +321,9 @@ class LifecycleNode(Node):
         if transition.label == SUCCESS.to_label() or transition.start == ERROR_PROCESSING:
             return False
         wanted = next(one for one in TransitionCallbackReturn if one.to_label() == transition.label)
-        await self._cancel_transition(wanted)
-        return True
-
-    async def _cancel_transition(self, result: TransitionCallbackReturn = FAILURE) -> None:
-        self._transitions.cancel(result)
+        self._transitions.cancel(wanted)
         await self._transitions.wait_idle()
+        return True
 
     def _get_state(self, _: GetState.Request, response: GetState.Response) -> GetState.Response:
         response.current_state = state_msg(self.lifecycle_state)

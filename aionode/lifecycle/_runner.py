@@ -100,6 +100,7 @@ class TransitionRunner:
         self._error: Exception | None = None  # why that failed
         self._scope: asyncio.Timeout | None = None  # expires to cancel the running callback
         self._wanted = FAILURE  # the result of a callback that `cancel` cancels
+        self._shutdowns_waiting = 0
         self._idle = asyncio.Event()  # set while no transition is in progress
         self._idle.set()
         self._readers: set[EventQueue] = set()
@@ -112,9 +113,9 @@ class TransitionRunner:
         Raises:
             TransitionError: it is not available in this state, or the callback raised.
         """
-        transition = self.machine.find(label)
+        transition = self.find(label)
         if transition is None:
-            available = ", ".join(one.label for one in self.machine.available()) or "none"
+            available = ", ".join(self._available_labels()) or "none"
             raise TransitionError(
                 self._node, label, str(self.machine.state), f"available are: {available}"
             )
@@ -125,6 +126,28 @@ class TransitionRunner:
                 self._node, label, str(self.machine.state), f"{type(error).__name__}: {error}"
             ) from error
         return result
+
+    def find(self, label: str = "", transition_id: int = 0) -> Transition | None:
+        """Return an available transition, as `StateMachine.find` does.
+
+        While a shutdown waits for a transition to end, it is the only one: a caller that tries
+        again as soon as a transition fails would otherwise overtake the shutdown.
+        """
+        found = self.machine.find(label, transition_id)
+        return found if found and found.label in self._available_labels() else None
+
+    def _available_labels(self) -> list[str]:
+        labels = [one.label for one in self.machine.available()]
+        return [one for one in labels if one == "shutdown" or not self._shutdowns_waiting]
+
+    async def make_way_for_shutdown(self) -> None:
+        """Cancel the running callback, if any, as a failure, and wait until the node is idle."""
+        self._shutdowns_waiting += 1
+        try:
+            self.cancel(FAILURE)
+            await self.wait_idle()
+        finally:
+            self._shutdowns_waiting -= 1
 
     async def run(self, transition: Transition) -> TransitionCallbackReturn:
         """Make an available transition, and return the result of its callback.

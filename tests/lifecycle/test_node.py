@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
 from typing import Any, Literal
 
 import pytest
@@ -309,6 +309,30 @@ async def test_shutdown_cancels_what_is_under_way(node: Node, managed: Managed) 
     assert managed.lifecycle_state.label == "finalized"
 
 
+async def test_a_shutdown_is_not_overtaken_by_another_attempt(node: Node, managed: Managed) -> None:
+    """A program that tries until the camera is there starts again at the moment of the failure."""
+    managed.outcomes["configure"] = asyncio.Event()
+
+    async def try_again() -> None:
+        while await managed.trigger_configure() is FAILURE:
+            pass
+
+    async with asyncio.TaskGroup() as tasks:
+        trying = tasks.create_task(failure_of(try_again()))
+        await settle()
+        assert await change(node, "shutdown")
+
+    assert "available are: shutdown" in str(trying.result())
+    assert managed.lifecycle_state.label == "finalized"
+
+
+async def failure_of(trying: Coroutine[Any, Any, None]) -> TransitionError:
+    """Return the error with which something ends."""
+    with pytest.raises(TransitionError) as info:
+        await trying
+    return info.value
+
+
 async def test_an_exception_during_the_cancellation_is_an_error(
     node: Node, managed: Managed
 ) -> None:
@@ -336,7 +360,7 @@ async def test_an_exception_during_the_cancellation_is_an_error(
 async def test_the_cancellation_of_what_a_callback_awaits_is_an_error(
     node: Node, managed: Managed
 ) -> None:
-    """A client that was destroyed must not leave the request unanswered, and end the node."""
+    """A client that was destroyed is for `on_error`; the requester was told of a broken service."""
     lost: asyncio.Future[None] = asyncio.get_running_loop().create_future()
     lost.cancel()
     managed.outcomes["configure"] = lost.result

@@ -145,6 +145,7 @@ async def output_of_peer(*arguments: str) -> str:
     return text
 
 
+@pytest.mark.one_loop
 @pytest.mark.timeout(60)
 async def test_a_program_of_another_kind_manages_nodes() -> None:
     """Every transition, error and refusal, with states, events and what is available."""
