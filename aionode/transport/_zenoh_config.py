@@ -44,6 +44,9 @@ SPARE_PORTS: Final = (17452, 17453, 17454)
 ROUTER_PORT: Final = 7447
 """Where `rmw_zenohd` and `aionode router` listen."""
 
+LOCALHOST_ONLY_VARIABLE: Final = "ROS_LOCALHOST_ONLY"
+"""Set to 1 by users of ROS 2 Humble; later distributions call it deprecated and honour it."""
+
 MEETING_PORTS_VARIABLE: Final = "AIONODE_MEETING_PORTS"
 ROUTER_PORT_VARIABLE: Final = "AIONODE_ROUTER_PORT"
 
@@ -151,7 +154,8 @@ def network_from(
 
     Args:
         environ: Usually `os.environ`: ``ROS_DOMAIN_ID``, ``ROS_AUTOMATIC_DISCOVERY_RANGE``,
-            ``ROS_STATIC_PEERS``, ``ZENOH_SESSION_CONFIG_URI``, ``ZENOH_CONFIG_OVERRIDE``.
+            ``ROS_STATIC_PEERS``, ``ROS_LOCALHOST_ONLY``, ``ZENOH_SESSION_CONFIG_URI``,
+            ``ZENOH_CONFIG_OVERRIDE``.
         domain_id: Instead of ``ROS_DOMAIN_ID``.
         discovery_range: Instead of ``ROS_AUTOMATIC_DISCOVERY_RANGE``.
         static_peers: Instead of ``ROS_STATIC_PEERS``: hosts, ``host:port`` or Zenoh endpoints.
@@ -175,6 +179,10 @@ def network_from(
     elif config is not None:
         config_file = str(config)
         config_source = "config"
+    if environ.get(LOCALHOST_ONLY_VARIABLE, "").strip() == "1":
+        # As in ROS 2 since Iron: it overrules the two variables that came after it.
+        hidden = {"ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_STATIC_PEERS"}
+        environ = {name: text for name, text in environ.items() if name not in hidden}
     if static_peers is None:
         peers_source = "ROS_STATIC_PEERS"
         static_peers = environ.get(peers_source, "").split(";")

@@ -44,8 +44,8 @@ async def serve(name: str, *, link: bool) -> None:
                 made.append(node.create_publisher(String, "everyone", 10))
                 made.append(node.create_subscription(String, "everyone", lambda _: None, 10))
             if words[0] == "found":
-                links: Any = context.transports[-1]
-                say([len(node.get_node_names()), len(links.manager.links)])
+                by_link: Any = next(t for t in context.transports if hasattr(t, "manager"))
+                say([len(node.get_node_names()), len(by_link.manager.links)])
             else:
                 say({"cpu_s": time.process_time(), "threads": threads()})
 

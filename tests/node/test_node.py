@@ -342,7 +342,8 @@ def test_the_default_context_is_made_anew_after_shutdown(monkeypatch: pytest.Mon
 
 def test_an_unknown_transport_is_refused() -> None:
     """With the words that fit."""
-    with pytest.raises(ValueError, match='transport=\'dds\' is unknown; use "zenoh" or "local"'):
+    words = 'transport=\'dds\' is unknown; use "zenoh", "rcl" or "local"'
+    with pytest.raises(ValueError, match=words):
         Context(transport="dds")
 
 

@@ -22,7 +22,7 @@ async def main(count: int, end: str) -> None:
     asyncio.get_running_loop().add_reader(sys.stdin, told.set)
     async with (
         Context(link=True) as context,
-        Node("n", context=context, enable_rosout=False, start_parameter_services=False) as node,
+        Node("ender", context=context, enable_rosout=False, start_parameter_services=False) as node,
     ):
         publisher = node.create_publisher(Int32, "numbers", KEEP_ALL)
         await publisher.wait_for_subscribers()

@@ -62,6 +62,29 @@ def test_arguments_win_over_the_environment() -> None:
 
 
 @pytest.mark.parametrize(
+    ("localhost_only", "expected"),
+    [
+        ("1", (DiscoveryRange.LOCALHOST, ())),
+        ("0", (DiscoveryRange.SUBNET, ("tcp/a:1",))),
+        ("", (DiscoveryRange.SUBNET, ("tcp/a:1",))),
+    ],
+)
+def test_localhost_only_overrules_the_variables_that_replaced_it(
+    localhost_only: str, expected: tuple[DiscoveryRange, tuple[str, ...]]
+) -> None:
+    """As in ROS 2 since Iron, where it is deprecated; Humble has no other variable."""
+    environ = {
+        "ROS_LOCALHOST_ONLY": localhost_only,
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET",
+        "ROS_STATIC_PEERS": "tcp/a:1",
+    }
+    network = network_from(environ)
+
+    assert (network.discovery_range, network.static_peers) == expected
+    assert network_from(environ, static_peers=["tcp/b:1"]).static_peers == ("tcp/b:1",)
+
+
+@pytest.mark.parametrize(
     ("environ", "named"),
     [
         ({"ROS_DOMAIN_ID": "abc"}, r"ROS_DOMAIN_ID: 'abc' given; a whole number from 0 to"),

@@ -21,7 +21,7 @@ class GetTypeDescription(
 
         type_name: str = ""
         type_hash: str = ""
-        include_type_sources: bool = True
+        include_type_sources: bool = False
 
     class Response(Message):
         """The description, or why there is none."""

@@ -40,6 +40,9 @@ logger = logging.getLogger("aionode.transport.zenoh")
 
 DESCRIPTORS: Final = Path("/proc/self/fd")
 
+INTERNET: Final = {socket.AF_INET, socket.AF_INET6}
+"""The families of connections between hosts."""
+
 STUCK_S: Final = 0.1
 """A peer that reads not one byte for so long, while some wait, is not waited for."""
 
@@ -79,7 +82,7 @@ def connections() -> Iterator[list[tuple[str, socket.socket]]]:
                 if not S_ISSOCK(fstat(fd).st_mode):
                     continue
                 one = stack.enter_context(socket.socket(fileno=dup(fd)))
-                if one.type == socket.SOCK_STREAM and one.family != socket.AF_UNIX:
+                if one.type == socket.SOCK_STREAM and one.family in INTERNET:
                     host, port = one.getpeername()[:2]
                     found.append((f"[{host}]:{port}" if ":" in host else f"{host}:{port}", one))
         yield found
