@@ -326,23 +326,22 @@ RESULTS = {
 }
 """What a callback may do, and the result as which that counts."""
 
-
-RESULTS_OF_RCL = ("SUCCESS", "FAILURE", "ERROR", "RAISE")
+HANDLINGS = {"ERROR": list(RESULTS), "RAISE": ["SUCCESS", "FAILURE", "ERROR", "RAISE"]}
+"""What `on_error` does after that; after all else it succeeds."""
 
 
 def make_transitions(stage: Stage) -> None:
     """From each state each transition, with all a callback may do, and in `on_error` as well."""
     for number, label, start, running in REQUESTS:
         for does, result in RESULTS.items():
-            handlings = {"ERROR": RESULTS, "RAISE": RESULTS_OF_RCL}.get(does, ("SUCCESS",))
-            for handles in handlings if result == "ERROR" else ("",):
+            for handles in HANDLINGS.get(does, ["SUCCESS"]):
                 say(f"{STATES[start]}: {label} [{number}] {does} {handles}")
                 states = [running, goal_of(running, result)]
                 calls = [label]
                 if states[-1] == 15:
                     states.append(goal_of(15, RESULTS[handles]))
                     calls.append("error")
-                node = stage.begin(start, **{label: does, "error": handles or "SUCCESS"})
+                node = stage.begin(start, **{label: does, "error": handles})
                 assert node.change(number=number) is (result == "SUCCESS")
                 node.expect_events(start, *states)
                 node.expect_state(states[-1])
