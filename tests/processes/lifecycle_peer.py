@@ -149,21 +149,23 @@ class Peer:
         self.subscriber = self.session.declare_subscriber(topic, self.events.put)
         time.sleep(0.5)  # Zenoh says nothing when a publisher has matched
 
-    def token(self, kind: str, name: str) -> list[str]:
-        """Wait for a server's or publisher's token; return its chunks."""
-        key = f"@ros2_lv/{DOMAIN}/*/*/*/{kind}/*/*/*/{name.replace('/', '%')}/**"
+    def tokens(self, node: str, *names: str) -> dict[str, list[str]]:
+        """Wait for the tokens of a node's servers or publishers; return the chunks of each."""
+        key = f"@ros2_lv/{DOMAIN}/*/*/*/*/*/*/{node}/**"
+        wanted = {f"%{node}%{name}": name for name in names}
         ends = time.monotonic() + PATIENCE_S
         while time.monotonic() < ends:
-            for reply in self.session.liveliness().get(key, timeout=1.0):
-                if reply.ok is not None:
-                    return str(reply.ok.key_expr).split("/")
-            time.sleep(0.05)
-        raise AssertionError(f"no {kind} token of {name}")
+            replies = [reply.ok for reply in self.session.liveliness().get(key, timeout=1.0)]
+            tokens = [str(reply.key_expr).split("/") for reply in replies if reply is not None]
+            found = {wanted[one[9]]: one for one in tokens if one[9:] and one[9] in wanted}
+            if len(found) == len(names):
+                return found
+            time.sleep(0.01)
+        raise AssertionError(f"{node} has not all of {names}")
 
-    def data_key(self, kind: str, name: str) -> str:
-        """Return the key of a topic or service, whose type and hash the token tells."""
-        chunks = self.token(kind, name)
-        return f"{DOMAIN}/{name.strip('/')}/{chunks[10]}/{chunks[11]}"
+    def data_key(self, chunks: list[str]) -> str:
+        """Return the key of a topic or service, whose type and hash its token tells."""
+        return f"{DOMAIN}/{chunks[9].replace('%', '/').strip('/')}/{chunks[10]}/{chunks[11]}"
 
     def begin(self, key: str, request: bytes) -> queue.SimpleQueue[Any]:
         """Send a request; the queue gets its reply."""
@@ -189,27 +191,29 @@ class Peer:
         return Reading(reply.ok.payload.to_bytes())
 
 
+SERVICES = (
+    "change_state",
+    "get_state",
+    "get_available_states",
+    "get_available_transitions",
+    "get_transition_graph",
+)
+
+
 class Managed:
     """One managed node, by its services and its topic."""
 
     def __init__(self, peer: Peer, name: str) -> None:
         self.peer = peer
         self.name = name
-        self.keys = {
-            service: peer.data_key("SS", f"/{name}/{service}")
-            for service in (
-                "change_state",
-                "get_state",
-                "get_available_states",
-                "get_available_transitions",
-                "get_transition_graph",
-            )
-        }
-        assert "lifecycle_msgs::srv::dds_::ChangeState_" in self.keys["change_state"]
-        assert peer.token("MP", f"/{name}/transition_event")[12] == "::,10:,:,:,,"
-        assert "lifecycle_msgs::msg::dds_::TransitionEvent_" in peer.data_key(
-            "MP", f"/{name}/transition_event"
-        )
+        tokens = peer.tokens(name, *SERVICES, "transition_event")
+        event = tokens.pop("transition_event")
+        assert event[5] == "MP"
+        assert event[10] == "lifecycle_msgs::msg::dds_::TransitionEvent_"
+        assert event[12] == "::,10:,:,:,,"
+        assert all(token[5] == "SS" for token in tokens.values())
+        assert tokens["change_state"][10] == "lifecycle_msgs::srv::dds_::ChangeState_"
+        self.keys = {service: peer.data_key(token) for service, token in tokens.items()}
 
     def call(self, service: str, request: bytes = EMPTY) -> Reading:
         """Call a service and wait for its reply."""
@@ -274,8 +278,9 @@ class Stage:
 
     def __init__(self, peer: Peer) -> None:
         self.peer = peer
-        self.key = peer.data_key("SS", "/stage/prepare")
-        self.calls_key = peer.data_key("SS", "/stage/check_calls")
+        tokens = peer.tokens("stage", "prepare", "check_calls")
+        self.key = peer.data_key(tokens["prepare"])
+        self.calls_key = peer.data_key(tokens["check_calls"])
         self.count = 0
         self.node = self.new_node()
 
