@@ -35,6 +35,9 @@ TRACEBACK_VARIABLE = "AIONODE_TRACEBACK"
 STARTED_SEC = 1.0
 """After so long a program has imported and made most of what it keeps."""
 
+FROZEN_BY_PYTHON = 1000
+"""Python 3.12 itself has frozen 375 objects when a program begins; a program freezes thousands."""
+
 LIBRARY = Path(__file__).parent
 STANDARD_LIBRARY = Path(asyncio.__file__).parent.parent
 
@@ -224,14 +227,14 @@ def freeze_objects() -> None:
 
 def freeze() -> None:
     """Call `freeze_objects`, unless the program has frozen some or collects no garbage."""
-    if gc.isenabled() and not gc.get_freeze_count():
+    if gc.isenabled() and gc.get_freeze_count() < FROZEN_BY_PYTHON:
         freeze_objects()
 
 
 @contextlib.contextmanager
 def unfrozen_at_the_end() -> Iterator[None]:
     """Undo what `freeze` has done within, for a process that goes on afterwards."""
-    was_frozen = bool(gc.get_freeze_count())
+    was_frozen = gc.get_freeze_count() >= FROZEN_BY_PYTHON
     try:
         yield
     finally:

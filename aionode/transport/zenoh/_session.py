@@ -118,7 +118,10 @@ async def run_in_own_thread(work: Callable[[], T], late: Callable[[T], object] |
 
     # No daemon, so that Python waits for it at exit: a thread inside Zenoh would abort the process.
     thread = threading.Thread(target=run, name="aionode-zenoh")
-    thread.start()
+    try:
+        thread.start()
+    except RuntimeError:  # the interpreter is shutting down, and no loop has anything else to do
+        return work()
     try:
         return await done
     finally:
