@@ -87,6 +87,23 @@ INIT_SYN: Final = bytes([INIT, 9, 0xF1])
 """The first message of a session: version 9, a peer whose id of 16 bytes follows."""
 
 
+def can_start(thread: threading.Thread) -> bool:
+    """Start a thread; False while the interpreter shuts down, when no loop has much left to do."""
+    try:
+        thread.start()
+    except RuntimeError:
+        return False
+    return True
+
+
+def outcome_of(work: Callable[[], T]) -> tuple[T | None, BaseException | None]:
+    """Return the result of `work`, or its exception."""
+    try:
+        return work(), None
+    except BaseException as raised:  # noqa: BLE001  # raised by the caller
+        return None, raised
+
+
 async def run_in_own_thread(work: Callable[[], T], late: Callable[[T], object] | None = None) -> T:
     """Run `work` in a thread that ends with it, and return its result.
 
@@ -105,11 +122,7 @@ async def run_in_own_thread(work: Callable[[], T], late: Callable[[T], object] |
                 done.set_exception(error)
 
     def run() -> None:
-        result, error = None, None
-        try:
-            result = work()
-        except BaseException as raised:  # noqa: BLE001  # raised by the caller
-            error = raised
+        result, error = outcome_of(work)
         try:
             loop.call_soon_threadsafe(deliver, result, error)
         except RuntimeError:  # the loop was closed meanwhile
@@ -118,9 +131,7 @@ async def run_in_own_thread(work: Callable[[], T], late: Callable[[T], object] |
 
     # No daemon, so that Python waits for it at exit: a thread inside Zenoh would abort the process.
     thread = threading.Thread(target=run, name="aionode-zenoh")
-    try:
-        thread.start()
-    except RuntimeError:  # the interpreter is shutting down, and no loop has anything else to do
+    if not can_start(thread):
         return work()
     try:
         return await done
