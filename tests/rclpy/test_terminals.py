@@ -201,7 +201,7 @@ def test_the_publisher_and_the_subscriber_of_the_tutorial(
     )
     assert re.fullmatch(
         r"\[INFO\] \[simple_subscriber\]: Simple Subscriber started. Listening to /robot/message\n"
-        r'(\[INFO\] \[simple_subscriber\]: Received message #\d: "Hello .* count: \d"\n)+',
+        r'(\[INFO\] \[simple_subscriber\]: Received message #\d+: "Hello .* count: \d+"\n)+',
         subscriber.printed,
     )
 
