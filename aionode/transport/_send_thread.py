@@ -16,13 +16,27 @@ from aionode.transport._loop_waker import ThreadsafeQueue
 if TYPE_CHECKING:
     from aionode.transport._loop_waker import LoopWaker
 
-__all__ = ["SendQueue", "SendThread"]
+__all__ = ["SendQueue", "SendThread", "start_thread"]
 
 
 Job = Callable[[], None]
 
 EXIT_S: Final = 1.0
 """How long the process waits at exit for threads that are sending."""
+
+
+def start_thread(thread: threading.Thread) -> bool:
+    """Start a thread.
+
+    Returns:
+        False if the interpreter is shutting down: from Python 3.12 on none can be started then,
+        although the loop of a thread of its own still runs.
+    """
+    try:
+        thread.start()
+    except RuntimeError:
+        return False
+    return True
 
 
 class Worker:
@@ -41,7 +55,7 @@ class Worker:
         self._done = 0
         self.thread = threading.Thread(target=self._run, name=name, daemon=True)
         workers.add(self)
-        self.thread.start()
+        self._started = start_thread(self.thread)
 
     @property
     def busy(self) -> bool:
@@ -49,7 +63,10 @@ class Worker:
         return self._put != self._done
 
     def submit(self, job: Job) -> None:
-        """Run `job` after those before it."""
+        """Run `job` after those before it; in the calling thread if none could be started."""
+        if not self._started:
+            job()
+            return
         self._put += 1
         self._jobs.put(job)
 

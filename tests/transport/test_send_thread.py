@@ -123,6 +123,24 @@ async def test_an_abandoned_queue_sends_nothing_more_and_counts_it(send_thread: 
     await send_thread.flush()
 
 
+async def test_jobs_run_in_the_calling_thread_when_no_thread_can_be_started(
+    send_thread: SendThread, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """While the interpreter shuts down: a loop in another thread still has messages to send."""
+
+    def refuse(_: threading.Thread) -> None:
+        raise RuntimeError("can't create new thread at interpreter shutdown")
+
+    monkeypatch.setattr(threading.Thread, "start", refuse)
+    send_queue = send_thread.send_queue(10, keep_all=True)
+    threads: list[threading.Thread] = []
+    send_queue.put(lambda: threads.append(threading.current_thread()))
+    await send_queue.drain()
+    await send_thread.flush()
+
+    assert threads == [threading.current_thread()]
+
+
 async def test_the_end_of_the_process_waits_for_a_send_and_lets_none_begin(
     send_thread: SendThread,
 ) -> None:

@@ -20,6 +20,7 @@ import zenoh
 
 from aionode.clock import perf_ns
 from aionode.errors import ConfigurationError
+from aionode.transport._send_thread import start_thread
 from aionode.transport._zenoh_config import LOOPBACK, is_near, look_settings, router_settings
 from aionode.transport.zenoh._handlers import direct, reason, translated
 from aionode.transport.zenoh._recovery import LOOK_IDS
@@ -125,7 +126,7 @@ class LocalRouter:
 
     def _take_over(self) -> None:
         self._timer = None
-        threading.Thread(target=self._open_again, name="aionode-zenoh").start()
+        start_thread(threading.Thread(target=self._open_again, name="aionode-zenoh"))
 
     def _open_again(self) -> None:
         with suppress(ConfigurationError):  # it was right before

@@ -33,6 +33,7 @@ from typing import TYPE_CHECKING, Final
 import zenoh
 
 from aionode.errors import ConfigurationError
+from aionode.transport._send_thread import start_thread
 from aionode.transport._zenoh_config import introducers, look_settings
 from aionode.transport.zenoh._handlers import direct, translated
 from aionode.transport.zenoh._session import load_config
@@ -185,9 +186,9 @@ class Recovery:
         ):
             self._cuts[zid] += 1
             logger.info("process %s is connected, but declares nothing: connected anew", zid)
-            threading.Thread(
-                target=cut_participant, args=(session, zid), name="aionode-zenoh"
-            ).start()
+            start_thread(
+                threading.Thread(target=cut_participant, args=(session, zid), name="aionode-zenoh")
+            )
 
     def _look_in(self, delay_s: float) -> None:
         """Look in a while; processes that saw the same end do not all look at once."""
@@ -204,10 +205,11 @@ class Recovery:
         if self._looking:
             self._look_in(FIRST_S)
             return
-        self._looking = True
-        threading.Thread(
-            target=self._look_in_thread, args=(session, set(self._lost)), name="aionode-zenoh"
-        ).start()
+        self._looking = start_thread(
+            threading.Thread(
+                target=self._look_in_thread, args=(session, set(self._lost)), name="aionode-zenoh"
+            )
+        )
 
     def _look_in_thread(self, session: zenoh.Session, lost: set[str]) -> None:
         missing: set[str] | None = None

@@ -18,6 +18,7 @@ import zenoh
 
 from aionode.clock import perf_ns
 from aionode.errors import ConfigurationError, TransportError
+from aionode.transport._send_thread import start_thread
 from aionode.transport._zenoh_config import (
     EVERYWHERE,
     LOOPBACK,
@@ -87,15 +88,6 @@ INIT_SYN: Final = bytes([INIT, 9, 0xF1])
 """The first message of a session: version 9, a peer whose id of 16 bytes follows."""
 
 
-def can_start(thread: threading.Thread) -> bool:
-    """Start a thread; False while the interpreter shuts down, when no loop has much left to do."""
-    try:
-        thread.start()
-    except RuntimeError:
-        return False
-    return True
-
-
 def outcome_of(work: Callable[[], T]) -> tuple[T | None, BaseException | None]:
     """Return the result of `work`, or its exception."""
     try:
@@ -114,7 +106,7 @@ async def run_in_own_thread(work: Callable[[], T], late: Callable[[T], object] |
 
     def deliver(result: T | None, error: BaseException | None) -> None:
         if error is None and done.cancelled() and late is not None:
-            threading.Thread(target=late, args=(result,)).start()
+            start_thread(threading.Thread(target=late, args=(result,)))
         elif not done.done():
             if error is None:
                 done.set_result(result)  # type: ignore[arg-type]  # there is one without an error
@@ -131,7 +123,7 @@ async def run_in_own_thread(work: Callable[[], T], late: Callable[[T], object] |
 
     # No daemon, so that Python waits for it at exit: a thread inside Zenoh would abort the process.
     thread = threading.Thread(target=run, name="aionode-zenoh")
-    if not can_start(thread):
+    if not start_thread(thread):
         return work()
     try:
         return await done

@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING, Final
 
 import zenoh
 
+from aionode.transport._send_thread import start_thread
 from aionode.transport._zenoh_config import is_near
 from aionode.transport.zenoh._handlers import direct
 
@@ -215,7 +216,7 @@ class LingerSwitch:
         self._timer = None
         new, self._new = self._new, set()
         # Looking through all descriptors of a large process takes some milliseconds.
-        threading.Thread(target=switch_linger_off, args=(new,), name="aionode-zenoh").start()
+        start_thread(threading.Thread(target=switch_linger_off, args=(new,), name="aionode-zenoh"))
 
 
 def cut(peers: set[str]) -> None:
