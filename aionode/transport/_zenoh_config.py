@@ -58,8 +58,8 @@ MAX_DOMAIN_ID: Final = 2**32 - 1
 BLOCK_US: Final = 7_000_000
 """How long a blocking send waits for a peer, in microseconds, before the connection is ended.
 
-It has to be less than the lease of 10 s: when that ends while a send waits, the thread of Zenoh that
-ends the connection waits too, and with it everything that it does for other connections.
+It has to be less than the lease of 10 s: when that ends while a send waits, the thread of Zenoh
+that ends the connection waits too, and with it everything that it does for other connections.
 """
 
 BATCHES: Final = 16
