@@ -16,7 +16,7 @@ from aionode.transport.zenoh._recovery import Recovery
 from aionode.transport.zenoh._services import ZenohRequester, ZenohServer
 from aionode.transport.zenoh._session import ConnectionWatcher, close_session, open_session
 from aionode.transport.zenoh._session_state import SessionState
-from aionode.transport.zenoh._sockets import LingerSwitch, cut_stuck
+from aionode.transport.zenoh._sockets import SocketOptions, cut_stuck
 from aionode.transport.zenoh._subscription import ZenohReader
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ class ZenohTransport(Transport):
         self._missing = 0  # how many peers that accept connections were not connected in time
         self._recovery = Recovery(self._state, network, self._watcher.check)
         self._local_router = LocalRouter(self._state, network)
-        self._linger_switch: LingerSwitch | None = None
+        self._socket_options: SocketOptions | None = None
 
     def __repr__(self) -> str:
         state = "closed" if self._state.session is None else "open"
@@ -104,7 +104,7 @@ class ZenohTransport(Transport):
         self._state.connect(session, graph)
         links = ConnectionWatcher(session, self._state.queue)
         try:
-            self._linger_switch = LingerSwitch(session)
+            self._socket_options = SocketOptions(session)
             self._watcher.start(session)
             self.peer_directory.start(session)
             self._recovery.start(session)
@@ -140,9 +140,9 @@ class ZenohTransport(Transport):
         state = self._state
         self._answered = None
         await state.flush()
-        if self._linger_switch is not None:
-            self._linger_switch.close()
-            self._linger_switch = None
+        if self._socket_options is not None:
+            self._socket_options.close()
+            self._socket_options = None
         self._recovery.stop()
         self.peer_directory.stop()
         self._watcher.stop()
