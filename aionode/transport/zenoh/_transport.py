@@ -13,6 +13,7 @@ from aionode.transport.zenoh._local_router import LocalRouter
 from aionode.transport.zenoh._peer_directory import ZenohPeerDirectory
 from aionode.transport.zenoh._publisher import ZenohWriter
 from aionode.transport.zenoh._recovery import Recovery
+from aionode.transport.zenoh._router_matching import RouterMatching
 from aionode.transport.zenoh._services import ZenohRequester, ZenohServer
 from aionode.transport.zenoh._session import ConnectionWatcher, close_session, open_session
 from aionode.transport.zenoh._session_state import SessionState
@@ -61,7 +62,8 @@ class ZenohTransport(Transport):
         self.session_state = SessionState(participant, network.domain_id, time_base)
         self._state = self.session_state
         self._watcher = Watcher(self._state)
-        self.peer_directory = ZenohPeerDirectory(self._state)
+        self._router_matching = RouterMatching(self._state, network)
+        self.peer_directory = ZenohPeerDirectory(self._state, self._router_matching)
         # Done when the tokens of all connected peers are in the graph.
         self._answered: asyncio.Future[None] | None = None
         self._missing = 0  # how many peers that accept connections were not connected in time
@@ -150,6 +152,7 @@ class ZenohTransport(Transport):
         if session is not None:
             await cut_stuck(session)
             await close_session(session)
+        await self._router_matching.close()
         await self._local_router.close()
         state.waker.close()
 
