@@ -13,7 +13,6 @@ import platform
 import re
 import signal
 import sys
-from collections.abc import Iterator
 from importlib.metadata import version
 from pathlib import Path
 
@@ -28,10 +27,8 @@ from tests.faults.harness import (
     run_together,
 )
 
-JOBS = 10
-"""How many cases run at once; of those that mostly wait, twice as many."""
-
-LONG_S = 10.0
+JOBS = 12
+"""How many cases run at once: they mostly wait."""
 
 PAGE = Path(__file__).with_name("page.md")
 
@@ -68,14 +65,6 @@ def row(case: Case, results: list[Result]) -> tuple[str, bool]:
     return f"| {line} |", bool(problems)
 
 
-def batches(cases: list[Case], size: int) -> Iterator[list[Case]]:
-    """Yield cases that run side by side: those that take about as long."""
-    ordered = sorted(cases, key=lambda case: case.lasts_s)
-    for is_long, alike in itertools.groupby(ordered, lambda case: case.lasts_s > LONG_S):
-        while batch := list(itertools.islice(alike, 2 * size if is_long else size)):
-            yield batch
-
-
 def main() -> None:
     """Run the cases, and tell what came of them."""
     parser = argparse.ArgumentParser(description="Faults over real processes.")
@@ -94,11 +83,14 @@ def main() -> None:
     ]
     cases = rounds[0]
     results: dict[str, list[Result]] = {case.name: [] for case in cases}
+
+    def take(case: Case, result: Result) -> None:
+        results[case.name].append(result)
+        print(row(case, [result])[0], flush=True)  # noqa: T201 - a program
+
+    longest_first = sorted(itertools.chain(*rounds), key=lambda case: -case.lasts_s)
     try:
-        for batch in batches(list(itertools.chain(*rounds)), options.jobs):
-            for case, result in zip(batch, asyncio.run(run_together(batch)), strict=True):
-                results[case.name].append(result)
-                print(row(case, [result])[0], flush=True)  # noqa: T201 - a program
+        asyncio.run(run_together(longest_first, options.jobs, take))
     finally:  # what has run is told also when the rest is not waited for
         rows = [row(case, results[case.name]) for case in cases if results[case.name]]
         tell(rows, options.jobs, options.write)

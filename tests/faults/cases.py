@@ -255,7 +255,7 @@ def crowds(way: str) -> Iterator[Case]:
         (first,),
         arrive(others),
         loss="any",
-        lasts_s=9.0,  # after those that take little of the processor
+        lasts_s=9.0,
     )
 
 

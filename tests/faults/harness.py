@@ -15,7 +15,7 @@ import tempfile
 import time
 from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import msgspec
 
@@ -69,8 +69,8 @@ END_LIMIT_S = 10.0
 END_S = 3.0
 """How long it should take: a second more than it waits for readers to take what they lack."""
 
-STAGGER_S = 0.25
-"""The faults of cases that run side by side strike, and end, so long after each other."""
+BUSY = 2
+"""Of so many cases at once, processes start or end, which takes the processor from all others."""
 
 GAP_LIMIT_S = 0.05
 """How long a loop may stand still by itself."""
@@ -129,7 +129,7 @@ class Case(msgspec.Struct, frozen=True):
             only what is ``told``, or ``any``, where readers that a publisher takes for gone miss
             what it says meanwhile.
         recovery_limit_s: After how long everything has to work again.
-        lasts_s: About how long the fault takes; those alike run side by side.
+        lasts_s: About how long the fault takes; the longest begin first.
         short: Whether it is part of the ordinary tests.
         around: What has to be there before its processes start, such as two hosts.
     """
@@ -481,31 +481,24 @@ async def staged(case: Case) -> AsyncIterator[Stage]:
             raise failure
 
 
-async def run_case(
-    case: Case, barrier: asyncio.Barrier | None = None, after_s: float = 0.0
-) -> Outcome:
+async def run_case(case: Case, busy: asyncio.Semaphore) -> Outcome:
     """Run a case once.
 
     Args:
         case: The case.
-        barrier: Where it waits for the others of its batch, so that their processes, when they
-            start, take no time from its own.
-        after_s: How much later than the first of them it goes on.
+        busy: Held while its processes start, and while they end.
 
     Raises:
         Skipped: The machine cannot do it.
     """
     async with contextlib.AsyncExitStack() as stack:
-        try:
+        async with busy:
             stack.enter_context(case.around)
             stage = await stack.enter_async_context(staged(case))
             for role in (*case.roles, CONTROL):
                 await stage.start(role)
             hung = await stage.until_working(0.001, READY_LIMIT_S)
-        finally:
-            if barrier is not None:
-                await barrier.wait()
-        await asyncio.sleep(after_s + BEFORE_S / 2)
+        await asyncio.sleep(BEFORE_S / 2)
         steady_s = time.monotonic()
         await asyncio.sleep(BEFORE_S / 2)
         if hung:
@@ -517,7 +510,8 @@ async def run_case(
         await asyncio.sleep(AFTER_S)
         quiet_s = time.monotonic()
         await stage.until_arrived()
-        endings = await asyncio.gather(*(child.end() for child in stage.children.values()))
+        async with busy:
+            endings = await asyncio.gather(*(child.end() for child in stage.children.values()))
         await asyncio.sleep(0.05)  # for the last reports
         outcome = stage.outcome(steady_s, quiet_s)
         outcome.hung = [*outcome.hung, *hung, *(text for text in endings if text)]
@@ -526,11 +520,26 @@ async def run_case(
     raise AssertionError("not reached")
 
 
-async def run_together(cases: Sequence[Case]) -> list[Outcome | Skipped | Exception]:
-    """Run several cases side by side, once each; all faults strike at about the same time."""
-    barrier = asyncio.Barrier(len(cases))
-    results: list[Any] = await asyncio.gather(
-        *(run_case(case, barrier, number * STAGGER_S) for number, case in enumerate(cases)),
-        return_exceptions=True,
-    )
-    return results
+async def run_together(
+    cases: Sequence[Case], jobs: int, tell: Callable[[Case, Outcome | BaseException], None]
+) -> None:
+    """Run several cases side by side, once each, and tell what came of each as soon as it is over.
+
+    Args:
+        cases: The cases, those that take long first.
+        jobs: How many run at once.
+        tell: Called with each case and its outcome, or what it raised.
+    """
+    turns, busy = asyncio.Semaphore(jobs), asyncio.Semaphore(BUSY)
+
+    async def run(case: Case) -> None:
+        async with turns:
+            try:
+                outcome: Outcome | BaseException = await run_case(case, busy)
+            except Exception as error:  # noqa: BLE001 - it is told
+                outcome = error
+        tell(case, outcome)
+
+    async with asyncio.TaskGroup() as tasks:
+        for case in cases:
+            tasks.create_task(run(case))
