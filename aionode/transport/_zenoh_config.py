@@ -55,8 +55,12 @@ EVERYWHERE: Final = "0.0.0.0"  # noqa: S104  # only on request: ROS_AUTOMATIC_DI
 
 MAX_DOMAIN_ID: Final = 2**32 - 1
 
-BLOCK_US: Final = 10_000_000
-"""How long a blocking send waits for a peer, in microseconds, before the connection is ended."""
+BLOCK_US: Final = 7_000_000
+"""How long a blocking send waits for a peer, in microseconds, before the connection is ended.
+
+It has to be less than the lease of 10 s: when that ends while a send waits, the thread of Zenoh
+that ends the connection waits too, and with it everything that it does for other connections.
+"""
 
 BATCHES: Final = 16
 """How many batches of 64 kB wait for a peer that is busy, of each priority in `BURSTING`."""
@@ -369,8 +373,6 @@ def session_settings(network: Network, taken: Iterable[int]) -> dict[str, Any]:
         "connect/exit_on_failure": False,
         "connect/retry": RETRY,
         "open/return_conditions/connect_scouted": False,
-        # What waits for a reader without acknowledgements does so in a thread, and as long as the
-        # lease: Zenoh ends the connection then anyway, but lets go of the thread only after this.
         "transport/link/tx/queue/congestion_control/block/wait_before_close": BLOCK_US,
         # Batches of 64 kB, made when they are needed: what the loop sends never waits for one.
         **{f"transport/link/tx/queue/size/{name}": BATCHES for name in BURSTING},

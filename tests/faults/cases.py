@@ -43,7 +43,7 @@ def on(way: str, *roles: Role) -> tuple[Role, ...]:
     )
 
 
-def talk(*, keep_all: bool, period_s: float = 0.02) -> tuple[Role, ...]:
+def talk(*, keep_all: bool, period_s: float = 0.02, transient: bool = False) -> tuple[Role, ...]:
     """Return a publisher, a reader to be hurt, and one beside it on a topic of its own.
 
     What waits for a reader that is frozen soon fills every buffer on the way to it.
@@ -52,11 +52,13 @@ def talk(*, keep_all: bool, period_s: float = 0.02) -> tuple[Role, ...]:
         Role(
             "talker",
             publish=(
-                Publish("/a", keep_all=keep_all, period_s=period_s, size=59_000),
+                Publish(
+                    "/a", keep_all=keep_all, transient=transient, period_s=period_s, size=59_000
+                ),
                 Publish("/b", depth=100),
             ),
         ),
-        Role("reader", hear=(Hear("/a", keep_all=keep_all),)),
+        Role("reader", hear=(Hear("/a", keep_all=keep_all, transient=transient),)),
         Role("beside", hear=(Hear("/b", depth=100),)),
     )
 
@@ -66,6 +68,13 @@ CALLING = (
     Role("client", call="/add", callers=10, size=100_000),
     Role("other", call="/add"),
 )
+
+LARGE_CALLING = (
+    Role("server", serve="/add"),
+    Role("client", call="/add", size=8_000_000, publish=(Publish("/b", depth=100),)),
+    Role("beside", hear=(Hear("/b", depth=100),)),
+)
+"""One request takes more than all buffers on the way hold."""
 
 ACTING = (
     Role("server", act="/count"),
@@ -122,6 +131,21 @@ def freezes(way: str) -> Iterator[Case]:
                 Role("reader", hear=(Hear("/a", keep_all=True, pause_s=seconds),)),
             ),
             wait(seconds),
+            lasts_s=seconds,
+        )
+        yield Case(
+            f"{way}: KEEP_ALL reader frozen {seconds} s, transient local",
+            on(way, *talk(keep_all=True, transient=True, period_s=0.02 if short else 0.1)),
+            freeze("reader", seconds),
+            ("reader",),
+            lasts_s=seconds,
+        )
+        yield Case(
+            f"{way}: large calls, server frozen {seconds} s",
+            on(way, *LARGE_CALLING),
+            freeze("server", seconds),
+            ("server",),
+            loss="told",
             lasts_s=seconds,
         )
         yield Case(

@@ -90,6 +90,7 @@ class Outcome(msgspec.Struct):
         sent: Messages, once for each reader of theirs, and calls and goals.
         lost: How many of them did not arrive, or ended with an error.
         kept_lost: How many messages of KEEP_ALL publishers are among these.
+        healthy_lost: How many messages between processes that were not hurt are among these.
         told: How many of those were told: counted by a publisher or subscription, or an error.
         doubled: How many arrived twice.
         hung: What did not work again, took longer than its time limit, or did not end.
@@ -97,12 +98,14 @@ class Outcome(msgspec.Struct):
         gap_s: The longest time for which the loop of a process that was not hurt did not turn.
         own_gap_s: The same without the time for which its threads waited for a core of the machine.
         control_gap_s: As `gap_s`, of a process beside them that has no node.
+        control_own_gap_s: As `own_gap_s`, of that process: the machine itself stood still.
         end_s: The longest that a process took to end after SIGTERM.
     """
 
     sent: int = 0
     lost: int = 0
     kept_lost: int = 0
+    healthy_lost: int = 0
     told: int = 0
     doubled: int = 0
     hung: list[str] = []
@@ -110,6 +113,7 @@ class Outcome(msgspec.Struct):
     gap_s: float = 0.0
     own_gap_s: float = 0.0
     control_gap_s: float = 0.0
+    control_own_gap_s: float = 0.0
     end_s: float = 0.0
 
 
@@ -152,6 +156,10 @@ class Case(msgspec.Struct, frozen=True):
                     self.loss == "none" and outcome.kept_lost > 0,
                     f"{outcome.kept_lost} of {outcome.sent} lost",
                 ),
+                (
+                    self.loss != "any" and bool(self.hurt) and outcome.healthy_lost > 0,
+                    f"{outcome.healthy_lost} lost between others",
+                ),
                 (self.loss != "any" and untold > 0, f"{untold} of {outcome.sent} lost untold"),
                 (outcome.doubled > 0, f"{outcome.doubled} doubled"),
                 (bool(outcome.hung), f"hung: {', '.join(outcome.hung)}"),
@@ -160,7 +168,7 @@ class Case(msgspec.Struct, frozen=True):
                     f"recovered after {outcome.recovery_s:.1f} s, not {self.recovery_limit_s:g} s",
                 ),
                 (
-                    outcome.own_gap_s > gap_limit_s,
+                    outcome.own_gap_s > gap_limit_s + outcome.control_own_gap_s,
                     f"a loop stood still for {1000 * outcome.own_gap_s:.0f} ms",
                 ),
                 (outcome.end_s > end_limit_s, f"ended in {outcome.end_s:.1f} s"),
@@ -383,21 +391,28 @@ class Stage:
         children = [*self.children.values(), *self.former]
         return {key: number for child in children for key, number in child.last.sent.items()}
 
-    def lost(self, *, only_kept: bool = False) -> int:
-        """Return how many messages are missing at readers that live; all, or of KEEP_ALL ones."""
+    def lost(self, *, only_kept: bool = False, only_healthy: bool = False) -> int:
+        """Return how many messages are missing at readers that live.
+
+        Args:
+            only_kept: Count only those of KEEP_ALL publishers.
+            only_healthy: Count only those between processes that were not hurt.
+        """
         sent = self.streams()
-        kept = tuple(
+        counted = tuple(
             stream_key(publish.topic, role.name)
             for role in self.case.roles
             for publish in role.publish
-            if publish.keep_all
+            if (publish.keep_all or not only_kept)
+            and not (only_healthy and role.name in self.case.hurt)
         )
         killed = {key for child in self.former if not child.last.last for key in child.last.sent}
         return sum(
             missing(ranges, 0 if key in killed else sent.get(key, 0))
             for child in self.children.values()
+            if not (only_healthy and child.role.name in self.case.hurt)
             for key, ranges in child.last.heard.items()
-            if not only_kept or key.startswith(kept)
+            if key.startswith(counted)
         )
 
     def outcome(self, steady_s: float, quiet_s: float) -> Outcome:
@@ -427,6 +442,7 @@ class Stage:
             sent=heard + lost + calls,
             lost=lost + failed,
             kept_lost=self.lost(only_kept=True),
+            healthy_lost=self.lost(only_healthy=True),
             told=min(lost, sum(report.told for report in last)) + failed,
             doubled=sum(report.doubled for report in last),
             hung=[
@@ -437,6 +453,7 @@ class Stage:
             gap_s=max((report.gap_s for report in steady[False]), default=0.0),
             own_gap_s=max((report.own_gap_s for report in steady[False]), default=0.0),
             control_gap_s=max((report.gap_s for report in steady[True]), default=0.0),
+            control_own_gap_s=max((report.own_gap_s for report in steady[True]), default=0.0),
             end_s=max(child.end_s for child in children),
         )
 

@@ -24,7 +24,7 @@ from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.rcl_interfaces.msg import ParameterValue
 from aionode.interfaces.rcl_interfaces.srv import GetParameters
 from aionode.interfaces.std_msgs.msg import String
-from aionode.qos import HistoryPolicy, QoSProfile
+from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from aionode.transport.zenoh._session import close_session, open_router
 from tests.faults.roles import (
     REPORTS_VARIABLE,
@@ -56,11 +56,12 @@ PAUSE_S = 0.05
 """Between two calls of one process, on average."""
 
 
-def profile(keep_all: bool, depth: int) -> QoSProfile:
+def profile(each: Publish | Hear) -> QoSProfile:
     """Return a profile for reliable messages."""
-    if keep_all:
-        return QoSProfile(history=HistoryPolicy.KEEP_ALL)
-    return QoSProfile(depth=depth)
+    durability = DurabilityPolicy.TRANSIENT_LOCAL if each.transient else DurabilityPolicy.VOLATILE
+    if each.keep_all:
+        return QoSProfile(history=HistoryPolicy.KEEP_ALL, durability=durability)
+    return QoSProfile(depth=each.depth, durability=durability)
 
 
 def text(sender: str, number: int, size: int) -> str:
@@ -260,14 +261,12 @@ class Process:
                 await asyncio.sleep(hear.pause_s)
 
         self.reporter.endpoints.append(
-            node.create_subscription(String, hear.topic, take, profile(hear.keep_all, hear.depth))
+            node.create_subscription(String, hear.topic, take, profile(hear))
         )
 
     async def publish(self, node: Node, publish: Publish) -> None:
         """Publish until it is to be quiet, or the last one is sent."""
-        publisher = node.create_publisher(
-            String, publish.topic, profile(publish.keep_all, publish.depth)
-        )
+        publisher = node.create_publisher(String, publish.topic, profile(publish))
         self.reporter.endpoints.append(publisher)
         await publisher.wait_for_subscribers(publish.readers)
         key = stream_key(publish.topic, self.role.name, os.getpid())

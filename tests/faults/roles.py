@@ -42,6 +42,7 @@ class Publish(msgspec.Struct, frozen=True):
         topic: Where.
         keep_all: Whether the publisher waits for slow readers, or keeps the last `depth`.
         depth: How many it keeps.
+        transient: Whether it keeps what it has published for late readers.
         period_s: Time between two messages; 0 for as fast as can be.
         size: Bytes that are added to each message.
         readers: For how many it waits before the first one.
@@ -51,6 +52,7 @@ class Publish(msgspec.Struct, frozen=True):
     topic: str
     keep_all: bool = False
     depth: int = 10
+    transient: bool = False
     period_s: float = 0.02
     size: int = 0
     readers: int = 1
@@ -64,6 +66,7 @@ class Hear(msgspec.Struct, frozen=True):
         topic: Where.
         keep_all: Whether its publishers wait for it.
         depth: How many messages may wait for its callback.
+        transient: Whether it asks for what its publishers have kept.
         slow_s: How long the callback awaits for each message.
         pause_s: How long it awaits once, at message number 50, with its loop free.
     """
@@ -71,6 +74,7 @@ class Hear(msgspec.Struct, frozen=True):
     topic: str
     keep_all: bool = False
     depth: int = 10
+    transient: bool = False
     slow_s: float = 0.0
     pause_s: float = 0.0
 

@@ -53,20 +53,27 @@ def ros_value(value: Any) -> Any:
     return value
 
 
+given_ports: set[int] = set()
+"""Ports that were handed out, and are perhaps not listened on yet."""
+
+
 def free_ports(count: int) -> list[int]:
     """Return loopback ports that are free, and will not be taken by chance.
 
     They lie below the ephemeral ports, which the system gives to other sessions, such as those of
-    another run of these tests.
+    another run of these tests. None is handed out twice.
     """
     found: list[int] = []
     with ExitStack() as until_all_are_found:
         while len(found) < count:
             port = 10_000 + secrets.randbelow(22_000)
+            if port in given_ports:
+                continue
             one = until_all_are_found.enter_context(socket.socket())
             with suppress(OSError):
                 one.bind(("127.0.0.1", port))
                 found.append(port)
+                given_ports.add(port)
     return found
 
 

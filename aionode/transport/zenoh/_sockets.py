@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, Final
 import zenoh
 
 from aionode.transport._send_thread import start_thread
-from aionode.transport._zenoh_config import is_near
+from aionode.transport._zenoh_config import BLOCK_US, is_near
 from aionode.transport.zenoh._handlers import direct
 
 if TYPE_CHECKING:
@@ -48,6 +48,10 @@ STUCK_S: Final = 0.1
 
 UNREACHABLE_MS: Final = 5_000
 """After so long without any answer to what was sent, a connection to another machine is lost."""
+
+UNREAD_MS: Final = BLOCK_US // 1000
+"""After so long in which the peer has read nothing, though there is something to read, a connection
+within this machine is lost, whichever thread waits for it."""
 
 RESET: Final = struct.pack("ii", 1, 0)
 """SO_LINGER for a connection that is cut: what was not taken is dropped."""
@@ -171,10 +175,11 @@ def look(session: zenoh.Session, participant: str) -> tuple[bool, int] | None:
 class SocketOptions:
     """Sets the options of each connection of a session, soon after it was made.
 
-    Closing one never waits for its peer. One to another machine is lost when nothing has arrived
-    there for `UNREACHABLE_MS`: otherwise, TCP sends again after 0.2, 0.4, 0.8 … s, and when a
-    network was gone for 30 s, and is back, it is silent for up to 30 s more. A new connection finds
-    the network at once.
+    Closing one never waits for its peer. One whose peer reads nothing for `UNREAD_MS` is lost
+    before the lease ends, as Zenoh could not end it while a thread waits for that peer. One to
+    another machine is lost when nothing has arrived there for `UNREACHABLE_MS`: otherwise, TCP
+    sends again after 0.2, 0.4, 0.8 … s, and when a network was gone for 30 s, and is back, it is
+    silent for up to 30 s more. A new connection finds the network at once.
 
     It works until the session is closed. The connections of a burst are looked for at once, and of
     all descriptors of the process only those that are new.
@@ -227,9 +232,8 @@ class SocketOptions:
                 peer, one = connection(descriptor, stack) or ("", None)
                 if one is not None and peer in new:
                     one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
-                    if not is_near(f"tcp/{peer}"):
-                        option = socket.TCP_USER_TIMEOUT
-                        one.setsockopt(socket.IPPROTO_TCP, option, UNREACHABLE_MS)
+                    limit_ms = UNREAD_MS if is_near(f"tcp/{peer}") else UNREACHABLE_MS
+                    one.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, limit_ms)
                 if one is None or peer in new:
                     self._known.add(descriptor)
 
