@@ -187,7 +187,8 @@ class WriterHistory:
         self._end = 0  # of the last message that was written, as `Entry.end`
         self._sent_end = 0  # of the last message that was sent
         self._sent_ns = 0
-        # A message that ends before this is within the window, whatever `_admits` would say.
+        # A message that ends before this is within the window, whatever `_admits` would say. The
+        # next message computes it after readers have come or gone: each of many costs the same.
         self._window_end = -1
         # Sequence numbers below this one that are not in `entries` were never written here.
         self._jumped_to = 0
@@ -213,7 +214,7 @@ class WriterHistory:
             reader.resent.clear()
         reader.heartbeat_ns = now_ns
         reader.interval_ns = QUIET_NS
-        self._update_window()
+        self._window_end = -1
         self._side.heartbeat(reader, reader.acked + 1, self.sent)
 
     def remove(self, gid: bytes) -> None:
@@ -232,7 +233,7 @@ class WriterHistory:
             reader.away_until_ns = now_ns + FLAPPING_NS
         else:
             del self.readers[gid]
-        self._update_window()
+        self._window_end = -1
         self._trim()
         self.pump()
 
@@ -269,6 +270,8 @@ class WriterHistory:
     def _write_slowly(self, entry: tuple[int, bytes, bytes, int]) -> None:
         """Send a message after a jump of sequence numbers, or as the window allows."""
         sequence = entry[0]
+        if self._window_end < 0:
+            self._update_window()
         if sequence != self._last + 1:
             self._jumped_to = sequence
             for reader in self.readers.values():
@@ -440,6 +443,8 @@ class WriterHistory:
 
     def _trim(self) -> None:
         """Drop what every reader has."""
+        if not (self.entries or self._lost):
+            return
         acked = min((reader.acked for reader in self.readers.values()), default=self.sent)
         entries, through = self.entries, min(acked, self.sent)
         while entries and entries[0][0] <= through:

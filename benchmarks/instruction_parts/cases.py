@@ -99,7 +99,7 @@ class Introducer(Transport):
     def retransmit(self, participant: str, data: bytes) -> None:
         """Send nothing."""
 
-    def announce_link(self, participant: str, on: bool) -> None:
+    def note_link(self, participant: str, on: bool) -> None:
         """Tell no tools."""
 
     def may_be_heard(self, publisher: EndpointInfo, changed: Callable[[], None]) -> bool:

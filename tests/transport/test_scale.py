@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import asyncio
 import sys
+from dataclasses import replace
+from functools import partial
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
+from aionode.graph import EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
 from aionode.testing import local_context
-from tests.support.links import folder, two_nodes
+from tests.support.links import folder, transport_of, two_nodes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from aionode.graph import EndpointInfo
 
 __all__ = ["folder"]  # a fixture
 
@@ -84,3 +89,38 @@ async def test_a_subscription_of_another_process_concerns_publishers_of_its_name
         nodes.b.create_subscription(Int32, "near", None, 10)
         await near.wait_for_subscribers()
         assert set(asked) == {near.topic_name}
+
+
+async def test_a_subscription_of_another_context_costs_the_same_beside_many() -> None:
+    """Else many publishers and subscriptions of one topic would cost the cube of their number."""
+    async with asyncio.timeout(30), two_nodes() as nodes:
+        publisher = nodes.a.create_publisher(Int32, "many", 10)
+        state = transport_of(nodes.a).zenoh.session_state  # type: ignore[attr-defined]  # Zenoh's
+        state.acknowledgements.participants.add("f00")
+        other = NodeInfo("f00", 0, "other", "/")
+        endpoint = publisher._graph_entry.endpoint
+        readers = [
+            replace(
+                endpoint,
+                kind=EndpointKind.SUBSCRIPTION,
+                node=other,
+                endpoint_id=number,
+                gid=number.to_bytes(16, "little"),
+            )
+            for number in range(1, 101)
+        ]
+
+        def come(reader: EndpointInfo) -> None:
+            nodes.a.graph.add_endpoint(reader)
+            state.tell_writers(reader, present=True)
+
+        def go(reader: EndpointInfo) -> None:
+            nodes.a.graph.remove_endpoint(reader)
+            state.tell_writers(reader, present=False)
+
+        came = [calls_of(partial(come, reader)) for reader in readers]
+        assert publisher.get_subscription_count() == len(readers)
+        gone = [calls_of(partial(go, reader)) for reader in readers]
+
+    assert median(came[-20:]) <= median(came[10:30]) + 5
+    assert median(gone[:20]) <= median(gone[-30:-10]) + 5

@@ -413,7 +413,7 @@ class LinkManager:
         self._link_changes += 1
         logger.debug("linked to %s", participant)
         self._near.add(participant)
-        self._peer_directory.announce_link(participant, True)
+        self._peer_directory.note_link(participant, True)
         self._open_publishers(connection)
 
     # The owner of connections
@@ -437,7 +437,7 @@ class LinkManager:
             return
         del self._links[participant]
         self._link_changes += 1
-        self._peer_directory.announce_link(participant, False)
+        self._peer_directory.note_link(participant, False)
         for receiver in connection.receivers.clear():
             receiver.broken()
         self._retransmit_unacked(connection)

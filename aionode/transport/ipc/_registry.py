@@ -86,5 +86,5 @@ class PeerDirectory(Protocol):
     def retransmit(self, participant: str, data: bytes) -> None:
         """Send bytes to one other context, in order."""
 
-    def announce_link(self, participant: str, on: bool) -> None:
-        """Announce a link to another context, or withdraw that; for tools that ask."""
+    def note_link(self, participant: str, on: bool) -> None:
+        """Record whether there is a link to another context, for tools that ask."""

@@ -121,7 +121,7 @@ class Acknowledgements:
         domain_id: int,
         waker: LoopWaker,
         note_malformed: Callable[[str, str], None],
-        on_participant: Callable[[], None],
+        on_participant: Callable[[str], None],
     ) -> None:
         self.participants: set[str] = set()
         self.present: set[str] = set()
@@ -217,4 +217,4 @@ class Acknowledgements:
         self.present.add(participant)
         if participant not in self.participants:
             self.participants.add(participant)
-            self._on_participant()
+            self._on_participant(participant)

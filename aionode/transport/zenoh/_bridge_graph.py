@@ -27,7 +27,7 @@ from aionode.wire._bridge import (
 from aionode.wire._liveliness import gid_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterator
 
     from aionode.graph import Graph
     from aionode.transport.zenoh._bridge_state import BridgeState
@@ -281,7 +281,7 @@ class BridgeWatcher:
         for endpoint in shown:
             self._use(endpoint.node)
             self._graph.add_endpoint(endpoint)
-        self._tell_writers(shown)
+            self._state.tell_writers(endpoint, present=True)
 
     def _hide(self, bridge: Bridge, key: str) -> None:
         hidden = bridge.endpoints.pop(key, [])
@@ -289,13 +289,7 @@ class BridgeWatcher:
             if self._graph is not None:
                 self._graph.remove_endpoint(endpoint)
             self._unuse(endpoint.node)
-        self._tell_writers(hidden)
-
-    def _tell_writers(self, endpoints: Iterable[EndpointInfo]) -> None:
-        for endpoint in endpoints:
-            if endpoint.kind is EndpointKind.SUBSCRIPTION:
-                for update in list(self._state.on_reader.get(endpoint.name, ())):
-                    update()
+            self._state.tell_writers(endpoint, present=False)
 
     def _endpoints(self, bridge: Bridge, token: BridgeToken) -> Iterator[EndpointInfo]:
         """Yield what a token stands for: for each node if they are known, else once."""

@@ -70,7 +70,7 @@ class BridgeState(SessionState):
     ) -> None:
         super().__init__(participant, domain_id, time_base, waker)
         self.acknowledgements = Unacknowledged(
-            participant, domain_id, waker, self.note_malformed, lambda: None
+            participant, domain_id, waker, self.note_malformed, lambda _: None
         )
         self.prefixes: dict[str, str] = {}
         self.fast_dds: set[str] = set()

@@ -28,13 +28,13 @@ class BridgeWriter(BridgeDeclaration, ZenohWriter):
 
     recovers: ClassVar[bool] = False
 
-    def _update(self) -> None:
+    def _update(self, reader: EndpointInfo | None = None, present: bool = True) -> None:
         """Update `active` from the subscriptions that bridges announce.
 
         Without a bridge, what late subscriptions shall get is kept for the first one, unless it is
         valid for some time only, as the log is.
         """
-        super()._update()
+        super()._update(reader, present)
         if self._transient:
             self.active = self._publisher is not None or not self._lifespan_ns
 

@@ -15,11 +15,8 @@ from aionode.transport.zenoh._session_state import FLUSH_S
 from aionode.wire._attachment import unpack_fields
 
 if TYPE_CHECKING:
-    from collections.abc import Container, Iterable
-
     from zenoh import ext
 
-    from aionode.graph import EndpointInfo
     from aionode.qos import QoSProfile
 
 __all__ = [
@@ -30,7 +27,6 @@ __all__ = [
     "GIVEN_UP_NS",
     "STILL_NS",
     "UNKNOWN_GID",
-    "acknowledging",
     "has_buffers",
     "is_reliable",
     "is_transient",
@@ -91,31 +87,6 @@ def sample_info_of(extra: zenoh.ZBytes | None) -> SampleInfo | None:
         return None
     fields = unpack_fields(extra.to_bytes())
     return None if fields is None else SampleInfo(fields[2], fields[0], fields[1], True)
-
-
-def acknowledging(
-    readers: Iterable[EndpointInfo], participants: Container[str]
-) -> tuple[dict[bytes, str], bool]:
-    """Return which readers acknowledge, with their contexts, and whether others must lose nothing.
-
-    Transient local readers get Zenoh's own history.
-
-    Args:
-        readers: The matched readers.
-        participants: The contexts that acknowledge.
-    """
-    found: dict[bytes, str] = {}
-    others = False
-    for reader in readers:
-        participant = reader.node.participant
-        if participant not in participants:
-            others = True
-        elif is_reliable(reader.qos):
-            if is_transient(reader.qos):
-                others = True
-            else:
-                found[reader.gid] = participant
-    return found, others
 
 
 def withdraw(publisher: zenoh.Publisher | ext.AdvancedPublisher) -> None:

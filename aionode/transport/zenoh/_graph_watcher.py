@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import zenoh
 
 from aionode.clock import perf_ns
-from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
+from aionode.graph import EndpointInfo, NodeInfo
 from aionode.transport.zenoh._handlers import direct, translated
 from aionode.transport.zenoh._session_state import Declaration
 from aionode.wire._liveliness import PREFIX, node_token, parse_token
@@ -198,7 +198,7 @@ class Watcher:
                 self._state.graph.add_node(info)
             else:
                 self._state.graph.add_endpoint(info)
-                self._tell_writers(info)
+                self._state.tell_writers(info, present=True)
 
     def _remove(self, key: str) -> None:
         info = self._known.pop(key, None)
@@ -211,18 +211,13 @@ class Watcher:
             self._state.graph.remove_node(info)
         else:
             self._state.graph.remove_endpoint(info)
-            self._tell_writers(info)
+            self._state.tell_writers(info, present=False)
 
     def _forget_domain(self, key: str) -> None:
         for domain_id, keys in list(self._foreign.items()):
             keys.discard(key)
             if not keys:
                 del self._foreign[domain_id]
-
-    def _tell_writers(self, info: EndpointInfo) -> None:
-        if info.kind is EndpointKind.SUBSCRIPTION:
-            for update in self._state.on_reader.get(info.name, ()):
-                update()
 
     def note_domains(self) -> None:
         """Log nodes of other domains, now and whenever more appear."""

@@ -30,6 +30,9 @@ PREFIX: Final = "@aionode"
 
 FILTER: Final = _content_filters.KIND
 
+LINKS: Final = "links"
+"""The end of the key on which a context tells which others it is linked with, one in each line."""
+
 LINKS_S: Final = 0.5
 """How long `link_status` waits for replies; they take a millisecond."""
 
@@ -78,9 +81,10 @@ class ZenohPeerDirectory:
         self._connected: dict[str, zenoh.WhatAmI] = {}
         self._declared: list[Any] = []
         self._warning: zenoh.LivelinessToken | None = None
-        # The token of each link, by the other context; used by `_announcer` only.
-        self._linked: dict[str, zenoh.LivelinessToken] = {}
-        self._announcer = SendThread("aionode-links", state.waker)
+        # The contexts that are linked with this one.
+        self._linked: set[str] = set()
+        self._queries = state.queue(self._take_query)
+        self._answering = SendThread("aionode-links", state.waker)
         self._session: zenoh.Session | None = None
 
     def start(self, session: zenoh.Session) -> None:
@@ -105,7 +109,6 @@ class ZenohPeerDirectory:
 
     def _track(self, session: zenoh.Session) -> None:
         self._session = session
-        self._linked = {}
         liveliness = session.liveliness()
         with translated("links"):
             self._declared = [
@@ -121,6 +124,9 @@ class ZenohPeerDirectory:
                 retransmits = self._retransmit_key(self._state.participant)
                 self._declared += [
                     session.declare_subscriber(retransmits, direct(self._retransmits.put)),
+                    session.declare_queryable(
+                        self._links_key(self._state.participant), direct(self._queries.put)
+                    ),
                     liveliness.declare_token(self._prefix + self.advertisement),
                 ]
         self._connected = {
@@ -131,7 +137,8 @@ class ZenohPeerDirectory:
     def stop(self) -> None:
         """Undeclare everything, and forget all peers."""
         self._session = None
-        self._announcer.abandon()
+        self._answering.abandon()
+        self._linked.clear()
         self._warn(needed=False)
         declared, self._declared = self._declared, []
         first, self._filters_declared = self._filters_declared, None
@@ -145,6 +152,7 @@ class ZenohPeerDirectory:
             self._nodes,
             self._changes,
             self._retransmits,
+            self._queries,
         ):
             queue.clear()
         self._known.clear()
@@ -168,28 +176,29 @@ class ZenohPeerDirectory:
                 participant, len(data), lambda: send(session, key, data)
             )
 
-    def announce_link(self, participant: str, on: bool) -> None:
-        """Declare or undeclare a token for a link to another context.
+    def note_link(self, participant: str, on: bool) -> None:
+        """Record whether there is a link to another context, for those that ask.
 
-        Of the two contexts, the one with the smaller id does so, from a thread of its own: the
-        other end may be stalled, and Zenoh may wait for it.
+        A token for each link would reach every context: of 100 contexts, each would get 4950.
         """
-        session, linked = self._session, self._linked
-        if session is None or participant < self._state.participant:
-            return
-        key = f"{self._prefix}{self._state.participant}/linked/{participant}"
+        if on:
+            self._linked.add(participant)
+        else:
+            self._linked.discard(participant)
 
-        def announce() -> None:
-            token = linked.pop(participant, None)
+    def _take_query(self, query: zenoh.Query) -> None:
+        """Tell a context that asks which links there are, from a thread: it may be stalled."""
+        key = self._links_key(self._state.participant)
+        links = "\n".join(sorted(self._linked))
+
+        def answer() -> None:
             try:
-                if token is not None:
-                    token.undeclare()
-                if on:
-                    linked[participant] = session.liveliness().declare_token(key)
-            except zenoh.ZError as error:  # it was closed meanwhile
-                logger.debug("%s: not announced: %s", key, reason(error))
+                with query:
+                    query.reply(key, links)
+            except zenoh.ZError as error:  # the session was closed meanwhile
+                logger.debug("%s: not answered: %s", key, reason(error))
 
-        self._announcer.submit(announce)
+        self._answering.submit(answer)
 
     async def link_status(self) -> LinkStatus:
         """Ask all contexts which links they offer and have; empty without replies in time."""
@@ -198,26 +207,31 @@ class ZenohPeerDirectory:
         pairs: set[frozenset[str]] = set()
         if session is None:
             return LinkStatus(advertisements, pairs)
-        answered: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        answers = asyncio.Semaphore(0)
 
         def take(reply: zenoh.Reply | None) -> None:
             if reply is None:
-                if not answered.done():
-                    answered.set_result(None)
+                answers.release()
             elif reply.ok is not None:
                 text = str(reply.ok.key_expr).removeprefix(self._prefix)
                 participant, _, what = text.partition("/")
-                if what.startswith("link/"):
+                if what == LINKS:
+                    for other in reply.ok.payload.to_bytes().decode(errors="replace").split():
+                        pairs.add(frozenset((participant, other)))
+                else:
                     advertisements.add(text)
-                elif what.startswith("linked/"):
-                    pairs.add(frozenset((participant, what.removeprefix("linked/"))))
 
         queue = self._state.queue(take)
-        session.liveliness().get(
-            f"{self._prefix}*/**", direct(queue.put, lambda: queue.put(None)), timeout=LINKS_S
-        )
-        await answered
+        handler = direct(queue.put, lambda: queue.put(None))
+        session.liveliness().get(f"{self._prefix}*/link/**", handler, timeout=LINKS_S)
+        handler = direct(queue.put, lambda: queue.put(None))
+        session.get(self._links_key("*"), handler, target=zenoh.QueryTarget.ALL, timeout=LINKS_S)
+        await answers.acquire()
+        await answers.acquire()
         return LinkStatus(advertisements, pairs)
+
+    def _links_key(self, participant: str) -> str:
+        return f"{self._prefix}{participant}/{LINKS}"
 
     def may_be_heard(self, publisher: EndpointInfo, changed: Callable[[], None]) -> bool:
         """Return whether an unannounced peer may subscribe to what a publisher sends.

@@ -14,7 +14,6 @@ from zenoh import ext
 from aionode.clock import perf_ns
 from aionode.clock._silence import SilenceAlarm
 from aionode.errors import TransportError
-from aionode.graph import EndpointKind
 from aionode.qos import depth_of, is_unlimited, keeps_all
 from aionode.transport._reliability import WriterHistory
 from aionode.transport._send_thread import SendQueue, SendThread
@@ -25,7 +24,6 @@ from aionode.transport.zenoh._delivery import (
     FLUSH_NS,
     GIVEN_UP_NS,
     STILL_NS,
-    acknowledging,
     has_buffers,
     is_reliable,
     is_transient,
@@ -43,6 +41,7 @@ from aionode.transport.zenoh._kept_history import (
     declare_plain,
     unless_expired,
 )
+from aionode.transport.zenoh._matched_readers import MatchedReaders
 from aionode.transport.zenoh._session_state import Declaration
 from aionode.wire import _acknack as acknack
 from aionode.wire import _attachment as attachment
@@ -52,7 +51,7 @@ from aionode.wire._acknack import SubmessageKind
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.graph import EndpointInfo, Graph
+    from aionode.graph import EndpointInfo
     from aionode.transport._reliability import Entry, ReaderProxy
     from aionode.transport.base import SampleInfo
     from aionode.transport.zenoh._session_state import SessionState
@@ -87,6 +86,7 @@ class ZenohWriter(Declaration, Writer):
         # Whether Zenoh has subscribers, those without a token included; its listener tells.
         self._is_matching = False
         self._matching_changed = state.queue(self._update_with, limit=1)
+        self._matched = MatchedReaders(endpoint, state)
         # Whether a small message may be put at once, see `_update_route`.
         self._is_direct = True
         # Whether a message has been put into `_large` since that was last seen empty.
@@ -132,7 +132,7 @@ class ZenohWriter(Declaration, Writer):
         self._moved_ns = 0
         self._update_route()
         state.own_gids.add(self.gid)
-        state.on_reader.setdefault(endpoint.name, []).append(self._update)
+        state.on_reader.setdefault(endpoint.name, {})[self._update] = None
         state.add(self)
 
     def _send_queue(self, send_thread: SendThread, *, keep_all: bool) -> SendQueue:
@@ -258,63 +258,62 @@ class ZenohWriter(Declaration, Writer):
         self._is_matching = status.matching
         self._update()
 
-    def _update(self) -> None:
-        """Update `active`, the history and the filter from the matching readers."""
-        history, graph = self._history, self.state.graph
+    def _update(self, reader: EndpointInfo | None = None, present: bool = True) -> None:
+        """Update `active`, the history and the filter from the matching readers.
+
+        Args:
+            reader: The only one that may have changed; None for all of them.
+            present: Whether it exists.
+        """
         if self._transient:
             if self._encode is None:
                 self._encode = cdr.encoder(self._msg_type)
             return
+        history, graph = self._history, self.state.graph
         self.active = False
         self._wants = None
         if graph is not None and self._publisher is not None:
-            readers = self._matched(graph)
+            self._matched.update(graph, reader, present=present)
             # The token of a reader can arrive before Zenoh has told of a match, or has a route to
             # it; what is lost until then is sent again.
-            self.active = self._is_matching or bool(readers)
+            self.active = self._is_matching or bool(self._matched.gids)
             if history is not None:
-                self._update_readers(history, readers)
-            self._wants = self._filter_of(readers)
+                self._update_readers(history, None if reader is None else reader.gid)
+            self._wants = self._filter()
         if self.active and self._encode is None:
             self._encode = cdr.encoder(self._msg_type)
 
-    def _matched(self, graph: Graph) -> list[EndpointInfo]:
-        """Return the matched readers of other contexts."""
-        return [
-            reader
-            for reader in graph.endpoints(EndpointKind.SUBSCRIPTION, name=self.endpoint.name)
-            if self.state.reaches(reader.node) and self.endpoint.matches(reader)
-        ]
-
-    def _filter_of(self, readers: list[EndpointInfo]) -> Callable[[Any], bool] | None:
+    def _filter(self) -> Callable[[Any], bool] | None:
         """Return whether any reader wants a message; None if all messages have to be sent."""
         filters = self.state.content_filters
         if not filters or self.state.has_unannounced_peers:
             return None
-        gids = {reader.gid for reader in readers}
+        gids = set(self._matched.gids)
         if self._history is not None:
             gids.update(self._history.readers)  # also those that are away, and may return
         return filters.wanted_by(gids, self._msg_type)
 
-    def _update_readers(self, history: WriterHistory, readers: list[EndpointInfo]) -> None:
-        """Add new and returned readers to the history, and remove those that have vanished."""
-        able = self.state.acknowledgements.participants
-        found, others = acknowledging(readers, able)
-        for gid, known in list(history.readers.items()):
-            if gid not in found and not known.away_until_ns:
-                history.remove(gid)
+    def _update_readers(self, history: WriterHistory, gid: bytes | None) -> None:
+        """Add new and returned readers to the history, and remove those that have vanished.
+
+        All of them, or the one with this gid.
+        """
+        found = self._matched.acknowledging
+        for vanished in list(history.readers) if gid is None else (gid,):
+            if vanished not in found:
+                history.remove(vanished)
         if not self._closed:
-            for gid, participant in found.items():
-                reader = history.readers.get(gid)
+            for each in found if gid is None else found.keys() & {gid}:
+                reader = history.readers.get(each)
                 if reader is None or reader.away_until_ns:
-                    history.add(gid, participant)
+                    history.add(each, found[each])
         if self.bounded and history.readers:
             self.state.acknowledgements.probe(self)
         self._progress()
         # What is published while a reader is away is sent again. A subscriber without a token may
         # match too; beside readers that acknowledge, none is known.
         self.active = self.active or bool(history.readers)
-        history.has_other_readers = others or not history.readers
+        history.has_other_readers = bool(self._matched.others) or not history.readers
         self._update_route()
 
     # Messages
@@ -593,8 +592,7 @@ class ZenohWriter(Declaration, Writer):
     def _forget(self) -> None:
         self.state.own_gids.discard(self.gid)
         self.state.acknowledgements.writers.pop(self.gid, None)
-        updates = self.state.on_reader.get(self.endpoint.name, [])
-        if self._update in updates:
-            updates.remove(self._update)
-            if not updates:
-                del self.state.on_reader[self.endpoint.name]
+        updates = self.state.on_reader.get(self.endpoint.name, {})
+        updates.pop(self._update, None)
+        if not updates:
+            self.state.on_reader.pop(self.endpoint.name, None)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol, TypeVar
 import zenoh
 
 from aionode.clock import MachineTime, perf_ns
+from aionode.graph import EndpointKind
 from aionode.transport._content_filters import ContentFilters
 from aionode.transport._loop_waker import LoopWaker, ThreadsafeQueue
 from aionode.transport._send_thread import SendThread
@@ -45,6 +46,14 @@ FLUSH_S: Final = 2.0
 
 BULK_FLUSH_S: Final = 0.15
 """How long `flush` waits for large messages, which may be dropped, and for single contexts."""
+
+
+class ReaderListener(Protocol):
+    """Called when subscriptions of other contexts have changed."""
+
+    # By position, as every publisher is called for every one of them.
+    def __call__(self, reader: EndpointInfo | None = None, present: bool = True) -> None:
+        """Take one that has appeared or vanished; None if all may have changed."""
 
 
 class LingeringWriter(Protocol):
@@ -97,7 +106,8 @@ class SessionState:
         now_ns: Returns the time of the context, in nanoseconds since 1970.
         content_filters: What subscriptions of other contexts want.
         has_unannounced_peers: Whether there may be subscriptions that nothing announces.
-        on_reader: Called when a remote subscription appears or vanishes, by topic.
+        on_reader: Called when a remote subscription appears or vanishes, by topic, with it and
+            whether it exists, or without arguments when all may have changed; ordered sets.
     """
 
     def __init__(
@@ -117,7 +127,7 @@ class SessionState:
         self.peer_senders = PeerSenders(self.waker, self._look)
         self.burst = Burst()
         self.acknowledgements = Acknowledgements(
-            participant, domain_id, self.waker, self.note_malformed, self._readers_changed
+            participant, domain_id, self.waker, self.note_malformed, self._acknowledges
         )
         self.lingering: dict[LingeringWriter, None] = {}
         self.malformed: Counter[str] = Counter()
@@ -126,7 +136,7 @@ class SessionState:
         self.assertions = Assertions(participant, domain_id, self.waker, self.note_malformed)
         self.time_base = MachineTime() if time_base is None else time_base
         self.now_ns = self.time_base.system_ns
-        self.on_reader: dict[str, list[Callable[[], None]]] = {}
+        self.on_reader: dict[str, dict[ReaderListener, None]] = {}
         self.content_filters = ContentFilters()
         self.content_filters.on_change.append(self._readers_changed)
         self.has_unannounced_peers = True  # until the other sessions are known
@@ -242,11 +252,26 @@ class SessionState:
         self.graph = None
         return session
 
+    def tell_writers(self, endpoint: EndpointInfo, *, present: bool) -> None:
+        """Tell the publishers of its topic about an endpoint of another context."""
+        if endpoint.kind is EndpointKind.SUBSCRIPTION:
+            for update in list(self.on_reader.get(endpoint.name, ())):
+                update(endpoint, present)
+
     def _readers_changed(self) -> None:
         """Tell all publishers that more is known about the readers of other contexts."""
         for updates in list(self.on_reader.values()):
             for update in list(updates):
                 update()
+
+    def _acknowledges(self, participant: str) -> None:
+        """Tell the publishers of its readers that a context acknowledges."""
+        if self.graph is None:
+            return
+        for node in self.graph.nodes():
+            if node.participant == participant:
+                for reader in self.graph.endpoints(EndpointKind.SUBSCRIPTION, node=node):
+                    self.tell_writers(reader, present=True)
 
     def note_unannounced_peers(self, *, there_are: bool) -> None:
         """Record whether there may be subscriptions that nothing announces, for filters."""

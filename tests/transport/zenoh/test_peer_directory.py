@@ -325,31 +325,15 @@ class Stuck:
         self.entered.set()
         self.gate.wait()
 
-    def liveliness(self) -> Stuck:
-        """Return what declares tokens."""
-        return self
 
-    def declare_token(self, _: str) -> Stuck:
-        """Hang."""
-        self.put()
-        return self
-
-    def undeclare(self) -> None:
-        """Nothing waits for that."""
-
-
-@pytest.mark.parametrize("what", ["retransmit", "announce_link"])
-async def test_a_stuck_peer_holds_up_no_large_message_to_others(what: str) -> None:
+async def test_a_stuck_peer_holds_up_no_large_message_to_others() -> None:
     """Both waited in the thread that sends all large messages."""
     stuck = Stuck()
     done = asyncio.Event()
     async with context("a1") as transport:
         peer_directory: Any = transport.peer_directory
         session, peer_directory._session = peer_directory._session, stuck
-        if what == "retransmit":
-            peer_directory.retransmit("b2", b"late")
-        else:
-            peer_directory.announce_link("b2", True)
+        peer_directory.retransmit("b2", b"late")
         await asyncio.to_thread(stuck.entered.wait)
         queue: Any = transport._state.queue(lambda _: done.set())
         transport._state.bulk.submit(lambda: queue.put(None))

@@ -1,0 +1,67 @@
+"""The readers that one publisher has in other contexts, and what they need."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from aionode.graph import EndpointKind
+from aionode.transport.zenoh._delivery import is_reliable, is_transient
+
+if TYPE_CHECKING:
+    from aionode.graph import EndpointInfo, Graph
+    from aionode.transport.zenoh._session_state import SessionState
+
+__all__ = ["MatchedReaders"]
+
+
+class MatchedReaders:
+    """The matched readers of one publisher.
+
+    Each is added and removed by itself: many publishers and subscriptions of one topic cost each
+    pair once.
+
+    Args:
+        endpoint: The publisher.
+        state: The state of the session.
+
+    Attributes:
+        gids: All of them.
+        acknowledging: Those that acknowledge, each with its context.
+        others: Those that must lose nothing, and do not acknowledge. Transient local ones of
+            contexts that do get Zenoh's own history.
+    """
+
+    def __init__(self, endpoint: EndpointInfo, state: SessionState) -> None:
+        self.gids: set[bytes] = set()
+        self.acknowledging: dict[bytes, str] = {}
+        self.others: set[bytes] = set()
+        self._endpoint = endpoint
+        self._state = state
+
+    def update(self, graph: Graph, reader: EndpointInfo | None, *, present: bool) -> None:
+        """Take a reader that has appeared or vanished, or find all of them if it is None."""
+        if reader is None:
+            self.gids.clear()
+            self.others.clear()
+            self.acknowledging.clear()
+            for each in graph.endpoints(EndpointKind.SUBSCRIPTION, name=self._endpoint.name):
+                self._add(each)
+        else:
+            self.gids.discard(reader.gid)
+            self.others.discard(reader.gid)
+            self.acknowledging.pop(reader.gid, None)
+            if present:
+                self._add(reader)
+
+    def _add(self, reader: EndpointInfo) -> None:
+        if not (self._state.reaches(reader.node) and self._endpoint.matches(reader)):
+            return
+        self.gids.add(reader.gid)
+        participant = reader.node.participant
+        if participant not in self._state.acknowledgements.participants:
+            self.others.add(reader.gid)
+        elif is_reliable(reader.qos):
+            if is_transient(reader.qos):
+                self.others.add(reader.gid)
+            else:
+                self.acknowledging[reader.gid] = participant
