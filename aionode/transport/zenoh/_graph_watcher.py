@@ -73,7 +73,7 @@ class Watcher:
     """Keeps the graph up to date with the tokens of other contexts.
 
     Attributes:
-        newest_ns: When the newest token arrived, by `perf_ns`.
+        newest_ns: When the newest token arrived, or was asked for, by `perf_ns`.
     """
 
     def __init__(self, state: SessionState) -> None:
@@ -119,6 +119,7 @@ class Watcher:
 
     def ask(self, session: zenoh.Session, answered: asyncio.Future[None]) -> None:
         """Resolve `answered` when the tokens of all connected peers are in the graph."""
+        self.newest_ns = perf_ns()  # from now on it is waited for the first one as well
         # The subscriber gets the same tokens, and a reply may be older than an undeclaration that
         # it has got since: only the end of the replies is of interest.
         session.liveliness().get(
@@ -126,6 +127,10 @@ class Watcher:
             direct(ignore, lambda: self._queue.put(answered)),
             timeout=10,
         )
+
+    def knows(self, key: str) -> bool:
+        """Return whether a token is in the graph, or is one of this context."""
+        return key in self._known or key.split("/", 3)[2] == self._state.participant
 
     def check(self) -> None:
         """Compare the graph with the tokens that exist, and correct it.

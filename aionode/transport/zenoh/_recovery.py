@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from aionode.transport._zenoh_config import Network
     from aionode.transport.zenoh._session_state import SessionState
 
-__all__ = ["Recovery", "is_look"]
+__all__ = ["Recovery", "is_look", "nodes_at_introducer"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
@@ -233,20 +233,13 @@ class Recovery:
 
     def _missing(self, session: zenoh.Session, connection: Connection, lost: set[str]) -> set[str]:
         """Return those that only the introducer sees, and this one if the introducer does not."""
-        there = self._seen_at(connection)
+        there = seen_at(self._network, connection)
         here = tokens(session, self._state.domain_id)
         connected = {str(transport.zid) for transport in session.info.transports()}
         own = {token for token in here if participant_of(token) == self._state.participant}
         return {participant_of(token) for token in (there - here) | (own - there)} | {
             participant_of(token) for token in there
         } & lost - connected
-
-    def _seen_at(self, connection: Connection) -> set[str]:
-        """Return the tokens that are visible at the other end of a connection."""
-        look_id = LOOK_IDS + secrets.token_hex(12)
-        config = load_config(self._network, {}, look_id, look_settings(connection.endpoint))
-        with closing(zenoh.open(config)) as look:
-            return tokens(look, self._state.domain_id)
 
     def _take_look(self, missing: set[str] | None) -> None:
         """Take what a look has found to be missing; None if it could not be made."""
@@ -268,6 +261,23 @@ class Recovery:
         now_s = asyncio.get_running_loop().time()
         if self._timer is None and now_s < self._until_s:
             self._look_in(FIRST_S if missing else AGAIN_S)
+
+
+def seen_at(network: Network, connection: Connection) -> set[str]:
+    """Return the tokens of nodes and contexts that are visible at the other end of a connection."""
+    look_id = LOOK_IDS + secrets.token_hex(12)
+    config = load_config(network, {}, look_id, look_settings(connection.endpoint))
+    with closing(zenoh.open(config)) as look:
+        return tokens(look, network.domain_id)
+
+
+def nodes_at_introducer(session: zenoh.Session, network: Network) -> set[str]:
+    """Return the tokens of all nodes that an introducer sees; none without one, or an answer."""
+    with suppress(zenoh.ZError, ConfigurationError):
+        connection = introducer_connection(session, network)
+        if connection is not None:
+            return {key for key in seen_at(network, connection) if key.startswith(ROS_PREFIX)}
+    return set()
 
 
 def tokens(session: zenoh.Session, domain_id: int) -> set[str]:

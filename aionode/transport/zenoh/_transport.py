@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 from contextlib import suppress
+from functools import partial
+from itertools import filterfalse
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import perf_ns
@@ -12,16 +14,23 @@ from aionode.transport.zenoh._graph_watcher import NodeDeclaration, Watcher
 from aionode.transport.zenoh._local_router import LocalRouter
 from aionode.transport.zenoh._peer_directory import ZenohPeerDirectory
 from aionode.transport.zenoh._publisher import ZenohWriter
-from aionode.transport.zenoh._recovery import Recovery
+from aionode.transport.zenoh._recovery import Recovery, nodes_at_introducer
 from aionode.transport.zenoh._router_matching import RouterMatching
 from aionode.transport.zenoh._services import ZenohRequester, ZenohServer
-from aionode.transport.zenoh._session import ConnectionWatcher, close_session, open_session
+from aionode.transport.zenoh._session import (
+    ConnectionWatcher,
+    close_session,
+    open_session,
+    run_in_own_thread,
+)
 from aionode.transport.zenoh._session_state import SessionState
 from aionode.transport.zenoh._sockets import SocketOptions, cut_stuck
 from aionode.transport.zenoh._subscription import ZenohReader
 
 if TYPE_CHECKING:
     from collections import Counter
+
+    import zenoh
 
     from aionode.clock import TimeBase
     from aionode.graph import EndpointInfo, Graph, NodeInfo
@@ -40,6 +49,10 @@ __all__ = ["ZenohTransport"]
 
 KNOWN_S = 0.3
 """How long `open` waits for the graph of connected peers; it takes a millisecond."""
+
+
+NAMED_NS = 10_000_000_000
+"""How long, in nanoseconds, a peer that others name is waited for while tokens of more arrive."""
 
 
 class ZenohTransport(Transport):
@@ -115,11 +128,10 @@ class ZenohTransport(Transport):
             # Configured peers may be absent, so they are not counted as missing.
             hoped_for = bool(self.network.near_peers or self.network.config_file)
             self._missing = expected - hoped_for - len(session.info.transports())
-            self._answered = asyncio.get_running_loop().create_future()
-            self._watcher.ask(session, self._answered)
+            answered = self._ask(session)
             with suppress(TimeoutError):
                 async with asyncio.timeout(KNOWN_S):
-                    await asyncio.shield(self._answered)
+                    await asyncio.shield(answered)
             self._watcher.note_domains()
             self._state.graph_is_known()
         finally:
@@ -127,6 +139,36 @@ class ZenohTransport(Transport):
 
     async def all_known(self, quiet_s: float) -> bool:
         """Wait until the tokens of all reachable peers are in the graph."""
+        if not await self._has_answers(quiet_s):
+            return False
+        session, graph = self._state.session, self._state.graph
+        if session is None or graph is None:
+            return False
+        # Peers that a router, or another peer, has named may not be connected yet: nothing but what
+        # that sees tells of them.
+        look = partial(nodes_at_introducer, session, self.network)
+        knows = self._watcher.knows
+        missing = set(filterfalse(knows, await run_in_own_thread(look)))
+        if not missing:
+            return self._missing <= 0
+        quiet_ns = int(quiet_s * 1e9)
+        ends_ns = perf_ns() + NAMED_NS
+        while missing:
+            with suppress(TimeoutError):
+                async with asyncio.timeout(quiet_s):
+                    await graph.until(partial(known_all, self._watcher, missing))
+            left = set(filterfalse(knows, missing))
+            if left:
+                left &= await run_in_own_thread(look)  # some have ended
+            now_ns = perf_ns()
+            if left == missing and now_ns > min(self._watcher.newest_ns + quiet_ns, ends_ns):
+                return False
+            missing = left
+        self._ask(session)  # the tokens of these peers are complete after that
+        return await self._has_answers(quiet_s) and self._missing <= 0
+
+    async def _has_answers(self, quiet_s: float) -> bool:
+        """Return whether all connected peers have told their tokens; wait while some arrive."""
         answered = self._answered
         while answered is not None and not answered.done():
             left_s = quiet_s - (perf_ns() - self._watcher.newest_ns) / 1e9
@@ -135,7 +177,13 @@ class ZenohTransport(Transport):
             with suppress(TimeoutError):
                 async with asyncio.timeout(left_s):
                     await asyncio.shield(answered)
-        return self._missing <= 0
+        return True
+
+    def _ask(self, session: zenoh.Session) -> asyncio.Future[None]:
+        """Ask all connected peers for their tokens; return what is done when all have answered."""
+        self._answered = answered = asyncio.get_running_loop().create_future()
+        self._watcher.ask(session, answered)
+        return answered
 
     async def close(self) -> None:
         """Undeclare everything and disconnect, within a second after `SessionState.flush`."""
@@ -179,3 +227,8 @@ class ZenohTransport(Transport):
     def create_requester(self, endpoint: EndpointInfo, srv_type: type[Any]) -> Requester:
         """Declare a client."""
         return ZenohRequester(self._state, endpoint, srv_type)
+
+
+def known_all(watcher: Watcher, keys: set[str]) -> bool:
+    """Return whether all of some tokens are in the graph."""
+    return all(map(watcher.knows, keys))
