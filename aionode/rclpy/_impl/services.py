@@ -96,7 +96,7 @@ class ServiceHandle(Destroyable):
         return self._bare.endpoint
 
     @property
-    def name(self) -> str:
+    def service_name(self) -> str:
         """The full name of the service."""
         return self._name
 

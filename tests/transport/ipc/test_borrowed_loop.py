@@ -9,6 +9,7 @@ from concurrent.futures import Future
 from contextlib import asynccontextmanager
 
 from aionode import Context
+from aionode._concurrency import checkpoint
 from aionode.bare_node import BareNode, BarePublisher
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.lendable_loop import LendableLoop
@@ -66,7 +67,7 @@ async def test_messages_of_a_borrower_arrive_in_order_over_whatever_route() -> N
                 loop.give_back()
 
         while not publisher.matched():
-            await asyncio.sleep(0.001)
+            await checkpoint()
         got: list[int] = []
         routes: set[str | None] = set()
         while not ("link" in routes and sent >= 3000):
