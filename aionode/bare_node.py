@@ -7,7 +7,10 @@ of programs that have message classes, threads and queues of their own.
 
 Everything here belongs to the thread of the context's event loop, in which the context has been
 opened with ``async with``: make, use and destroy it there. Only the functions and objects that you
-give are called back, in that thread as well; they never wait.
+give are called back, in that thread as well; they never wait. If that loop is a
+`aionode.lendable_loop.LendableLoop`, a thread that has borrowed it may send, too: messages,
+requests and responses, with `BarePublisher.publish`, `BarePublisher.publish_elsewhere`,
+`BareClient.send`, `BareCall.cancel` and the methods of `Request`.
 """
 
 from __future__ import annotations
@@ -130,7 +133,8 @@ class BarePublisher(BareEndpoint):
     def publish_elsewhere(self, msg: Any, sample_info: SampleInfo) -> None:
         """Send a message to other contexts, after `publish_here`; in the thread of the loop.
 
-        Messages have to come in their order.
+        Messages have to come in their order. A link takes the message at once, unless its socket
+        is full or the subscription's window used up: then it waits for the loop.
         """
         for writer in self._elsewhere:
             if writer.active:

@@ -3,34 +3,25 @@
 from __future__ import annotations
 
 import threading
-from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from aionode.clock import MachineTime
+from aionode.rclpy._entities import ServiceEntity, wait_until
 from aionode.rclpy._impl.destroyable import Wakeup
 from aionode.rclpy.task import Future
 
 if TYPE_CHECKING:
-    from types import TracebackType
-
     from aionode.rclpy._impl.services import ClientHandle
     from aionode.rclpy.callback_groups import CallbackGroup
-    from aionode.rclpy.clock import Clock
     from aionode.rclpy.context import Context
     from aionode.rclpy.qos import QoSProfile
-    from aionode.rclpy.service_introspection import ServiceIntrospectionState
 
 __all__ = ["Client"]
 
 RequestT = TypeVar("RequestT")
 ResponseT = TypeVar("ResponseT")
 
-steady_ns = MachineTime().steady_ns
 
-CHECK_S = 0.05
-"""How often `wait_for_service` looks."""
-
-
-class Client(Generic[RequestT, ResponseT]):
+class Client(ServiceEntity["ClientHandle"], Generic[RequestT, ResponseT]):
     """Calls a service. Made by `Node.create_client`.
 
     Attributes:
@@ -141,63 +132,4 @@ class Client(Generic[RequestT, ResponseT]):
         Returns:
             Whether one is there.
         """
-        ends_ns = None if timeout_sec is None else steady_ns() + timeout_sec * 1e9
-        wakeup = Wakeup()
-        while not self.service_is_ready():
-            left_s = CHECK_S
-            if ends_ns is not None:
-                left_s = min(left_s, (ends_ns - steady_ns()) / 1e9)
-            if left_s <= 0 or not self.context.ok():
-                return False
-            wakeup.wait(left_s)
-        return True
-
-    def configure_introspection(
-        self,
-        clock: Clock,
-        service_event_qos_profile: QoSProfile,
-        introspection_state: ServiceIntrospectionState,
-    ) -> None:
-        """Tell of calls on ``<service>/_service_event``.
-
-        Args:
-            clock: Where the stamps come from.
-            service_event_qos_profile: QoS of that topic.
-            introspection_state: What is told.
-        """
-        with self._handle:
-            self._handle.configure_introspection(
-                clock.handle, service_event_qos_profile, introspection_state
-            )
-
-    @property
-    def handle(self) -> ClientHandle:
-        """The handle."""
-        return self._handle
-
-    @property
-    def service_name(self) -> str:
-        """The full name of the service."""
-        with self.handle:
-            return self._handle.service_name
-
-    @property
-    def logger_name(self) -> str:
-        """The name of the node's logger."""
-        with self.handle:
-            return self._handle.get_logger_name()
-
-    def destroy(self) -> None:
-        """Destroy it. Use `Node.destroy_client`."""
-        self._handle.destroy_when_not_in_use()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self.destroy()
+        return wait_until(self.service_is_ready, self.context, timeout_sec)

@@ -5,19 +5,21 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING, Any
 
-from aionode.rclpy._impl.errors import UnsupportedEventTypeError
-from aionode.rclpy._impl.events import (
-    DeadlineMissed,
-    EventHandle,
-    IncompatibleQoS,
-    IncompatibleType,
-    LivelinessChanged,
-    LivelinessLost,
-    Matched,
-    MessageLost,
-    PublisherEventType,
-    SubscriptionEventType,
+from aionode.endpoints import events
+from aionode.endpoints.events import (
+    IncompatibleTypeInfo,
+    QoSLivelinessChangedInfo,
+    QoSLivelinessLostInfo,
+    QoSMessageLostInfo,
+    QoSOfferedDeadlineMissedInfo,
+    QoSOfferedIncompatibleQoSInfo,
+    QoSPublisherMatchedInfo,
+    QoSRequestedDeadlineMissedInfo,
+    QoSRequestedIncompatibleQoSInfo,
+    QoSSubscriptionMatchedInfo,
 )
+from aionode.rclpy._impl.errors import UnsupportedEventTypeError
+from aionode.rclpy._impl.events import EventHandle, PublisherEventType, SubscriptionEventType
 from aionode.rclpy.waitable import NumberOfEntities, Waitable
 
 if TYPE_CHECKING:
@@ -51,16 +53,6 @@ __all__ = [
 
 QoSPublisherEventType = PublisherEventType
 QoSSubscriptionEventType = SubscriptionEventType
-QoSRequestedDeadlineMissedInfo = DeadlineMissed
-QoSOfferedDeadlineMissedInfo = DeadlineMissed
-QoSLivelinessChangedInfo = LivelinessChanged
-QoSLivelinessLostInfo = LivelinessLost
-QoSMessageLostInfo = MessageLost
-QoSRequestedIncompatibleQoSInfo = IncompatibleQoS
-QoSOfferedIncompatibleQoSInfo = IncompatibleQoS
-QoSSubscriptionMatchedInfo = Matched
-QoSPublisherMatchedInfo = Matched
-IncompatibleTypeInfo = IncompatibleType
 
 
 class EventHandler(Waitable[Any]):
@@ -159,130 +151,77 @@ class DefaultHandler(EventHandler):
         """Do nothing."""
 
 
-class EventCallbacks:
-    """The callbacks for one endpoint."""
-
-    def __init__(self, use_default_callbacks: bool) -> None:
-        self.use_default_callbacks = use_default_callbacks
-
-    def handlers(
-        self,
-        group: CallbackGroup,
-        parent: PublisherHandle | SubscriptionHandle,
-        wanted: list[tuple[Callable[..., Any] | None, IntEnum, bool]],
-    ) -> list[EventHandler]:
-        """Return a handler for each callback that is given, or has a default."""
-        made: list[EventHandler] = []
-        for callback, event_type, has_default in wanted:
-            if callback:
-                made.append(
-                    EventHandler(
-                        callback_group=group,
-                        callback=callback,
-                        event_type=event_type,
-                        parent_impl=parent,
-                    )
+def create_handlers(
+    group: CallbackGroup,
+    parent: PublisherHandle | SubscriptionHandle,
+    callbacks: dict[IntEnum, Callable[..., Any] | None],
+    defaults: tuple[IntEnum, ...],
+) -> list[EventHandler]:
+    """Return a handler for each callback that is given, or has a default."""
+    made: list[EventHandler] = []
+    for event_type, callback in callbacks.items():
+        if callback:
+            made.append(
+                EventHandler(
+                    callback_group=group,
+                    callback=callback,
+                    event_type=event_type,
+                    parent_impl=parent,
                 )
-            elif has_default and self.use_default_callbacks:
-                made.append(DefaultHandler(event_type))
-        return made
+            )
+        elif event_type in defaults:
+            made.append(DefaultHandler(event_type))
+    return made
 
 
-class SubscriptionEventCallbacks(EventCallbacks):
-    """What is called when something happens to a subscription; each gets a status.
-
-    Attributes:
-        deadline: No message has come within the deadline.
-        incompatible_qos: A publisher's QoS does not fit.
-        liveliness: A publisher has come, gone, or not shown in time that it is alive.
-        message_lost: A message was lost.
-        incompatible_type: A publisher has another type.
-        matched: A publisher was matched, or has gone.
-    """
-
-    def __init__(
-        self,
-        *,
-        deadline: Callable[[DeadlineMissed], Any] | None = None,
-        incompatible_qos: Callable[[IncompatibleQoS], Any] | None = None,
-        liveliness: Callable[[LivelinessChanged], Any] | None = None,
-        message_lost: Callable[[MessageLost], Any] | None = None,
-        incompatible_type: Callable[[IncompatibleType], Any] | None = None,
-        matched: Callable[[Matched], Any] | None = None,
-        use_default_callbacks: bool = True,
-    ) -> None:
-        super().__init__(use_default_callbacks)
-        self.deadline = deadline
-        self.incompatible_qos = incompatible_qos
-        self.liveliness = liveliness
-        self.message_lost = message_lost
-        self.incompatible_type = incompatible_type
-        self.matched = matched
+class SubscriptionEventCallbacks(events.SubscriptionEventCallbacks):
+    """What is called when something happens to a subscription; each gets a status."""
 
     def create_event_handlers(
         self, callback_group: CallbackGroup, subscription: SubscriptionHandle, topic_name: str
     ) -> list[EventHandler]:
         """Return the handlers of a subscription."""
         kinds = SubscriptionEventType
-        return self.handlers(
+        mismatches = (
+            kinds.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS,
+            kinds.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE,
+        )
+        return create_handlers(
             callback_group,
             subscription,
-            [
-                (self.deadline, kinds.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED, False),
-                (
-                    self.incompatible_qos,
-                    kinds.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS,
-                    True,
-                ),
-                (self.liveliness, kinds.RCL_SUBSCRIPTION_LIVELINESS_CHANGED, False),
-                (self.message_lost, kinds.RCL_SUBSCRIPTION_MESSAGE_LOST, False),
-                (self.incompatible_type, kinds.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE, True),
-                (self.matched, kinds.RCL_SUBSCRIPTION_MATCHED, False),
-            ],
+            {
+                kinds.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED: self.deadline,
+                kinds.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS: self.incompatible_qos,
+                kinds.RCL_SUBSCRIPTION_LIVELINESS_CHANGED: self.liveliness,
+                kinds.RCL_SUBSCRIPTION_MESSAGE_LOST: self.message_lost,
+                kinds.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE: self.incompatible_type,
+                kinds.RCL_SUBSCRIPTION_MATCHED: self.matched,
+            },
+            mismatches if self.use_default_callbacks else (),
         )
 
 
-class PublisherEventCallbacks(EventCallbacks):
-    """What is called when something happens to a publisher; each gets a status.
-
-    Attributes:
-        deadline: No message was published within the deadline.
-        liveliness: It has not shown in time that it is alive.
-        incompatible_qos: A subscription's QoS does not fit.
-        incompatible_type: A subscription has another type.
-        matched: A subscription was matched, or has gone.
-    """
-
-    def __init__(
-        self,
-        *,
-        deadline: Callable[[DeadlineMissed], Any] | None = None,
-        liveliness: Callable[[LivelinessLost], Any] | None = None,
-        incompatible_qos: Callable[[IncompatibleQoS], Any] | None = None,
-        incompatible_type: Callable[[IncompatibleType], Any] | None = None,
-        matched: Callable[[Matched], Any] | None = None,
-        use_default_callbacks: bool = True,
-    ) -> None:
-        super().__init__(use_default_callbacks)
-        self.deadline = deadline
-        self.liveliness = liveliness
-        self.incompatible_qos = incompatible_qos
-        self.incompatible_type = incompatible_type
-        self.matched = matched
+class PublisherEventCallbacks(events.PublisherEventCallbacks):
+    """What is called when something happens to a publisher; each gets a status."""
 
     def create_event_handlers(
         self, callback_group: CallbackGroup, publisher: PublisherHandle, topic_name: str
     ) -> list[EventHandler]:
         """Return the handlers of a publisher."""
         kinds = PublisherEventType
-        return self.handlers(
+        mismatches = (
+            kinds.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS,
+            kinds.RCL_PUBLISHER_INCOMPATIBLE_TYPE,
+        )
+        return create_handlers(
             callback_group,
             publisher,
-            [
-                (self.deadline, kinds.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED, False),
-                (self.liveliness, kinds.RCL_PUBLISHER_LIVELINESS_LOST, False),
-                (self.incompatible_qos, kinds.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS, True),
-                (self.incompatible_type, kinds.RCL_PUBLISHER_INCOMPATIBLE_TYPE, True),
-                (self.matched, kinds.RCL_PUBLISHER_MATCHED, False),
-            ],
+            {
+                kinds.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED: self.deadline,
+                kinds.RCL_PUBLISHER_LIVELINESS_LOST: self.liveliness,
+                kinds.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS: self.incompatible_qos,
+                kinds.RCL_PUBLISHER_INCOMPATIBLE_TYPE: self.incompatible_type,
+                kinds.RCL_PUBLISHER_MATCHED: self.matched,
+            },
+            mismatches if self.use_default_callbacks else (),
         )

@@ -12,26 +12,17 @@ import threading
 import warnings
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, cast
 
 from aionode.clock import MachineTime
 from aionode.rclpy._impl.destroyable import Wakeup
-from aionode.rclpy._impl.errors import InvalidHandle
-from aionode.rclpy._impl.wait_set import WaitSet
-from aionode.rclpy._taking import (
-    await_or_execute,
-    take_client,
-    take_guard_condition,
-    take_service,
-    take_subscription,
-    take_timer,
-    take_waitable,
-)
+from aionode.rclpy._readiness import Ready, Take, ready_callbacks, wait_set_of
+from aionode.rclpy._taking import await_or_execute
 from aionode.rclpy.task import Future, Task
 from aionode.rclpy.utilities import get_default_context
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterable
+    from collections.abc import Coroutine, Generator, Iterable, Iterator
     from types import TracebackType
 
     from aionode.rclpy._protocols import NodeLike
@@ -90,8 +81,6 @@ def never() -> bool:
     return False
 
 
-Take = Callable[["Executor", Any], "Callable[[], Any] | None"]
-Ready = tuple["Entity", "NodeLike", Take]
 Work = tuple[Task[Any], "Entity | None", "NodeLike | None"]
 
 
@@ -111,7 +100,7 @@ class Executor:
         self._wakeup = Wakeup()
         self._is_shutdown = False
         self._shutdown_lock = threading.Lock()
-        self._cb_iter: Generator[Work, None, None] | None = None
+        self._cb_iter: Generator[Ready | Work, None, None] | None = None
         self._last_args: tuple[Any, ...] = ()
         if self._context.handle is None:
             raise RuntimeError("Context must be initialized a GuardCondition can be created")
@@ -284,11 +273,20 @@ class Executor:
             ExternalShutdownException: the context is shut down.
             ConditionReachedException: the condition is true.
         """
+        return self._as_task(self._next(timeout_sec, nodes, condition))
+
+    def _next(
+        self,
+        timeout_sec: float | TimeoutObject | None,
+        nodes: list[NodeLike] | None,
+        condition: Callable[[], bool],
+    ) -> Ready | Work:
+        """Return the next of this round, or, after a wait, the first of another one."""
         args = (timeout_sec, nodes, condition)
         while True:
             if self._cb_iter is None or self._last_args != args:
                 self._last_args = args
-                self._cb_iter = self._wait_for_ready_callbacks(timeout_sec, nodes, condition)
+                self._cb_iter = self._rounds(timeout_sec, nodes, condition)
             try:
                 return next(self._cb_iter)
             except StopIteration:
@@ -299,8 +297,17 @@ class Executor:
         timeout_sec: float | TimeoutObject | None = None,
         nodes: list[NodeLike] | None = None,
         condition: Callable[[], bool] = never,
-    ) -> Generator[Work, None, None]:
-        """Yield the callbacks of one round, after waiting until there is one."""
+    ) -> Iterator[Work]:
+        """Return the callbacks of one round as tasks, after waiting until there is one."""
+        return map(self._as_task, self._rounds(timeout_sec, nodes, condition))
+
+    def _rounds(
+        self,
+        timeout_sec: float | TimeoutObject | None,
+        nodes: list[NodeLike] | None,
+        condition: Callable[[], bool],
+    ) -> Generator[Ready | Work, None, None]:
+        """Yield what is ready in one round, after waiting until something is."""
         if isinstance(timeout_sec, TimeoutObject):
             timeout_sec = timeout_sec.timeout
         ends_ns = None
@@ -313,20 +320,20 @@ class Executor:
             for work in self._unfinished(used):
                 yielded = True
                 yield work
-            ready = self._ready(used)
+            ready = ready_callbacks(used, self.can_execute, self._context.handle)
             if not ready and not yielded:
                 left_ns = None if ends_ns is None else ends_ns - steady_ns()
                 if left_ns is None or left_ns > 0:
                     self._wait(used, left_ns)
                     self._raise_if_over(never)
-                    ready = self._ready(used)
+                    ready = ready_callbacks(used, self.can_execute, self._context.handle)
             # Before the calls, which may take longer than the limit.
             over = ends_ns is not None and (timeout_sec == 0 or steady_ns() >= ends_ns)
-            for entity, node, take in ready:
+            for found in ready:
                 # A call of this round may have begun another one, of the same group.
-                if self.can_execute(entity):
+                if self.can_execute(found[0]):
                     yielded = True
-                    yield self._make_handler(entity, node, take), entity, node
+                    yield found
             if over:
                 raise TimeoutException
 
@@ -360,46 +367,6 @@ class Executor:
             ):
                 yield work
 
-    def _ready(self, nodes: list[NodeLike]) -> list[Ready]:
-        """Return what is ready now, in the order of a round."""
-        found: list[Ready] = []
-        can_execute = self.can_execute
-        for node in nodes:
-            waitables = [each for each in node._waitables if can_execute(each)]
-            if waitables:
-                found += self._ready_waitables(waitables, node)
-        for node in nodes:
-            for entities, take in (
-                (node._timers, take_timer),
-                (node._subscriptions, take_subscription),
-                (node._guards, take_guard_condition),
-                (node._clients, take_client),
-                (node._services, take_service),
-            ):
-                for entity in entities:
-                    if entity.handle.ready() and can_execute(entity):
-                        found.append((entity, node, take))
-        return found
-
-    def _ready_waitables(self, waitables: list[Any], node: NodeLike) -> list[Ready]:
-        found: list[Ready] = []
-        for waitable in waitables:
-            wait_set = self._wait_set([waitable])
-            wait_set.look()
-            if waitable.is_ready(wait_set):
-                found.append((waitable, node, take_waitable))
-        return found
-
-    def _wait_set(self, waitables: list[Any]) -> WaitSet:
-        wait_set = WaitSet(0, 0, 0, 0, 0, 0, self._context.handle)  # type: ignore[arg-type] # it is initialised
-        for waitable in waitables:
-            try:
-                with waitable:
-                    waitable.add_to_wait_set(wait_set)
-            except InvalidHandle:
-                continue
-        return wait_set
-
     def _wait(self, nodes: list[NodeLike], left_ns: int | None) -> None:
         """Wait until something may be ready, or the time has passed."""
         waits = [] if left_ns is None else [left_ns]
@@ -411,55 +378,86 @@ class Executor:
                     if due_ns is not None:
                         waits.append(due_ns)
         waitables = [each for node in nodes for each in node._waitables if self.can_execute(each)]
-        wait_set = self._wait_set(waitables) if waitables else None
+        wait_set = wait_set_of(waitables, self._context.handle) if waitables else None
         if wait_set is not None:
             due_ns = wait_set.due_in_ns()
             if due_ns is not None:
                 waits.append(due_ns)
             wait_set.watch(self._wakeup)
         try:
-            if not self._may_be_ready(wait_set):
+            # A handle of a waitable may have become ready before it was watched.
+            if wait_set is None or not wait_set.may_be_ready():
                 self._wakeup.wait(max(0, min(waits)) / 1e9 if waits else None)
         finally:
             if wait_set is not None:
                 wait_set.unwatch(self._wakeup)
 
-    def _may_be_ready(self, wait_set: WaitSet | None) -> bool:
-        """Whether a handle of a waitable became ready before it was watched."""
-        return wait_set is not None and any(
-            handle.ready() for handles in wait_set._handles.values() for handle in handles
-        )
-
     # Calling callbacks
 
-    def _make_handler(self, entity: Entity, node: NodeLike, take: Take) -> Task[Any]:
+    def _as_task(self, found: Ready | Work) -> Work:
         """Return a task that takes what is ready and calls the entity's callback with it."""
+        if isinstance(found[0], Task):
+            return found  # type: ignore[return-value]  # as its first element says
+        entity, node, take = cast("Ready", found)
         entity._executor_event = True
+        return self._add_task(self._handle(entity, take), entity, node)
 
-        async def handle() -> None:
-            group = entity.callback_group
-            if self._is_shutdown or not (group is None or group.beginning_execution(entity)):
-                entity._executor_event = False
-                self.wake()
-                return
-            try:
-                call = take(self, entity)
-                entity._executor_event = False
-                self.wake()
-                if call is not None:
-                    result = call()
-                    if inspect.iscoroutine(result):
-                        await result
-            finally:
-                entity._executor_event = False
-                if group is not None:
-                    group.ending_execution(entity)
-                self.wake()
-
-        task: Task[Any] = Task(handle, executor=self)
+    def _add_task(self, coroutine: Coroutine[Any, Any, None], entity: Any, node: Any) -> Work:
+        task: Task[Any] = Task(coroutine, executor=self)
+        work = (task, entity, node)
         with self._tasks_lock:
-            self._tasks.append((task, entity, node))
-        return task
+            self._tasks.append(work)
+        return work
+
+    async def _handle(self, entity: Entity, take: Take) -> None:
+        group = entity.callback_group
+        if self._is_shutdown or not (group is None or group.beginning_execution(entity)):
+            entity._executor_event = False
+            self.wake()
+            return
+        try:
+            call = take(self, entity)
+            entity._executor_event = False
+            self.wake()
+            if call is not None:
+                result = call()
+                if inspect.iscoroutine(result):
+                    await result
+        finally:
+            entity._executor_event = False
+            if group is not None:
+                group.ending_execution(entity)
+            self.wake()
+
+    def _call(self, entity: Entity, node: Any, take: Take) -> Task[Any] | None:
+        """Take what is ready and call the entity's callback with it, in the only thread that does.
+
+        Returns:
+            A task if the callback is a coroutine, which has yet to begin.
+        """
+        group = entity.callback_group
+        if self._is_shutdown or not (group is None or group.beginning_execution(entity)):
+            return None
+        coroutine = None
+        try:
+            call = take(self, entity)
+            result = None if call is None else call()
+            if result is not None and inspect.iscoroutine(result):
+                coroutine = result
+        finally:
+            if coroutine is None and group is not None:
+                group.ending_execution(entity)
+        if coroutine is None:
+            return None
+        return self._add_task(self._finish(coroutine, entity), entity, node)[0]
+
+    async def _finish(self, coroutine: Coroutine[Any, Any, None], entity: Entity) -> None:
+        try:
+            await coroutine
+        finally:
+            if entity.callback_group is not None:
+                entity.callback_group.ending_execution(entity)
+            self.wake()
 
     def __enter__(self) -> Self:
         return self
@@ -482,8 +480,11 @@ class SingleThreadedExecutor(Executor):
         condition: Callable[[], bool] = never,
     ) -> None:
         try:
-            task, _, _ = self.wait_for_ready_callbacks(timeout_sec, None, condition)
+            found = self._next(timeout_sec, None, condition)
         except (ShutdownException, TimeoutException, ConditionReachedException):
+            return
+        task = found[0] if isinstance(found[0], Task) else self._call(*found)
+        if task is None:
             return
         task()
         exception = task.exception()

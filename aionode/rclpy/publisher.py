@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Generic, Self, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
+from aionode.rclpy._entities import TopicEntity
 from aionode.rclpy.duration import Duration
 
 if TYPE_CHECKING:
-    from types import TracebackType
-
     from aionode.rclpy._impl.topics import PublisherHandle
     from aionode.rclpy.callback_groups import CallbackGroup
     from aionode.rclpy.event_handler import EventHandler, PublisherEventCallbacks
@@ -21,7 +20,7 @@ MsgT = TypeVar("MsgT")
 FOREVER = Duration(seconds=-1)
 
 
-class Publisher(Generic[MsgT]):
+class Publisher(TopicEntity["PublisherHandle"], Generic[MsgT]):
     """Sends messages to a topic. Made by `Node.create_publisher`.
 
     Attributes:
@@ -68,29 +67,6 @@ class Publisher(Generic[MsgT]):
         with self.handle:
             return self._handle.get_subscription_count()
 
-    @property
-    def topic_name(self) -> str:
-        """The full name of the topic."""
-        with self.handle:
-            return self._handle.get_topic_name()
-
-    @property
-    def handle(self) -> PublisherHandle:
-        """The handle."""
-        return self._handle
-
-    @property
-    def logger_name(self) -> str:
-        """The name of the node's logger."""
-        with self.handle:
-            return self._handle.get_logger_name()
-
-    def destroy(self) -> None:
-        """Destroy it. Use `Node.destroy_publisher`."""
-        for handler in self.event_handlers:
-            handler.destroy()
-        self._handle.destroy_when_not_in_use()
-
     def assert_liveliness(self) -> None:
         """Show that it is alive, for MANUAL_BY_TOPIC."""
         with self.handle:
@@ -100,14 +76,3 @@ class Publisher(Generic[MsgT]):
         """Wait until what was published is handed on; return whether that is so in time."""
         with self.handle:
             return self._handle.wait_for_all_acked(timeout)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self.destroy()

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from aionode.rclpy._entities import ServiceEntity
 from aionode.rclpy._impl.services import rmw_request_id_t, rmw_service_info_t
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from types import TracebackType
 
     from aionode.rclpy._impl.services import ServiceHandle
     from aionode.rclpy.callback_groups import CallbackGroup
-    from aionode.rclpy.clock import Clock
     from aionode.rclpy.qos import QoSProfile
-    from aionode.rclpy.service_introspection import ServiceIntrospectionState
 
 __all__ = ["Service"]
 
@@ -22,7 +20,7 @@ RequestT = TypeVar("RequestT")
 ResponseT = TypeVar("ResponseT")
 
 
-class Service(Generic[RequestT, ResponseT]):
+class Service(ServiceEntity["ServiceHandle"], Generic[RequestT, ResponseT]):
     """Answers requests. Made by `Node.create_service`.
 
     Attributes:
@@ -67,53 +65,3 @@ class Service(Generic[RequestT, ResponseT]):
             raise TypeError
         with self._handle:
             self._handle.service_send_response(response, header)
-
-    def configure_introspection(
-        self,
-        clock: Clock,
-        service_event_qos_profile: QoSProfile,
-        introspection_state: ServiceIntrospectionState,
-    ) -> None:
-        """Tell of calls on ``<service>/_service_event``.
-
-        Args:
-            clock: Where the stamps come from.
-            service_event_qos_profile: QoS of that topic.
-            introspection_state: What is told.
-        """
-        with self._handle:
-            self._handle.configure_introspection(
-                clock.handle, service_event_qos_profile, introspection_state
-            )
-
-    @property
-    def handle(self) -> ServiceHandle:
-        """The handle."""
-        return self._handle
-
-    @property
-    def service_name(self) -> str:
-        """The full name of the service."""
-        with self._handle:
-            return self._handle.name
-
-    @property
-    def logger_name(self) -> str:
-        """The name of the node's logger."""
-        with self._handle:
-            return self._handle.get_logger_name()
-
-    def destroy(self) -> None:
-        """Destroy it. Use `Node.destroy_service`."""
-        self._handle.destroy_when_not_in_use()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self.destroy()

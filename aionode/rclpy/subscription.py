@@ -5,14 +5,13 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable
 from enum import Enum
-from typing import TYPE_CHECKING, Any, Generic, Self, TypedDict, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar
 
+from aionode.rclpy._entities import TopicEntity
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy.subscription_content_filter_options import ContentFilterOptions
 
 if TYPE_CHECKING:
-    from types import TracebackType
-
     from aionode.rclpy._impl.topics import SubscriptionHandle
     from aionode.rclpy.callback_groups import CallbackGroup
     from aionode.rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
@@ -33,7 +32,7 @@ class MessageInfo(TypedDict):
     publisher_gid: dict[str, Any] | None
 
 
-class Subscription(Generic[MsgT]):
+class Subscription(TopicEntity["SubscriptionHandle"], Generic[MsgT]):
     """Receives the messages of a topic. Made by `Node.create_subscription`.
 
     Attributes:
@@ -104,23 +103,6 @@ class Subscription(Generic[MsgT]):
             return self._handle.get_publisher_count()
 
     @property
-    def handle(self) -> SubscriptionHandle:
-        """The handle."""
-        return self._handle
-
-    @property
-    def topic_name(self) -> str:
-        """The full name of the topic."""
-        with self.handle:
-            return self._handle.get_topic_name()
-
-    @property
-    def logger_name(self) -> str:
-        """The name of the node's logger."""
-        with self.handle:
-            return self._handle.get_logger_name()
-
-    @property
     def is_cft_enabled(self) -> bool:
         """Whether a content filter is set."""
         with self.handle:
@@ -148,20 +130,3 @@ class Subscription(Generic[MsgT]):
         """
         with self.handle:
             return ContentFilterOptions(*self._handle.get_content_filter())
-
-    def destroy(self) -> None:
-        """Destroy it. Use `Node.destroy_subscription`."""
-        for handler in self.event_handlers:
-            handler.destroy()
-        self._handle.destroy_when_not_in_use()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self.destroy()

@@ -185,7 +185,7 @@ class Task(Future[T]):
 
     def __init__(
         self,
-        handler: Callable[..., Any],
+        handler: Callable[..., Any] | Coroutine[Any, Any, Any],
         args: tuple[Any, ...] | None = None,
         kwargs: dict[str, Any] | None = None,
         executor: ExecutorLike | None = None,
@@ -194,7 +194,7 @@ class Task(Future[T]):
         self._args = args or ()
         self._kwargs = kwargs or {}
         self._handler: Any = handler
-        if inspect.iscoroutinefunction(handler):
+        if not inspect.iscoroutine(handler) and inspect.iscoroutinefunction(handler):
             self._handler = handler(*self._args, **self._kwargs)
             self._args = ()
             self._kwargs = {}

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import inspect
 import threading
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
 from aionode.clock import ClockType
+from aionode.rclpy._entities import HandleOwner
 from aionode.rclpy._impl.timers import TimerHandle
 from aionode.rclpy.exceptions import InvalidHandle, ROSInterruptException
 from aionode.rclpy.time import Time
@@ -14,7 +15,6 @@ from aionode.rclpy.utilities import get_default_context
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from types import TracebackType
 
     from aionode.rclpy.callback_groups import CallbackGroup
     from aionode.rclpy.clock import Clock
@@ -56,7 +56,7 @@ class TimerInfo:
         return self._actual_call_time
 
 
-class Timer:
+class Timer(HandleOwner[TimerHandle]):
     """Calls its callback at each period. Made by `Node.create_timer`.
 
     Attributes:
@@ -86,15 +86,6 @@ class Timer:
         self.callback_group = callback_group
         self._executor_event = False
         self._inspected: tuple[Any, str | None] | None = None
-
-    @property
-    def handle(self) -> TimerHandle:
-        """The handle."""
-        return self._handle
-
-    def destroy(self) -> None:
-        """Destroy it. Use `Node.destroy_timer` for those of nodes."""
-        self._handle.destroy_when_not_in_use()
 
     @property
     def clock(self) -> Clock:
@@ -152,17 +143,6 @@ class Timer:
                     break
             self._inspected = callback, found
         return self._inspected[1]
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self.destroy()
 
 
 class Rate:

@@ -6,10 +6,20 @@ leases; executors take them as those of other waitables.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
+from aionode.endpoints.events import (
+    IncompatibleTypeInfo,
+    MatchedInfo,
+    QoSLivelinessChangedInfo,
+    QoSLivelinessLostInfo,
+    QoSMessageLostInfo,
+    QoSOfferedDeadlineMissedInfo,
+    QoSRequestedDeadlineMissedInfo,
+    QoSRequestedIncompatibleQoSInfo,
+)
 from aionode.graph import EndpointKind
 from aionode.qos import LivelinessPolicy, QoSPolicyKind, is_unlimited
 from aionode.rclpy._impl.destroyable import Destroyable
@@ -22,18 +32,7 @@ if TYPE_CHECKING:
     from aionode.graph import EndpointInfo
     from aionode.transport.base import SampleInfo
 
-__all__ = [
-    "DeadlineMissed",
-    "EventHandle",
-    "IncompatibleQoS",
-    "IncompatibleType",
-    "LivelinessChanged",
-    "LivelinessLost",
-    "Matched",
-    "MessageLost",
-    "PublisherEventType",
-    "SubscriptionEventType",
-]
+__all__ = ["EventHandle", "PublisherEventType", "SubscriptionEventType"]
 
 
 class PublisherEventType(IntEnum):
@@ -55,55 +54,6 @@ class SubscriptionEventType(IntEnum):
     RCL_SUBSCRIPTION_MESSAGE_LOST = 3
     RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE = 4
     RCL_SUBSCRIPTION_MATCHED = 5
-
-
-@dataclass(frozen=True)
-class Counted:
-    """A count, and by how much it has changed since it was last taken."""
-
-    total_count: int = 0
-    total_count_change: int = 0
-
-
-class DeadlineMissed(Counted):
-    """How often no message came, or was published, within the deadline."""
-
-
-class LivelinessLost(Counted):
-    """How often a publisher did not show in time that it is alive."""
-
-
-class MessageLost(Counted):
-    """How many messages were lost on their way, or dropped as the queue was full."""
-
-
-class IncompatibleType(Counted):
-    """How many endpoints of the topic have another type."""
-
-
-@dataclass(frozen=True)
-class IncompatibleQoS(Counted):
-    """How many endpoints of the topic cannot be matched because of their QoS."""
-
-    last_policy_kind: QoSPolicyKind = QoSPolicyKind.INVALID
-
-
-@dataclass(frozen=True)
-class Matched(Counted):
-    """How many endpoints of the opposite kind are matched, and how many have ever been."""
-
-    current_count: int = 0
-    current_count_change: int = 0
-
-
-@dataclass(frozen=True)
-class LivelinessChanged:
-    """How many matched publishers are alive, and how many have not shown it in time."""
-
-    alive_count: int = 0
-    not_alive_count: int = 0
-    alive_count_change: int = 0
-    not_alive_count_change: int = 0
 
 
 class EventHandle(Destroyable):
@@ -179,7 +129,7 @@ class Watch:
 class MatchedWatch(Watch):
     """Counts matched endpoints."""
 
-    empty = Matched()
+    empty = MatchedInfo(0, 0, 0, 0)
 
     def start(self) -> None:
         """Begin to watch."""
@@ -235,7 +185,7 @@ class IncompatibleQoSWatch(MismatchWatch):
     """Counts endpoints whose QoS does not fit."""
 
     aspects = ("qos",)
-    empty = IncompatibleQoS()
+    empty = QoSRequestedIncompatibleQoSInfo(0, 0, QoSPolicyKind.INVALID)
 
     def note(self, policy: QoSPolicyKind) -> None:
         """Count one."""
@@ -246,7 +196,7 @@ class IncompatibleTypeWatch(MismatchWatch):
     """Counts endpoints of another type."""
 
     aspects = ("type", "definition")
-    empty = IncompatibleType()
+    empty = IncompatibleTypeInfo(0, 0)
 
 
 class Alarm:
@@ -278,7 +228,7 @@ class Alarm:
 class DeadlineWatch(Watch):
     """Counts the periods without a message, from the first message on."""
 
-    empty = DeadlineMissed()
+    empty: Any = QoSRequestedDeadlineMissedInfo(0, 0)
 
     def start(self) -> None:
         """Begin to watch."""
@@ -301,10 +251,16 @@ class DeadlineWatch(Watch):
             self.feed.remove(self._on_message)
 
 
+class OfferedDeadlineWatch(DeadlineWatch):
+    """Counts the periods in which nothing was published."""
+
+    empty = QoSOfferedDeadlineMissedInfo(0, 0)
+
+
 class LivelinessLostWatch(Watch):
     """Counts the leases that a publisher has let pass; asserting or publishing renews them."""
 
-    empty = LivelinessLost()
+    empty = QoSLivelinessLostInfo(0, 0)
 
     def start(self) -> None:
         """Begin to watch."""
@@ -341,7 +297,7 @@ class LivelinessChangedWatch(Watch):
     and assertions.
     """
 
-    empty = LivelinessChanged()
+    empty = QoSLivelinessChangedInfo(0, 0, 0, 0)
 
     def start(self) -> None:
         """Begin to watch."""
@@ -407,7 +363,7 @@ class LivelinessChangedWatch(Watch):
 class MessageLostWatch(Watch):
     """Counts the gaps in what each publisher has numbered."""
 
-    empty = MessageLost()
+    empty = QoSMessageLostInfo(0, 0)
 
     def start(self) -> None:
         """Begin to watch."""
@@ -438,7 +394,7 @@ def is_manual(publisher: EndpointInfo) -> bool:
 
 
 PUBLISHER_WATCHES: dict[int, type[Watch]] = {
-    PublisherEventType.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED: DeadlineWatch,
+    PublisherEventType.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED: OfferedDeadlineWatch,
     PublisherEventType.RCL_PUBLISHER_LIVELINESS_LOST: LivelinessLostWatch,
     PublisherEventType.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS: IncompatibleQoSWatch,
     PublisherEventType.RCL_PUBLISHER_INCOMPATIBLE_TYPE: IncompatibleTypeWatch,

@@ -7,13 +7,14 @@ import logging
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
-from threading import Event, Lock, Thread, get_ident
+from threading import Event, Lock, Thread, current_thread, get_ident, local, main_thread
 from typing import Any, TypeVar
 
 from aionode import Context
+from aionode.lendable_loop import LendableLoop
 from aionode.rclpy._impl.errors import InvalidHandle
 
-__all__ = ["IoThread"]
+__all__ = ["IoThread", "postpone"]
 
 T = TypeVar("T")
 
@@ -27,6 +28,31 @@ STOP_S = 3.0
 """How long the end of the process waits for the thread."""
 
 logger = logging.getLogger("aionode.rclpy")
+
+
+class Borrowing(local):
+    """Whether this thread does the work of a context's thread."""
+
+    active = False
+
+
+borrowing = Borrowing()
+
+postponed: list[Callable[[], object]] = []
+"""What handlers of signals have to do once this thread does no more such work."""
+
+
+def postpone(action: Callable[[], object]) -> bool:
+    """Have `action` called soon if this thread does the work of a context's thread.
+
+    A handler of a signal may raise KeyboardInterrupt, which would leave such work half done.
+
+    Returns:
+        Whether it will be called.
+    """
+    if borrowing.active:
+        postponed.append(action)
+    return borrowing.active
 
 
 class IoThread:
@@ -43,7 +69,7 @@ class IoThread:
         self._work: deque[Callable[[], object]] = deque()
         self._scheduled = True  # the loop looks once it runs
         self._ended = False
-        self._loop: asyncio.AbstractEventLoop | None = None
+        self._loop: LendableLoop | None = None
         self._stopping: asyncio.Event | None = None
         self._opened: Future[None] = Future()
         self.delivery_lock = Lock()
@@ -99,6 +125,28 @@ class IoThread:
         self._work.append(action)
         self._schedule()
 
+    def send(self, action: Callable[[], object]) -> None:
+        """Call `action`, which sends something, after everything that was posted before.
+
+        In this thread and at once if the context's thread sleeps, and in the latter soon if not.
+        """
+        loop = self._loop
+        borrowing.active = True
+        try:
+            if self._work or loop is None or not loop.borrow():
+                self.post(action)
+                return
+            try:
+                action()
+            except Exception:
+                logger.exception("in the input and output of a context")
+            finally:
+                loop.give_back()
+        finally:
+            borrowing.active = False
+            while postponed and current_thread() is main_thread():
+                postponed.pop(0)()
+
     def pace(self) -> None:
         """Wait while more is posted than the thread has done; for those who post much."""
         if len(self._work) >= MOST_WAITING and not self.is_current:
@@ -140,7 +188,7 @@ class IoThread:
 
     def _main(self) -> None:
         try:
-            with asyncio.Runner(loop_factory=loop_factory()) as runner:
+            with asyncio.Runner(loop_factory=LendableLoop) as runner:
                 runner.run(self._run())
         except BaseException as error:
             if self._opened.done():
@@ -154,7 +202,9 @@ class IoThread:
 
     async def _run(self) -> None:
         async with self.context, asyncio.TaskGroup() as tasks:
-            self._loop = asyncio.get_running_loop()
+            loop = asyncio.get_running_loop()
+            assert isinstance(loop, LendableLoop)  # noqa: S101  # `_main` has made it
+            self._loop = loop
             self._stopping = asyncio.Event()
             watching = tasks.create_task(self._watch_graph())
             self._opened.set_result(None)
@@ -183,12 +233,3 @@ class IoThread:
             await self.context.graph.changed()
             for watcher in list(self._graph_watchers):
                 watcher()
-
-
-def loop_factory() -> Callable[[], asyncio.AbstractEventLoop] | None:
-    """Return uvloop's loop factory if it is installed; None stands for asyncio's own."""
-    try:
-        import uvloop  # an optional extra
-    except ImportError:
-        return None
-    return uvloop.new_event_loop

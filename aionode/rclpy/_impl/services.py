@@ -96,7 +96,7 @@ class ServiceHandle(Destroyable):
         return self._bare.endpoint
 
     @property
-    def name(self) -> str:
+    def service_name(self) -> str:
         """The full name of the service."""
         return self._name
 
@@ -125,7 +125,7 @@ class ServiceHandle(Destroyable):
             try:
                 message = self._support.request.decode(request.message.data)
             except DecodeError as error:
-                self._io.post(partial(request.fail, "DecodeError", str(error)))
+                self._io.send(partial(request.fail, "DecodeError", str(error)))
                 continue
             info = request.sample_info
             request_id = rmw_request_id_t(info.sequence, info.gid)
@@ -141,7 +141,7 @@ class ServiceHandle(Destroyable):
         request = self._taken.pop(request_id, None)
         if request is None:
             return
-        self._io.post(partial(request.reply, self._support.wire_type.Response(data)))
+        self._io.send(partial(request.reply, self._support.wire_type.Response(data)))
         self._introspection.tell(
             ServiceEvent.RESPONSE_SENT,
             request_id.writer_guid,
@@ -153,7 +153,7 @@ class ServiceHandle(Destroyable):
         """Send an error in place of a response; only clients of aionode learn of it."""
         request = self._taken.pop(request_id, None)
         if request is not None:
-            self._io.post(partial(request.fail, error_type, text))
+            self._io.send(partial(request.fail, error_type, text))
 
     def configure_introspection(
         self, clock: ClockHandle, qos_profile: Any, state: ServiceIntrospectionState
@@ -246,7 +246,7 @@ class ClientHandle(Destroyable):
         self._introspection.tell(
             ServiceEvent.REQUEST_SENT, self.endpoint.gid, sequence, request=request
         )
-        self._io.post(
+        self._io.send(
             partial(self._send, sequence, self._support.wire_type.Request(data), now_ns())
         )
         return sequence

@@ -5,9 +5,11 @@ from __future__ import annotations
 import signal
 import weakref
 from enum import IntFlag
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode.rclpy._impl.context import living_contexts
+from aionode.rclpy._impl.io_thread import postpone
 from aionode.rclpy._impl.timers import GuardConditionHandle
 
 if TYPE_CHECKING:
@@ -80,6 +82,8 @@ def handle(number: int, frame: FrameType | None) -> None:
     The default of SIGTERM, which ends the process, is left out: the executors end, and with them
     the program.
     """
+    if postpone(partial(handle, number, None)):
+        return
     for context in list(living_contexts):
         context.interrupt()
     for guard in list(guards):

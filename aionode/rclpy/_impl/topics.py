@@ -85,7 +85,7 @@ class PublisherHandle(Destroyable):
             except QueueFullError as error:
                 raise RCLError(f"Failed to publish: {error}") from error
             if sample_info is not None:
-                io.post(partial(self.bare.publish_elsewhere, msg, sample_info))
+                io.send(partial(self.bare.publish_elsewhere, msg, sample_info))
         if self.feed:
             io.post(self._tell_feed)
 

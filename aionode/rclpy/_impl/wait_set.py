@@ -82,6 +82,10 @@ class WaitSet(Destroyable):
         """Return the pointers of the handles of a kind that were ready when the last wait ended."""
         return list(self._ready[kind])
 
+    def may_be_ready(self) -> bool:
+        """Return whether a handle is ready now."""
+        return any(handle.ready() for handles in self._handles.values() for handle in handles)
+
     def look(self) -> bool:
         """Note which handles are ready now, and return whether any is."""
         for kind, handles in self._handles.items():

@@ -7,10 +7,10 @@ import uuid
 import weakref
 from typing import TYPE_CHECKING, Any, Generic
 
-from aionode.clock import MachineTime
 from aionode.endpoints.actions.goal import GoalStatus
+from aionode.rclpy._entities import wait_until
 from aionode.rclpy._impl.actions import ActionClientHandle
-from aionode.rclpy._impl.destroyable import Wakeup
+from aionode.rclpy.action._entity import ActionEntity
 from aionode.rclpy.executors import await_or_execute
 from aionode.rclpy.qos import (
     QoSProfile,
@@ -19,29 +19,21 @@ from aionode.rclpy.qos import (
 )
 from aionode.rclpy.task import Future
 from aionode.rclpy.type_support import FeedbackT, GoalT, ResultT, check_for_type_support
-from aionode.rclpy.waitable import NumberOfEntities, Waitable
+from aionode.rclpy.waitable import NumberOfEntities
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from types import TracebackType
 
     from aionode.rclpy._impl.services import ClientHandle
     from aionode.rclpy._impl.wait_set import WaitSet
     from aionode.rclpy.callback_groups import CallbackGroup
-    from aionode.rclpy.clock import Clock
     from aionode.rclpy.node import Node
-    from aionode.rclpy.service_introspection import ServiceIntrospectionState
 
 __all__ = ["ActionClient", "ClientGoalHandle"]
 
 FEEDBACK_QOS = QoSProfile(depth=10)
 
-CHECK_S = 0.05
-"""How often `wait_for_server` looks."""
-
 ENDED = (GoalStatus.SUCCEEDED, GoalStatus.CANCELED, GoalStatus.ABORTED)
-
-steady_ns = MachineTime().steady_ns
 
 
 class ClientGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
@@ -115,7 +107,7 @@ def blocked(future: Future[Any]) -> Any:
     return future.result()
 
 
-class ActionClient(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT]):
+class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, FeedbackT]):
     """Sends goals to an action server.
 
     Args:
@@ -146,7 +138,7 @@ class ActionClient(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT])
         self._action_type = action_type
         self._action_name = action_name
         with node.handle:
-            self._client_handle = ActionClientHandle(
+            self._handle = ActionClientHandle(
                 node.handle,
                 action_type,
                 action_name,
@@ -210,7 +202,7 @@ class ActionClient(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT])
             self._feedback_callbacks[bytes(request.goal_id.uuid)] = feedback_callback
         future: Future[Any] = Future()
         with self._lock:
-            sequence = self._client_handle.goal.send_request(request)
+            sequence = self._handle.goal.send_request(request)
             self._pending_goal_requests[sequence] = future
             self._goal_ids[sequence] = request.goal_id
         self._track(future, self._pending_goal_requests, sequence)
@@ -220,13 +212,13 @@ class ActionClient(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT])
         expect_goal_handle(goal_handle)
         request = self._action_type.Impl.CancelGoalService.Request()
         request.goal_info.goal_id = goal_handle.goal_id
-        return self._send(self._client_handle.cancel, request, self._pending_cancel_requests)
+        return self._send(self._handle.cancel, request, self._pending_cancel_requests)
 
     def _get_result_async(self, goal_handle: ClientGoalHandle[Any, Any, Any]) -> Future[Any]:
         expect_goal_handle(goal_handle)
         request = self._action_type.Impl.GetResultService.Request()
         request.goal_id = goal_handle.goal_id
-        future = self._send(self._client_handle.result, request, self._pending_result_requests)
+        future = self._send(self._handle.result, request, self._pending_result_requests)
         goal_id = bytes(goal_handle.goal_id.uuid)
         future.add_done_callback(lambda _: self._feedback_callbacks.pop(goal_id, None))
         return future
@@ -257,11 +249,11 @@ class ActionClient(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT])
 
     def is_ready(self, wait_set: WaitSet) -> bool:
         """Return whether an answer, feedback or status has come."""
-        return any(part.ready() for part in self._client_handle.parts)
+        return any(part.ready() for part in self._handle.parts)
 
     def take_data(self) -> dict[str, Any]:
         """Take one of each."""
-        handle = self._client_handle
+        handle = self._handle
         data: dict[str, Any] = {}
         with self._lock:
             for name, client in (
@@ -341,27 +333,12 @@ class ActionClient(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT])
         """Return how many handles it adds to a wait set."""
         return NumberOfEntities(num_subs=2, num_clients=3)
 
-    def add_to_wait_set(self, wait_set: WaitSet) -> None:
-        """Add its handles."""
-        self._client_handle.add_to_waitset(wait_set)
-
-    def __enter__(self) -> None:
-        self._client_handle.__enter__()
-
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self._client_handle.__exit__(exc_type, exc, traceback)
-
     # The server
 
     def server_is_ready(self) -> bool:
         """Return whether a server is there."""
         with self._node.handle:
-            return self._client_handle.is_action_server_available()
+            return self._handle.is_action_server_available()
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
         """Block the thread until a server is there; nobody needs to spin.
@@ -372,32 +349,7 @@ class ActionClient(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT])
         Returns:
             Whether one is there.
         """
-        ends_ns = None if timeout_sec is None else steady_ns() + timeout_sec * 1e9
-        wakeup = Wakeup()
-        while not self.server_is_ready():
-            if ends_ns is not None and steady_ns() >= ends_ns:
-                return False
-            if not self._node.context.ok():
-                return False
-            wakeup.wait(CHECK_S)
-        return True
-
-    def configure_introspection(
-        self,
-        clock: Clock,
-        service_event_qos_profile: QoSProfile,
-        introspection_state: ServiceIntrospectionState,
-    ) -> None:
-        """Tell of the calls of its services on ``…/_service_event``."""
-        with self._client_handle:
-            self._client_handle.configure_introspection(
-                clock.handle, service_event_qos_profile, introspection_state
-            )
-
-    def destroy(self) -> None:
-        """Destroy it; its futures are never completed."""
-        self._client_handle.destroy_when_not_in_use()
-        self._node.remove_waitable(self)
+        return wait_until(self.server_is_ready, self._node.context, timeout_sec)
 
 
 def expect_goal_handle(value: object) -> None:

@@ -17,6 +17,7 @@ from aionode.endpoints.actions.goal import (
 from aionode.rclpy._impl.actions import ActionServerHandle, GoalState
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._impl.typesupport import message_like
+from aionode.rclpy.action._entity import ActionEntity
 from aionode.rclpy.executors import await_or_execute
 from aionode.rclpy.qos import (
     QoSProfile,
@@ -25,17 +26,14 @@ from aionode.rclpy.qos import (
 )
 from aionode.rclpy.task import Future
 from aionode.rclpy.type_support import FeedbackT, GoalT, ResultT, check_for_type_support
-from aionode.rclpy.waitable import NumberOfEntities, Waitable
+from aionode.rclpy.waitable import NumberOfEntities
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from types import TracebackType
 
     from aionode.rclpy._impl.wait_set import WaitSet
     from aionode.rclpy.callback_groups import CallbackGroup
-    from aionode.rclpy.clock import Clock
     from aionode.rclpy.node import Node
-    from aionode.rclpy.service_introspection import ServiceIntrospectionState
 
 __all__ = [
     "ActionServer",
@@ -168,7 +166,7 @@ def default_cancel_callback(cancel_request: Any) -> CancelResponse:
     return CancelResponse.REJECT
 
 
-class ActionServer(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT]):
+class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, FeedbackT]):
     """Executes goals.
 
     Args:
@@ -406,21 +404,6 @@ class ActionServer(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT])
         """Return how many handles it adds to a wait set."""
         return NumberOfEntities(num_timers=1, num_services=3)
 
-    def add_to_wait_set(self, wait_set: WaitSet) -> None:
-        """Add its handles."""
-        self._handle.add_to_waitset(wait_set)
-
-    def __enter__(self) -> None:
-        self._handle.__enter__()
-
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self._handle.__exit__(exc_type, exc, traceback)
-
     # For goals
 
     def notify_execute(
@@ -470,23 +453,10 @@ class ActionServer(Waitable[dict[str, Any]], Generic[GoalT, ResultT, FeedbackT])
             raise TypeError("Failed to register goal execution callback: not callable")
         self._execute_callback = execute_callback
 
-    def configure_introspection(
-        self,
-        clock: Clock,
-        service_event_qos_profile: QoSProfile,
-        introspection_state: ServiceIntrospectionState,
-    ) -> None:
-        """Tell of the calls of its services on ``…/_service_event``."""
-        with self._handle:
-            self._handle.configure_introspection(
-                clock.handle, service_event_qos_profile, introspection_state
-            )
-
     def destroy(self) -> None:
         """Destroy it; what it executes goes on, without effect on clients."""
         for goal_handle in list(self._goal_handles.values()):
             goal_handle.destroy()
         for result in list(self._result_futures.values()):
             self.remove_future(result)
-        self._handle.destroy_when_not_in_use()
-        self._node.remove_waitable(self)
+        super().destroy()

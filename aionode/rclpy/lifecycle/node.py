@@ -86,7 +86,7 @@ class LifecycleNodeMixin(ManagedEntity):
         ) -> Service[Any, Any]:
             assert handle is not None  # noqa: S101  # the interface is enabled
             made: Service[Any, Any] = Service(
-                handle, srv_type, handle.name, callback, group, QoSProfile(depth=10)
+                handle, srv_type, handle.service_name, callback, group, QoSProfile(depth=10)
             )
             group.add_entity(made)
             self._services.append(made)

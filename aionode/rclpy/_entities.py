@@ -1,0 +1,138 @@
+"""What the entities of nodes have in common: a handle, and the end of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Generic, Self, TypeVar
+
+from aionode.clock import MachineTime
+from aionode.rclpy._impl.destroyable import Destroyable, Wakeup
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import TracebackType
+
+    from aionode.rclpy._impl.services import ClientHandle, ServiceHandle
+    from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle
+    from aionode.rclpy.clock import Clock
+    from aionode.rclpy.context import Context
+    from aionode.rclpy.event_handler import EventHandler
+    from aionode.rclpy.qos import QoSProfile
+    from aionode.rclpy.service_introspection import ServiceIntrospectionState
+
+__all__ = ["HandleOwner", "ServiceEntity", "TopicEntity", "wait_until"]
+
+CHECK_S = 0.05
+"""How often a wait for another process looks."""
+
+steady_ns = MachineTime().steady_ns
+
+HandleT = TypeVar("HandleT", bound=Destroyable)
+TopicHandleT = TypeVar("TopicHandleT", bound="PublisherHandle | SubscriptionHandle")
+ServiceHandleT = TypeVar("ServiceHandleT", bound="ClientHandle | ServiceHandle")
+
+
+class HandleOwner(Generic[HandleT]):
+    """Has a handle, which is destroyed at the end of ``with``."""
+
+    _handle: HandleT
+
+    @property
+    def handle(self) -> HandleT:
+        """The handle."""
+        return self._handle
+
+    def destroy(self) -> None:
+        """Destroy it. Use the method of the node for what a node has made."""
+        self._handle.destroy_when_not_in_use()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.destroy()
+
+
+class TopicEntity(HandleOwner[TopicHandleT]):
+    """A publisher or subscription."""
+
+    event_handlers: list[EventHandler]
+
+    @property
+    def topic_name(self) -> str:
+        """The full name of the topic."""
+        with self._handle:
+            return self._handle.get_topic_name()
+
+    @property
+    def logger_name(self) -> str:
+        """The name of the node's logger."""
+        with self._handle:
+            return self._handle.get_logger_name()
+
+    def destroy(self) -> None:
+        """Destroy it, and its event handlers. Use the method of the node."""
+        for handler in self.event_handlers:
+            handler.destroy()
+        super().destroy()
+
+
+class ServiceEntity(HandleOwner[ServiceHandleT]):
+    """A client or server."""
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Tell of calls on ``<service>/_service_event``.
+
+        Args:
+            clock: Where the stamps come from.
+            service_event_qos_profile: QoS of that topic.
+            introspection_state: What is told.
+        """
+        with self._handle:
+            self._handle.configure_introspection(
+                clock.handle, service_event_qos_profile, introspection_state
+            )
+
+    @property
+    def service_name(self) -> str:
+        """The full name of the service."""
+        with self._handle:
+            return self._handle.service_name
+
+    @property
+    def logger_name(self) -> str:
+        """The name of the node's logger."""
+        with self._handle:
+            return self._handle.get_logger_name()
+
+
+def wait_until(is_ready: Callable[[], bool], context: Context, timeout_sec: float | None) -> bool:
+    """Block the thread until something is ready; nothing has to spin.
+
+    Args:
+        is_ready: Whether it is.
+        context: Its shutdown ends the wait.
+        timeout_sec: The longest wait in seconds; None for ever.
+
+    Returns:
+        Whether it is ready.
+    """
+    ends_ns = None if timeout_sec is None else steady_ns() + timeout_sec * 1e9
+    wakeup = Wakeup()
+    while not is_ready():
+        left_s = CHECK_S
+        if ends_ns is not None:
+            left_s = min(left_s, (ends_ns - steady_ns()) / 1e9)
+        if left_s <= 0 or not context.ok():
+            return False
+        wakeup.wait(left_s)
+    return True

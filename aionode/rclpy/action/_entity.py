@@ -1,0 +1,60 @@
+"""What clients and servers of actions have in common."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from aionode.rclpy._impl.actions import ActionClientHandle, ActionServerHandle
+from aionode.rclpy.waitable import Waitable
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from aionode.rclpy._impl.wait_set import WaitSet
+    from aionode.rclpy.clock import Clock
+    from aionode.rclpy.node import Node
+    from aionode.rclpy.qos import QoSProfile
+    from aionode.rclpy.service_introspection import ServiceIntrospectionState
+
+__all__ = ["ActionEntity"]
+
+HandleT = TypeVar("HandleT", ActionClientHandle, ActionServerHandle)
+
+
+class ActionEntity(Waitable[dict[str, Any]], Generic[HandleT]):
+    """A waitable of a node, whose handle stands for several services and topics."""
+
+    _handle: HandleT
+    _node: Node
+
+    def add_to_wait_set(self, wait_set: WaitSet) -> None:
+        """Add its handles."""
+        self._handle.add_to_waitset(wait_set)
+
+    def __enter__(self) -> None:
+        self._handle.__enter__()
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._handle.__exit__(exc_type, exc, traceback)
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Tell of the calls of its services on ``…/_service_event``."""
+        with self._handle:
+            self._handle.configure_introspection(
+                clock.handle, service_event_qos_profile, introspection_state
+            )
+
+    def destroy(self) -> None:
+        """Destroy it; its futures are never completed."""
+        self._handle.destroy_when_not_in_use()
+        self._node.remove_waitable(self)
