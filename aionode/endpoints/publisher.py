@@ -56,10 +56,19 @@ class Publisher(Entity, Generic[MsgT]):
         self._now_ns = time_base.system_ns
         # Before anything is announced to others: it refuses callbacks that do not fit.
         self._monitor = PublisherMonitor(graph_entry, time_base, event_callbacks)
-        writers = self._monitor.writers = self._writers = tuple(make_writers())
+        writers = self._monitor.writers = tuple(make_writers())
         self.stats = PublisherStats(writers, graph_entry.matched)
+        self._signs: tuple[Writer, ...] = ()
         if self._monitor.needs_signs:
-            self._writers += (SignOfLife(writers, self._check, self._monitor.note_message),)
+            self._signs = (SignOfLife(writers, self._check, self._monitor.note_message),)
+        self._leave_out_dormant()
+        for writer in writers:
+            writer.when_awake(self._leave_out_dormant)
+
+    def _leave_out_dormant(self) -> None:
+        """Have the other writers take the messages."""
+        awake = tuple(writer for writer in self._monitor.writers if not writer.dormant)
+        self._writers: tuple[Writer, ...] = awake + self._signs
 
     def __repr__(self) -> str:
         return (
@@ -178,5 +187,5 @@ class Publisher(Entity, Generic[MsgT]):
         """Withdraw the publisher."""
         self._monitor.close()
         self._graph_entry.close()
-        for writer in self._writers:
+        for writer in self._monitor.writers:
             writer.close()

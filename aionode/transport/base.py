@@ -123,10 +123,16 @@ class Writer(Registration):
         active: Whether a message written now would be used: a reader is matched, or it is kept for
             late ones. Encoding and copying are left out where this is false.
         bounded: Whether `has_room` may be false.
+        dormant: Whether it is neither of both, until it calls what `when_awake` took; publishers do
+            not ask it for each message.
     """
 
     active: bool = False
     bounded: bool = False
+    dormant: bool = False
+
+    def when_awake(self, callback: Callable[[], None]) -> None:
+        """Call `callback` when it is no longer dormant, if it is."""
 
     @abstractmethod
     def write(self, msg: Any, sample_info: SampleInfo) -> None:

@@ -20,7 +20,17 @@ from typing import Any
 import zenoh  # noqa: TID251  # plays the bridge, without aionode
 from zenoh import ext  # noqa: TID251
 
-__all__ = ["ADD", "CYCLONE", "FAST", "HEADER", "STRING", "StandIn", "cause_of_death", "stand_in"]
+__all__ = [
+    "ADD",
+    "CYCLONE",
+    "FAST",
+    "HEADER",
+    "STRING",
+    "StandIn",
+    "cause_of_death",
+    "stand_in",
+    "until",
+]
 
 HEADER = bytes.fromhex("00010000")
 STRING = "std_msgs/msg/String"
@@ -93,6 +103,7 @@ class StandIn:
             "@/*/@ros2_lv/**", self._see, history=True
         )
         self._listen = session.declare_subscriber("**", self._check, allowed_origin=REMOTE)
+        self._hear = session.declare_queryable("**", self._check_query, allowed_origin=REMOTE)
         self._token = session.liveliness().declare_token(f"@/{self.zid}/@ros2_lv")
 
     def key(self, name: str) -> str:
@@ -139,6 +150,13 @@ class StandIn:
             self.deaths.append(f"{key}: a delete")
         elif len(payload) < 5 or payload[:2] not in {b"\0\0", b"\0\1"}:
             self.deaths.append(f"{key}: {payload.hex()}")
+
+    def _check_query(self, query: zenoh.Query) -> None:
+        """Note what would call DDS servers with a request that is none."""
+        key = str(query.key_expr)
+        with query:
+            if key.startswith(self._prefix) and "::" not in key and query.payload is None:
+                self.deaths.append(f"{key}: a query without a request")
 
     def _answer(self, query: zenoh.Query) -> None:
         asked = str(query.key_expr)
@@ -276,6 +294,12 @@ def stand_in(namespace: str = "/", *, first: bool = True) -> Iterator[StandIn]:
         config.insert_json5(key, json.dumps(value))
     with closing(zenoh.open(config)) as session:
         yield StandIn(session, namespace)
+
+
+async def until(condition: Callable[[], Any]) -> None:
+    """Wait until something is so in another thread."""
+    while not condition():  # noqa: ASYNC110  # Zenoh's thread sets no event
+        await asyncio.sleep(0.005)  # noqa: TID251  # as above
 
 
 async def main() -> None:

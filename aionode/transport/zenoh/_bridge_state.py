@@ -12,8 +12,9 @@ if TYPE_CHECKING:
     import zenoh
 
     from aionode.clock import TimeBase
-    from aionode.graph import EndpointInfo, NodeInfo
+    from aionode.graph import EndpointInfo, Graph, NodeInfo
     from aionode.transport._loop_waker import LoopWaker
+    from aionode.transport.zenoh._bridge_stubs import Stub
 
 __all__ = ["BridgeDeclaration", "BridgeState"]
 
@@ -59,6 +60,7 @@ class BridgeState(SessionState):
     Attributes:
         prefixes: What the keys of each bridge begin with, by its Zenoh id; empty in the root.
         fast_dds: The bridges with nodes on Fast DDS behind them, whose services do not answer.
+        stubs: What stands for endpoints from before the first bridge.
     """
 
     def __init__(
@@ -74,8 +76,17 @@ class BridgeState(SessionState):
         )
         self.prefixes: dict[str, str] = {}
         self.fast_dds: set[str] = set()
+        self.stubs: dict[Stub[Any], None] = {}
         self._served: set[str] = set()  # all prefixes that there were; what is declared stays
         self._tokens: dict[str, SharedToken] = {}
+
+    def connect(self, session: zenoh.Session, graph: Graph) -> None:
+        """Make all endpoints: this is the first bridge."""
+        super().connect(session, graph)
+        stubs = list(self.stubs)
+        self.stubs.clear()
+        for stub in stubs:
+            stub.replace()
 
     def names_of(self, endpoint: EndpointInfo, backends: str = "") -> EndpointNames:  # noqa: ARG002  # of rmw_zenoh only
         """Return the names of one of our endpoints."""

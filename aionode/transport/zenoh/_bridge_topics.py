@@ -6,17 +6,27 @@ from typing import TYPE_CHECKING, ClassVar
 
 import zenoh
 
+from aionode.qos import is_unlimited
 from aionode.transport.base import SampleInfo
 from aionode.transport.zenoh._bridge_state import BridgeDeclaration
-from aionode.transport.zenoh._delivery import UNKNOWN_GID, sample_info_of
+from aionode.transport.zenoh._delivery import UNKNOWN_GID, is_transient, sample_info_of
 from aionode.transport.zenoh._publisher import ZenohWriter
 from aionode.transport.zenoh._subscription import ZenohReader
 
 if TYPE_CHECKING:
     from aionode.content_filter import ContentFilterOptions
     from aionode.graph import EndpointInfo
+    from aionode.qos import QoSProfile
 
-__all__ = ["BridgeReader", "BridgeWriter"]
+__all__ = ["BridgeReader", "BridgeWriter", "keeps_for_late_readers"]
+
+
+def keeps_for_late_readers(qos: QoSProfile) -> bool:
+    """Return whether what is published without a bridge is kept for the first one.
+
+    Not if it is valid for some time only, as the log is.
+    """
+    return is_transient(qos) and is_unlimited(qos.lifespan)
 
 
 class BridgeWriter(BridgeDeclaration, ZenohWriter):
@@ -29,14 +39,10 @@ class BridgeWriter(BridgeDeclaration, ZenohWriter):
     recovers: ClassVar[bool] = False
 
     def _update(self, reader: EndpointInfo | None = None, present: bool = True) -> None:
-        """Update `active` from the subscriptions that bridges announce.
-
-        Without a bridge, what late subscriptions shall get is kept for the first one, unless it is
-        valid for some time only, as the log is.
-        """
+        """Update `active` from the subscriptions that bridges announce."""
         super()._update(reader, present)
         if self._transient:
-            self.active = self._publisher is not None or not self._lifespan_ns
+            self.active = self._publisher is not None or keeps_for_late_readers(self.endpoint.qos)
 
     def assert_liveliness(self) -> None:
         """Do nothing: a bridge does not carry it."""

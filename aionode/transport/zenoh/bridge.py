@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import asyncio
 from contextlib import suppress
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode.transport.base import Registration, Transport
 from aionode.transport.zenoh._bridge_graph import BridgeWatcher
 from aionode.transport.zenoh._bridge_services import BridgeRequester, BridgeServer
 from aionode.transport.zenoh._bridge_state import BridgeState
-from aionode.transport.zenoh._bridge_topics import BridgeReader, BridgeWriter
+from aionode.transport.zenoh._bridge_stubs import ReaderStub, RequesterStub, Stub, WriterStub
+from aionode.transport.zenoh._bridge_topics import (
+    BridgeReader,
+    BridgeWriter,
+    keeps_for_late_readers,
+)
 
 if TYPE_CHECKING:
     from aionode.clock import TimeBase
@@ -80,21 +86,29 @@ class BridgeTransport(Transport):
         return Unannounced()
 
     def create_writer(self, endpoint: EndpointInfo, msg_type: type[Any]) -> Writer:
-        """Declare a publisher, once there is a bridge."""
-        return BridgeWriter(self._state, endpoint, msg_type)
+        """Declare a publisher, once there is a bridge.
+
+        One that keeps messages for late readers begins at once: the bridge may be such a reader.
+        """
+        make = partial(BridgeWriter, self._state, endpoint, msg_type)
+        is_needed = self._state.session is not None or keeps_for_late_readers(endpoint.qos)
+        return make() if is_needed else WriterStub(self._state.stubs, make)
 
     def create_reader(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
     ) -> ReaderRegistration:
         """Declare a subscription, once there is a bridge."""
-        return BridgeReader(self._state, endpoint, msg_type, reader)
+        make = partial(BridgeReader, self._state, endpoint, msg_type, reader)
+        return make() if self._state.session is not None else ReaderStub(self._state.stubs, make)
 
     def create_server(
         self, endpoint: EndpointInfo, srv_type: type[Any], serve: Serve
     ) -> Registration:
         """Declare a server, once there is a bridge."""
-        return BridgeServer(self._state, endpoint, srv_type, serve)
+        make = partial(BridgeServer, self._state, endpoint, srv_type, serve)
+        return make() if self._state.session is not None else Stub(self._state.stubs, make)
 
     def create_requester(self, endpoint: EndpointInfo, srv_type: type[Any]) -> Requester:
         """Declare a client, once there is a bridge."""
-        return BridgeRequester(self._state, endpoint, srv_type)
+        make = partial(BridgeRequester, self._state, endpoint, srv_type)
+        return make() if self._state.session is not None else RequesterStub(self._state.stubs, make)

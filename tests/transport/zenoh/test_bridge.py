@@ -22,7 +22,7 @@ from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from aionode.parameter_client import AsyncParameterClient
 from aionode.wire import cdr
-from tests.support.bridge import ADD, FAST, HEADER, LATCHED, StandIn, add, stand_in, string
+from tests.support.bridge import ADD, FAST, HEADER, LATCHED, StandIn, add, stand_in, string, until
 from tests.support.peers import KEEP_ALL, kept, quiet_node, two_contexts
 
 FIB = "example_interfaces/action/Fibonacci"
@@ -43,12 +43,6 @@ def bridge(node: Node) -> Iterator[StandIn]:
     with stand_in() as found:
         yield found
         assert found.deaths == []
-
-
-async def until(condition: Callable[[], Any]) -> None:
-    """Wait until something is so in another thread."""
-    while not condition():  # noqa: ASYNC110  # Zenoh's thread sets no event
-        await asyncio.sleep(0.005)  # noqa: TID251  # as above
 
 
 async def texts(subscription: Any, count: int) -> list[str]:
@@ -442,6 +436,36 @@ async def test_nothing_is_declared_for_bridges_without_one(node: Node) -> None:
         await until(lambda: len(silent.session.info.transports()) > 0)
 
         assert silent.seen == set()
+
+
+async def test_publishers_ask_nothing_for_bridges_until_there_is_one(node: Node) -> None:
+    """Most programs never see a bridge, and the loop over the writers runs for each message."""
+    publisher = node.create_publisher(String, "/chatter", 10)
+    without = len(publisher._writers)
+    with stand_in() as bridge:
+        received = bridge.subscribe("/chatter")
+        await publisher.wait_for_subscribers()
+        publisher.publish(String(data="word"))
+        await until(lambda: received)
+
+        assert len(publisher._writers) == without + 1
+        assert bridge.deaths == []
+
+
+async def test_what_was_destroyed_before_a_bridge_came_is_not_announced(node: Node) -> None:
+    """It would be an endpoint on DDS that nothing serves."""
+    for one in (
+        node.create_publisher(String, "/gone", 10),
+        node.create_subscription(String, "/gone", None, 10),
+        node.create_client(AddTwoInts, "/gone_add"),
+        node.create_service(AddTwoInts, "/gone_add", lambda _: AddTwoInts.Response()),
+    ):
+        one.destroy()
+    node.create_publisher(String, "/there", 10)
+    with stand_in() as bridge:
+        await until(lambda: any("/MP/there/" in one for one in list(bridge.announced)))
+
+        assert not [one for one in bridge.seen if "gone" in one]
 
 
 # Namespaces, restarts
