@@ -1,7 +1,9 @@
 """Round trips over DDS: aionode with ``transport="rcl"``, and rclpy with its two executors.
 
-The same message (String, 16 bytes) between two processes, one after the other in turns, in the same
-run; and a stress of both directions, in which nothing may be lost and the loop must not stall.
+The same message (String, 16 bytes) goes to an echo in another process and back. All processes run
+all the time, and are measured in turns of a fraction of a second, so that whatever else the machine
+does falls on all of them. With ``--stress``, messages go in both directions as fast as they are
+read: nothing may be lost, and the loop must not stall.
 Needs an rclpy: ``pip install 'aionode[ros]'``, or a ROS 2 that is sourced.
 """
 
@@ -10,207 +12,325 @@ from __future__ import annotations
 import argparse
 import asyncio
 import importlib.util
+import json
 import os
 import resource
+import select
 import statistics
 import subprocess
 import sys
+import threading
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    pass
+    from collections.abc import Mapping
 
 KINDS = ("rclpy-events", "aionode", "aionode-uvloop", "rclpy-default")
+PLAN = (("tight", 100, 0.0), ("100Hz", 20, 0.01))  # name, round trips, pause in seconds
 TEXT = "0123456789abcdef"
+LIMIT_S = 60.0  # of one turn
 
 
 def main() -> None:
     """Measure, or play one part of a measurement."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rounds", type=int, default=2, help="how often each is measured")
-    parser.add_argument("--count", type=int, default=2000, help="tight round trips of each")
-    parser.add_argument("--stress", type=float, default=0.0, help="seconds of stress instead")
-    parser.add_argument("--part", nargs=3, help=argparse.SUPPRESS)
+    parser.add_argument("--seconds", type=float, default=40.0, help="how long to measure")
+    parser.add_argument("--stress", action="store_true", help="stress both directions instead")
+    parser.add_argument("--part", nargs="+", help=argparse.SUPPRESS)
     options = parser.parse_args()
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     os.environ.setdefault("ROS_DOMAIN_ID", str(1 + os.getpid() % 100))
     if options.part:
-        kind, role, value = options.part
-        play(kind, role, value)
+        play(*options.part)
     elif importlib.util.find_spec("rclpy") is None:
         print("skipped: rclpy is not installed here; on Linux x86-64: pip install 'aionode[ros]'")
     elif options.stress:
-        stress(options.stress)
+        stress(options.seconds)
     else:
-        compare(options.rounds, options.count)
+        compare(options.seconds)
 
 
-def start(kind: str, role: str, value: str = "") -> subprocess.Popen[str]:
+def start(*part: str) -> subprocess.Popen[str]:
     """Start one part in a process of its own."""
-    command = [sys.executable, __file__, "--part", kind, role, value]
+    command = [sys.executable, "-W", "ignore", __file__, "--part", *part]
     pipe = subprocess.PIPE
-    return subprocess.Popen(  # noqa: S603  # of this file
-        command, stdin=pipe, stdout=pipe, text=True
-    )
+    return subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True)  # noqa: S603  # this file
 
 
-def compare(rounds: int, count: int) -> None:
+def ask(part: subprocess.Popen[str], question: str) -> Any:
+    """Return what a part answers to a line."""
+    if part.stdin is None or part.stdout is None:
+        raise RuntimeError("the part has no pipes")
+    part.stdin.write(question + "\n")
+    part.stdin.flush()
+    if not select.select([part.stdout], [], [], LIMIT_S)[0]:
+        raise TimeoutError(f"no answer to {question!r} from {part.args!r}")
+    return json.loads(part.stdout.readline())
+
+
+def compare(seconds: float) -> None:
     """Print a table of round trips."""
-    found: dict[tuple[str, str], list[float]] = {}
-    for _ in range(rounds):
-        for kind in KINDS:
-            echo = start(kind, "echo")
-            player = start(kind, "player", str(count))
-            output, _ = player.communicate(timeout=120)
-            if echo.stdin is not None:
-                echo.stdin.close()
-            echo.wait(10)
-            for line in output.splitlines():
-                name, value = line.split()
-                found.setdefault((kind, name), []).append(float(value))
-    names = list(dict.fromkeys(name for _, name in found))
-    print(f"{'':16}" + "".join(f"{name:>22}" for name in names))
+    echoes = [start("echo", kind) for kind in KINDS]
+    players = {kind: start("player", kind) for kind in KINDS}
+    try:
+        turns, times = measure(players, seconds)
+    finally:
+        for part in (*echoes, *players.values()):
+            end(part)
+    print(f"{turns} turns; medians in µs, in parentheses as parts of {KINDS[0]}'s")
+    print(f"{'':16}" + "".join(f"{name:>22}" for name, _, _ in PLAN))
     for kind in KINDS:
         cells = []
-        for name in names:
-            values = found.get((kind, name))
-            if not values:
-                cells.append(f"{'-':>22}")
-                continue
-            base = statistics.mean(found[KINDS[0], name])
-            mean = statistics.mean(values)
-            cells.append(f"{mean:>14.0f} ({mean / base:.2f})")
+        for name, _, _ in PLAN:
+            base, own = (statistics.median(times[one, name]) for one in (KINDS[0], kind))
+            cells.append(f"{own / 1e3:>14.0f} ({own / base:.2f})")
         print(f"{kind:16}" + "".join(f"{cell:>22}" for cell in cells))
 
 
-def play(kind: str, role: str, value: str) -> None:
+def measure(
+    players: Mapping[str, subprocess.Popen[str]], seconds: float
+) -> tuple[int, dict[tuple[str, str], list[int]]]:
+    """Return how many turns each player had, and its round trips in ns by player and name."""
+    for player in players.values():
+        ask(player, "0 0 0")  # until it knows its echo
+    for player in players.values():
+        ask(player, f"tight {PLAN[0][1]} 0")  # the first turn warms up
+    times: dict[tuple[str, str], list[int]] = {}
+    turns = 0
+    ends = time.perf_counter() + seconds
+    while time.perf_counter() < ends:
+        turns += 1
+        for name, count, pause_s in PLAN:
+            for kind, player in players.items():
+                found = ask(player, f"{name} {count} {pause_s}")
+                times.setdefault((kind, name), []).extend(found)
+    return turns, times
+
+
+def end(part: subprocess.Popen[str]) -> None:
+    """Close the pipe of a part, and wait for its end."""
+    if part.stdin is not None:
+        part.stdin.close()
+    try:
+        part.wait(10)
+    except subprocess.TimeoutExpired:
+        part.kill()
+
+
+def play(role: str, kind: str) -> None:
     """Play one part."""
     if role == "stress":
-        asyncio.run(stress_part(float(value)))
+        asyncio.run(stress_part(float(kind)))
+    elif role == "idle":
+        asyncio.run(idle_part(float(kind)))
     elif kind.startswith("rclpy"):
-        rclpy_part(kind, role, value)
+        rclpy_part(role, kind)
     elif kind == "aionode-uvloop":
         import uvloop
 
-        uvloop.run(aionode_part(role, value))
+        uvloop.run(aionode_part(role, kind))
     else:
-        asyncio.run(aionode_part(role, value))
+        asyncio.run(aionode_part(role, kind))
 
 
-def report(name: str, times_ns: list[int]) -> None:
-    """Print the median of some times."""
-    print(f"{name}-p50-us {statistics.median(times_ns) / 1000:.0f}", flush=True)
+def next_turn() -> tuple[int, float] | None:
+    """Return the round trips and the pause of the next turn; None at the end."""
+    line = sys.stdin.readline()
+    if not line:
+        return None
+    _, count, pause_s = line.split()
+    return int(count), float(pause_s)
 
 
-async def aionode_part(role: str, value: str) -> None:
-    """Echo until stdin is closed, or measure."""
+def tell(answer: object) -> None:
+    """Answer a question of the parent."""
+    print(json.dumps(answer), flush=True)
+
+
+async def aionode_part(role: str, kind: str) -> None:
+    """Echo until stdin is closed, or measure when told."""
     from aionode import Context, Node
     from aionode.interfaces.std_msgs.msg import String
 
+    topic = kind.replace("-", "_")
     loop = asyncio.get_running_loop()
-    async with Context(transport="rcl") as context, Node(role, context=context) as node:
+    async with (
+        Context(transport="rcl") as context,
+        Node(f"{role}_{topic}", context=context) as node,
+    ):
         if role == "echo":
-            pong = node.create_publisher(String, "pong", 10)
-            node.create_subscription(String, "ping", pong.publish)
-            ended = asyncio.Event()
-            loop.add_reader(sys.stdin, ended.set)
-            await ended.wait()
+            pong = node.create_publisher(String, f"{topic}_pong", 10)
+            node.create_subscription(String, f"{topic}_ping", pong.publish)
+            await asyncio.to_thread(sys.stdin.read)
             return
-        ping = node.create_publisher(String, "ping", 10)
-        came = loop.create_future()
+        ping = node.create_publisher(String, f"{topic}_ping", 10)
+        times: list[int] = []
+        began = count = 0
+        pause_s = 0.0
+        ended = loop.create_future()
+
+        def send() -> None:
+            nonlocal began
+            began = time.perf_counter_ns()
+            ping.publish(message)
 
         def on_pong(_: Any) -> None:
-            came.set_result(None)
+            times.append(time.perf_counter_ns() - began)
+            if len(times) == count:
+                ended.set_result(None)
+            elif pause_s:
+                loop.call_later(pause_s, send)
+            else:
+                send()
 
-        node.create_subscription(String, "pong", on_pong)
+        node.create_subscription(String, f"{topic}_pong", on_pong)
         await ping.wait_for_subscribers()
-        await node.context.graph.until(lambda: bool(node.count_publishers("/pong")))
-        await asyncio.wait([loop.create_future()], timeout=0.5)
+        await node.context.graph.until(lambda: bool(node.count_publishers(f"/{topic}_pong")))
         message = String(data=TEXT)
-        for name, count, pause_s in (("tight", int(value), 0.0), ("100Hz", 200, 0.01)):
-            times = []
-            for _ in range(count):
-                if pause_s:
-                    await asyncio.wait([loop.create_future()], timeout=pause_s)
-                came = loop.create_future()
-                began = time.perf_counter_ns()
-                ping.publish(message)
-                await came
-                times.append(time.perf_counter_ns() - began)
-            report(name, times)
+        while (turn := await asyncio.to_thread(next_turn)) is not None:
+            count, pause_s = turn
+            times.clear()
+            if count:
+                ended = loop.create_future()
+                send()
+                await ended
+            tell(times)
 
 
-def rclpy_part(kind: str, role: str, value: str) -> None:  # noqa: C901  # callbacks
-    """Echo until stdin is closed, or measure."""
-    import threading
-
+def rclpy_part(role: str, kind: str) -> None:
+    """Echo until stdin is closed, or measure when told."""
     import rclpy
     from rclpy.executors import SingleThreadedExecutor
     from rclpy.experimental.events_executor import EventsExecutor
+    from rclpy.task import Future
     from std_msgs.msg import String
 
+    topic = kind.replace("-", "_")
     rclpy.init()
-    node = rclpy.create_node(role)
+    node = rclpy.create_node(f"{role}_{topic}")
     executor: Any = EventsExecutor() if kind == "rclpy-events" else SingleThreadedExecutor()
     executor.add_node(node)
     if role == "echo":
-        pong = node.create_publisher(String, "pong", 10)
-        node.create_subscription(String, "ping", pong.publish, 10)
-
-        def wait() -> None:
-            sys.stdin.read()
-            os._exit(0)
-
-        threading.Thread(target=wait, daemon=True).start()
-        executor.spin()
+        pong = node.create_publisher(String, f"{topic}_pong", 10)
+        node.create_subscription(String, f"{topic}_ping", pong.publish, 10)
+        threading.Thread(target=end_with_stdin, daemon=True).start()
+        executor.spin_until_future_complete(Future(executor=executor), timeout_sec=3600.0)
         return
-    ping = node.create_publisher(String, "ping", 10)
-    plan = [("tight", int(value), 0.0), ("100Hz", 200, 0.01)]
+    ping = node.create_publisher(String, f"{topic}_ping", 10)
     message = String(data=TEXT)
     times: list[int] = []
-    state: dict[str, Any] = {"began": 0, "timer": None}
+    began = count = 0
+    pause_s = 0.0
+    ended: Any = None
 
     def send() -> None:
-        if state["timer"] is not None:
-            state["timer"].cancel()
-        state["began"] = time.perf_counter_ns()
+        nonlocal began
+        timer.cancel()
+        began = time.perf_counter_ns()
         ping.publish(message)
 
     def on_pong(_: Any) -> None:
-        times.append(time.perf_counter_ns() - state["began"])
-        name, count, pause_s = plan[0]
+        times.append(time.perf_counter_ns() - began)
         if len(times) == count:
-            report(name, times)
-            times.clear()
-            plan.pop(0)
-            if not plan:
-                os._exit(0)
-            pause_s = plan[0][2]
-        if not pause_s:
-            send()
-        elif state["timer"] is None:
-            state["timer"] = node.create_timer(pause_s, send)
+            ended.set_result(None)
+        elif pause_s:
+            timer.reset()
         else:
-            state["timer"].reset()
+            send()
 
-    node.create_subscription(String, "pong", on_pong, 10)
-    while not (node.count_publishers("/pong") and ping.get_subscription_count()):
+    timer = node.create_timer(0.01, send)
+    timer.cancel()
+    node.create_subscription(String, f"{topic}_pong", on_pong, 10)
+    while not (node.count_publishers(f"/{topic}_pong") and ping.get_subscription_count()):
         time.sleep(0.01)
-    time.sleep(0.5)
-    send()
-    executor.spin()
+    while (turn := next_turn()) is not None:
+        count, pause_s = turn
+        times.clear()
+        if count:
+            ended = Future(executor=executor)
+            send()
+            executor.spin_until_future_complete(ended, timeout_sec=LIMIT_S)
+        tell(times)
+    os._exit(0)  # EventsExecutor may hold its node back
+
+
+def end_with_stdin() -> None:
+    """End the process when stdin is closed."""
+    sys.stdin.read()
+    os._exit(0)
 
 
 # Stress
 
 
 def stress(seconds: float) -> None:
-    """Print what came of messages in both directions between two processes."""
-    parts = [start("aionode", "stress", str(seconds)) for _ in range(2)]
-    for part in parts:
-        output, _ = part.communicate(timeout=seconds + 60)
+    """Print what came of messages in both directions between two processes.
+
+    A third process, whose loop does nothing, shows which gaps are the machine's.
+    """
+    parts = [start("stress", str(seconds)), start("stress", str(seconds))]
+    idle = start("idle", str(seconds))
+    for part in (*parts, idle):
+        output, _ = part.communicate(timeout=seconds + 90)
         print(output, end="")
+
+
+class Gaps:
+    """By how much the loop was late, again and again, in milliseconds.
+
+    What the thread waited for a processor, as Linux counts it, is known apart.
+    """
+
+    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+        self._loop = loop
+        self._found: list[float] = []
+        self._own: list[float] = []
+        self._handle: asyncio.TimerHandle | None = None
+        self._waited = os.open("/proc/thread-self/schedstat", os.O_RDONLY)
+
+    def _waited_ms(self) -> float:
+        """Return how long this thread has waited for a processor."""
+        return int(os.pread(self._waited, 100, 0).split()[1]) / 1e6
+
+    def watch(self) -> None:
+        """Look every millisecond from now on."""
+        self._handle = self._loop.call_later(
+            0.001, self._look, time.perf_counter() + 0.001, self._waited_ms()
+        )
+
+    def _look(self, due: float, waited_ms: float) -> None:
+        late = (time.perf_counter() - due) * 1e3
+        self._found.append(late)
+        self._own.append(late - (self._waited_ms() - waited_ms))
+        self.watch()
+
+    def end(self) -> str:
+        """Look no more, and return what was found."""
+        if self._handle is not None:
+            self._handle.cancel()
+        text = []
+        for name, values in (("", self._found), ("without waiting for a processor ", self._own)):
+            found = sorted(values)
+            p99 = found[len(found) * 99 // 100]
+            p50 = statistics.median(found)
+            text.append(f"{name}p50 {p50:.1f}, p99 {p99:.1f}, max {found[-1]:.1f} ms")
+        return f"loop late by {', '.join(text)}"
+
+
+async def idle_part(seconds: float) -> None:
+    """Print how late a loop without anything to do is."""
+    gaps = Gaps(asyncio.get_running_loop())
+    gaps.watch()
+    await asyncio.sleep(seconds)
+    print(f"an idle process beside: {gaps.end()}", flush=True)
+
+
+def resident_kb() -> int:
+    """Return the memory that this process has now."""
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+    return pages * resource.getpagesize() // 1024
 
 
 async def stress_part(seconds: float) -> None:
@@ -219,59 +339,54 @@ async def stress_part(seconds: float) -> None:
     from aionode.interfaces.std_msgs.msg import UInt8MultiArray
     from aionode.qos import HistoryPolicy, QoSProfile
 
-    keep_all = QoSProfile(history=HistoryPolicy.KEEP_ALL)
     loop = asyncio.get_running_loop()
     async with (
         Context(transport="rcl") as context,
-        Node(f"n{os.getpid()}", context=context) as node,
+        Node(f"stress{os.getpid()}", context=context) as node,
     ):
-        writer = node.create_publisher(UInt8MultiArray, "stress", keep_all)
-        reader = node.create_subscription(UInt8MultiArray, "stress", None, keep_all)
+        profile = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+        writer = node.create_publisher(UInt8MultiArray, "stress", profile)
+        reader = node.create_subscription(UInt8MultiArray, "stress", None, profile)
         last: dict[bytes, int] = {}
-        wrong = received = 0
-        gaps: list[float] = []
-
-        def watch(before: float) -> None:
-            now = time.perf_counter()
-            gaps.append(now - before)
-            loop.call_soon(loop.call_later, 0.001, watch, time.perf_counter())
+        wrong = 0
+        memory: list[int] = []
 
         async def read() -> None:
-            nonlocal wrong, received
+            nonlocal wrong
             async for msg in reader:
                 data = bytes(msg.data)
                 sender, number = data[:4], int.from_bytes(data[4:12], "little")
                 wrong += number != last.get(sender, -1) + 1
                 last[sender] = number
-                received += 1
 
-        async with asyncio.TaskGroup() as tasks:
-            reading = tasks.create_task(read())
-            await writer.wait_for_subscribers(2)
-            await asyncio.wait([loop.create_future()], timeout=1.0)
-            own = os.getpid().to_bytes(4, "little")
-            ends, number, rss = time.perf_counter() + seconds, 0, 0
-            loop.call_soon(watch, time.perf_counter())
-            while time.perf_counter() < ends:
-                size = 100_000 if number % 1000 == 999 else 100
-                writer.publish(
-                    UInt8MultiArray(data=own + number.to_bytes(8, "little") + bytes(size))
-                )
-                number += 1
-                if number % 50 == 0:
-                    await writer.drain()
-                if number == 5000:
-                    rss = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-            await writer.drain()
-            await asyncio.wait([loop.create_future()], timeout=3.0)
-            reading.cancel()
-        growth = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - rss) / 1024
-        gaps.sort()
+        reading = loop.create_task(read())
+        await writer.wait_for_subscribers(2)
+        await asyncio.sleep(1.0)
+        own = os.getpid().to_bytes(4, "little")
+        gaps = Gaps(loop)
+        gaps.watch()
+        began = time.perf_counter()
+        number = 0
+        while (now := time.perf_counter() - began) < seconds:
+            size = 100_000 if number % 1000 == 999 else 100
+            writer.publish(UInt8MultiArray(data=own + number.to_bytes(8, "little") + bytes(size)))
+            number += 1
+            if number % 50 == 0:
+                await writer.drain()
+            if now > seconds * (len(memory) + 1) / 6:
+                memory.append(resident_kb())
+        await writer.drain()
+        late = gaps.end()
+        before: dict[bytes, int] = {}
+        while before != last:  # the other side may send on for a while
+            before = dict(last)
+            await asyncio.sleep(2.0)
+        reading.cancel()
+        received = {int.from_bytes(key, "little"): value + 1 for key, value in last.items()}
         print(
-            f"sent {number}, received {received} from {len(last)}, out of order or lost {wrong}, "
-            f"last {sorted(last.values())}, "
-            f"loop gap p99 {gaps[len(gaps) * 99 // 100] * 1e3:.1f} ms, "
-            f"max {gaps[-1] * 1e3:.1f} ms, growth {growth:.1f} MB",
+            f"{os.getpid()}: sent {number} ({number / seconds:.0f}/s), received {received}, "
+            f"out of order or lost {wrong}; {late}; memory "
+            f"{', '.join(f'{one / 1024:.0f}' for one in memory)} MB",
             flush=True,
         )
 

@@ -31,7 +31,10 @@ def gids_of_a_client() -> int:
 
     In Jazzy, Fast DDS tells the client one and the server another: ros2/rmw, issue 357.
     """
-    return 1 if importlib.metadata.version("rclpy") >= "9" else 2
+    try:
+        return 2 if importlib.metadata.version("rclpy") < "9" else 1
+    except importlib.metadata.PackageNotFoundError:
+        return 1
 
 
 def ros_domain(offset: int = 0) -> int:

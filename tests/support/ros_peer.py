@@ -49,6 +49,8 @@ class Peer(Node):  # type: ignore[misc]  # rclpy has no types here
         self.map = self.create_publisher(String, "map", kept)
         for number in range(5):
             self.map.publish(String(data=str(number)))
+        chatter = self.create_publisher(String, "chatter", 10)
+        self.create_timer(0.05, lambda: chatter.publish(String(data="hello")))
         self.create_service(BasicTypes, "add", add)
         self.create_service(BasicTypes, "silent", never, callback_group=group)
         self.client = self.create_client(BasicTypes, "ours/add", callback_group=group)

@@ -222,6 +222,12 @@ def qos_from(preset: str, options: dict[str, Any]) -> QoSProfile | None:
         profile.depth = given["depth"]
     elif profile.durability is DurabilityPolicy.TRANSIENT_LOCAL and profile.depth == 0:
         profile.depth = 1
+    if (
+        given["durability"] == "transient_local"
+        and given["reliability"] is given["profile"] is None
+    ):
+        # Over DDS, best-effort subscriptions get nothing of what was kept.
+        profile.reliability = ReliabilityPolicy.RELIABLE
     lease = given["liveliness_lease_duration_seconds"]
     if lease is not None:
         profile.liveliness_lease_duration = Duration(seconds=lease)

@@ -49,7 +49,8 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
         CommandError: one of the names does not exist.
     """
     network = node.context.network
-    has_router = await answers(network.router_port)
+    middleware = middleware_of(node)
+    has_router = not middleware and await answers(network.router_port)
     nodes, endpoints = chosen(node, names)
     links = await query_links(node)
     bridges = bridges_of(node)
@@ -65,6 +66,7 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
         "other_domains": domains,
         "discovery_range": network.discovery_range.value,
         "static_peers": list(network.static_peers),
+        "middleware": middleware,
         "router": has_router,
         "bridges": len(bridges),
         "participants": len({one.participant for one in nodes}),
@@ -84,7 +86,7 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
     if hint is not None:
         problem, remedy = hint.split(": ")
         found.insert(0, Finding("problem", "ROS_DISTRO", problem, remedy))
-    if not any(hasattr(one, "middleware") for one in node.context.transports):  # not over rcl
+    if not middleware:
         found += link_findings(pairs)
         found += bridge_findings(bridges)
         # What a bridge reaches is no matter of this environment's middleware.
@@ -109,13 +111,19 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
 
 def summary(record: Mapping[str, Any], router_port: int) -> list[str]:
     """Return the summary of the network as lines of text."""
-    router = "answers" if record["router"] else "none"
+    if record["middleware"]:
+        reached = [f"Middleware: {record['middleware']} (transport rcl)"]
+    else:
+        router = "answers" if record["router"] else "none"
+        reached = [
+            f"Router on this machine (port {router_port}): {router}",
+            f"Bridges to DDS: {record['bridges'] or 'none'}",
+        ]
     return [
         f"Domain: {record['domain_id']}",
         f"Discovery range: {record['discovery_range']}",
         f"Static peers: {', '.join(record['static_peers']) or 'none'}",
-        f"Router on this machine (port {router_port}): {router}",
-        f"Bridges to DDS: {record['bridges'] or 'none'}",
+        *reached,
         f"Other processes: {record['participants']}",
         f"Nodes: {record['nodes']}",
         f"Topics: {record['topics']}",
@@ -155,6 +163,12 @@ def chosen(node: Node, names: Sequence[str]) -> tuple[list[NodeInfo], list[Endpo
 def full_names(names: Sequence[str]) -> set[str]:
     """Return the names with their leading slash."""
     return {name if name.startswith("/") else f"/{name}" for name in names}
+
+
+def middleware_of(node: Node) -> str:
+    """Return the middleware of the installed ROS 2 that the node is on; empty over Zenoh."""
+    found = (getattr(transport, "middleware", "") for transport in node.context.transports)
+    return next(filter(None, found), "")
 
 
 async def other_domains(node: Node, *, patient: bool) -> list[int]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import ctypes
 import functools
 import importlib.metadata
+import importlib.util
 import os
 import sys
 from ctypes import (
@@ -24,9 +25,12 @@ from ctypes import (
     c_uint64,
     c_void_p,
 )
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import TransportError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 __all__ = ["MessageInfo", "Rcl", "RequestId", "ServiceInfo", "load"]
 
@@ -238,18 +242,17 @@ def load() -> Rcl:
             "transport=rcl: in this process, rclpy is aionode's; a program that imports rclpy runs "
             "over DDS with ROS's own, or uses aionode's names"
         )
+    version = installed_version()
+    check_middleware(os.environ)
     try:
         from rclpy.impl.implementation_singleton import rclpy_implementation
     except ImportError as error:
+        reason = str(error).partition("\n")[0]  # rclpy's texts have several lines
         raise TransportError(
-            f"transport=rcl: rclpy is not installed in this Python ({error}); {INSTALL}"
+            f"transport=rcl: rclpy {version} cannot be imported by this Python "
+            f"{sys.version_info.major}.{sys.version_info.minor} ({reason}); use the Python that it "
+            "is built for, with its ROS 2 sourced"
         ) from error
-    version = importlib.metadata.version("rclpy")
-    if tuple(map(int, version.split(".")[:2])) < OLDEST:
-        raise TransportError(
-            f"transport=rcl: rclpy {version} is too old; it needs ROS 2 Jazzy or later (rclpy "
-            f"{'.'.join(map(str, OLDEST))})"
-        )
     if not hasattr(os, "eventfd"):
         raise TransportError("transport=rcl: it needs Linux, whose eventfds wake the event loop")
     try:
@@ -260,6 +263,43 @@ def load() -> Rcl:
             "with those of ROS 2 Jazzy and Kilted"
         ) from error
     except Exception as error:  # rclpy's own kinds, of which none is public
+        raise TransportError(middleware_problem(error)) from error
+
+
+def installed_version() -> str:
+    """Return the version of the rclpy of this Python.
+
+    Raises:
+        TransportError: there is none, or one that is too old.
+    """
+    try:
+        version = importlib.metadata.version("rclpy")
+    except importlib.metadata.PackageNotFoundError:
+        if importlib.util.find_spec("rclpy") is not None:
+            return "of unknown version"
+        raise TransportError(
+            f"transport=rcl: rclpy is not installed in this Python; {INSTALL}"
+        ) from None
+    if tuple(map(int, version.split(".")[:2])) < OLDEST:
+        raise TransportError(
+            f"transport=rcl: rclpy {version} is too old; it needs ROS 2 Jazzy or later (rclpy "
+            f"{'.'.join(map(str, OLDEST))})"
+        )
+    return version
+
+
+def check_middleware(environ: Mapping[str, str]) -> None:
+    """Check that the middleware of the environment can be loaded: if not, rcl ends the process.
+
+    Raises:
+        TransportError: it cannot.
+    """
+    name = environ.get(RMW_VARIABLE, "")
+    if not name:
+        return
+    try:
+        ctypes.CDLL(f"lib{name}.so")
+    except OSError as error:
         raise TransportError(middleware_problem(error)) from error
 
 
