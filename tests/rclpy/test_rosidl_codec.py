@@ -44,17 +44,17 @@ def test_what_is_encoded_can_be_decoded(message: Message) -> None:
     assert snapshot(to_aionode(again)) == snapshot(message)
 
 
-@pytest.mark.parametrize("cls", message_classes(), ids=lambda cls: cls.__ros_type__)
-def test_a_new_message_is_decoded_into_what_its_constructor_makes(cls: Any) -> None:
-    """Decoding goes round the constructor, and must leave the same kinds of values."""
-    fresh = type(from_aionode(cls()))()
+def test_a_new_message_is_decoded_into_what_its_constructor_makes() -> None:
+    """Decoding bypasses the constructor, and must leave values of the same types."""
+    for cls in message_classes():
+        fresh: Any = type(from_aionode(cls()))()
 
-    again = decode(type(fresh), encode(fresh))
+        again = decode(type(fresh), encode(fresh))
 
-    assert again == fresh
-    assert again._check_fields == fresh._check_fields
-    for name in fresh.get_fields_and_field_types():
-        assert type(getattr(again, name)) is type(getattr(fresh, name))
+        assert again == fresh
+        assert again._check_fields == fresh._check_fields
+        for name in fresh.get_fields_and_field_types():
+            assert type(getattr(again, name)) is type(getattr(fresh, name)), (cls, name)
 
 
 def test_a_decoded_message_shares_no_memory_with_its_data() -> None:

@@ -29,19 +29,34 @@ few = settings(
     database=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
-"""Few examples, as there are 400 classes."""
+"""Few examples, for tests that run for each of the 400 classes."""
 
-every_class = pytest.mark.parametrize("cls", CLASSES.values(), ids=CLASSES)
+many = settings(few, max_examples=EXAMPLES * 3)
+"""More examples, for tests that choose one of the classes for each."""
 
 any_class = st.sampled_from(list(CLASSES.values()))
 
 
-@every_class
-@few
-@given(data=st.data())
+@many
+@given(cls=any_class, data=st.data())
 def test_decode_undoes_encode(cls: type[Message], data: st.DataObject) -> None:
     """Every value survives the wire, from whatever memory it is read and by either decoder."""
-    message = data.draw(messages(cls))
+    check_round_trip(data.draw(messages(cls)))
+
+
+@pytest.mark.stress
+@pytest.mark.parametrize("cls", CLASSES.values(), ids=CLASSES)
+@few
+@given(data=st.data())
+def test_decode_undoes_encode_for_every_class(cls: type[Message], data: st.DataObject) -> None:
+    """No class depends on being chosen by chance."""
+    check_round_trip(data.draw(messages(cls)))
+    check_pieces(data.draw(messages(cls, nan=True)), encoder.LARGE)
+
+
+def check_round_trip(message: Message) -> None:
+    """Encode a message, and decode it in each way."""
+    cls = type(message)
     encoded = cdr.encode(message)
 
     assert cdr.decode(cls, encoded) == message
@@ -50,13 +65,25 @@ def test_decode_undoes_encode(cls: type[Message], data: st.DataObject) -> None:
     check(cdr.decode(cls, encoded))
 
 
-@every_class
-@few
-@given(data=st.data())
-def test_the_pieces_of_a_message_are_its_bytes(cls: type[Message], data: st.DataObject) -> None:
-    """Put together they are what `encode` returns, however small a piece stands for itself."""
-    message = data.draw(messages(cls, nan=True))
-    least = data.draw(st.sampled_from([1, 2, 8, encoder.LARGE]))
+def test_every_class_survives_the_wire_with_its_defaults() -> None:
+    """So that each class is covered by every run."""
+    for cls in CLASSES.values():
+        check_round_trip(cls())
+        check_pieces(cls(), 1)
+
+
+@many
+@given(cls=any_class, data=st.data(), least=st.sampled_from([1, 2, 8, encoder.LARGE]))
+def test_the_pieces_of_a_message_are_its_bytes(
+    cls: type[Message], data: st.DataObject, least: int
+) -> None:
+    """Joined they are what `encode` returns, whatever size makes a value a piece of its own."""
+    check_pieces(data.draw(messages(cls, nan=True)), least)
+
+
+def check_pieces(message: Message, least: int) -> None:
+    """Encode a message in pieces, each array of `least` bytes or more being one."""
+    cls = type(message)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(encoder, "LARGE", least)
@@ -68,23 +95,23 @@ def test_the_pieces_of_a_message_are_its_bytes(cls: type[Message], data: st.Data
     assert cdr.has_views(cls) or all(isinstance(one, bytes) for one in pieces)
 
 
-@every_class
-def test_usual_messages_take_the_fast_way(cls: type[Message]) -> None:
-    """The generated functions do all that they can: else a codec would be right, and slow."""
+def test_usual_messages_take_the_fast_way() -> None:
+    """Generated functions encode and decode them: with the fallback the codec would be slow."""
 
     def slow(_: Any) -> Any:
         raise AssertionError
 
-    message = cls()
-    encoded = generate_encoder(cls, slow, JOIN)(message)
+    for cls in CLASSES.values():
+        message = cls()
+        encoded = generate_encoder(cls, slow, JOIN)(message)
 
-    assert b"".join(generate_encoder(cls, slow, views)(message)) == encoded
-    assert generate_decoder(cls, slow, slow)(encoded) == message
-    assert generate_decoder(cls, slow)(memoryview(encoded)) == message
+        assert b"".join(generate_encoder(cls, slow, views)(message)) == encoded
+        assert generate_decoder(cls, slow, slow)(encoded) == message
+        assert generate_decoder(cls, slow)(memoryview(encoded)) == message
 
 
 @given(cls=any_class, data=st.data())
-@settings(few, max_examples=EXAMPLES)
+@many
 def test_what_was_decoded_is_encoded_the_same(cls: type[Message], data: st.DataObject) -> None:
     """The bytes are the same again: NaN and -0.0, which compare badly, survive too."""
     encoded = cdr.encode(data.draw(messages(cls, nan=True)))
@@ -93,7 +120,7 @@ def test_what_was_decoded_is_encoded_the_same(cls: type[Message], data: st.DataO
 
 
 @given(cls=any_class, data=st.data())
-@settings(few, max_examples=3 * EXAMPLES)
+@many
 def test_any_truncation_is_a_decode_error(cls: type[Message], data: st.DataObject) -> None:
     """A short read raises DecodeError and nothing else: the last byte is always needed."""
     whole = cdr.encode(data.draw(messages(cls)))
@@ -107,18 +134,17 @@ def test_any_truncation_is_a_decode_error(cls: type[Message], data: st.DataObjec
         cdr.decode(cls, memoryview(cut))
 
 
-@every_class
-def test_a_message_cut_anywhere_is_a_decode_error(cls: type[Message]) -> None:
-    """At each of the first places, for every class as it is by default."""
-    whole = cdr.encode(cls())
-
-    for size in range(min(len(whole), 200)):
-        with pytest.raises(DecodeError):
-            cdr.decode(cls, whole[:size])
+def test_a_message_cut_anywhere_is_a_decode_error() -> None:
+    """At each of the first places, for every class with its default values."""
+    for cls in CLASSES.values():
+        whole = cdr.encode(cls())
+        for size in range(min(len(whole), 200)):
+            with pytest.raises(DecodeError):
+                cdr.decode(cls, whole[:size])
 
 
 @given(cls=any_class, data=st.data())
-@settings(few, max_examples=3 * EXAMPLES)
+@many
 def test_corrupted_data_is_decoded_as_it_stands_or_refused(
     cls: type[Message], data: st.DataObject
 ) -> None:
@@ -142,7 +168,7 @@ def outcome(decode: Any, cls: type[Message], data: Any) -> bytes | str:
 
 
 @given(cls=any_class, other=any_class, data=st.data())
-@settings(few, max_examples=EXAMPLES)
+@many
 def test_bytes_of_another_type_are_no_surprise(
     cls: type[Message], other: type[Message], data: st.DataObject
 ) -> None:
@@ -152,9 +178,16 @@ def test_bytes_of_another_type_are_no_surprise(
     outcome(cdr.decode, cls, encoded)
 
 
-@every_class
-def test_no_length_makes_more_memory_than_the_data_could_fill(cls: type[Message]) -> None:
+def test_no_length_makes_more_memory_than_the_data_could_fill() -> None:
     """Every aligned word is in turn the largest length: it is believed only if bytes follow."""
+    for cls in CLASSES.values():
+        peak, usual = peaks_of_damaged(cls)
+
+        assert peak < 3 * usual + 100_000, cls
+
+
+def peaks_of_damaged(cls: type[Message]) -> tuple[int, int]:
+    """Return the peak of memory in bytes with wrong lengths, and that with the right ones."""
     encoded = cdr.encode(cls())
     words = range(4, min(len(encoded) - 3, 64), 4)
     outcome(cdr.decode, cls, encoded)  # what is made once for a type does not count
@@ -171,4 +204,4 @@ def test_no_length_makes_more_memory_than_the_data_could_fill(cls: type[Message]
         _, peak = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()
-    assert peak < 3 * usual + 100_000
+    return peak, usual

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_typestore
@@ -15,7 +15,7 @@ from aionode.message import DTYPES, FieldType, Message, fields, type_name
 from aionode.wire import cdr
 from aionode.wire.cdr._fallback_decoder import decode_slowly
 from tests.support.strategies import message_classes, messages
-from tests.wire.cdr.test_properties import EXAMPLES, few
+from tests.wire.cdr.test_properties import few, many
 
 if TYPE_CHECKING:
     from rosbags.interfaces.typing import Fielddefs, FieldDesc
@@ -34,6 +34,8 @@ def has_wide_strings(cls: type[Message]) -> bool:
 
 
 CLASSES = {name: cls for name, cls in message_classes().items() if not has_wide_strings(cls)}
+
+any_class = st.sampled_from(list(CLASSES.values()))
 
 
 def definition(cls: type[Message]) -> Fielddefs:
@@ -102,12 +104,33 @@ def same_value(kind: FieldType, ours: Any, theirs: Any) -> bool:
     return bool(ours == theirs)
 
 
+@many
+@given(cls=any_class, data=st.data())
+def test_rosbags_and_aionode_read_each_other(cls: type[Message], data: st.DataObject) -> None:
+    """The bytes are the same, and what one wrote the other understands."""
+    check_both_ways(data.draw(messages(cls)))
+
+
+@pytest.mark.stress
 @pytest.mark.parametrize("cls", CLASSES.values(), ids=CLASSES)
 @few
 @given(data=st.data())
-def test_rosbags_and_aionode_read_each_other(cls: type[Message], data: st.DataObject) -> None:
-    """The bytes are the same, and what one wrote the other understands."""
-    message = data.draw(messages(cls))
+def test_rosbags_and_aionode_read_each_other_in_every_class(
+    cls: type[Message], data: st.DataObject
+) -> None:
+    """No class depends on being chosen by chance."""
+    check_both_ways(data.draw(messages(cls)))
+
+
+def test_rosbags_and_aionode_read_the_defaults_of_every_class() -> None:
+    """So that each class is compared in every run."""
+    for cls in CLASSES.values():
+        check_both_ways(cls())
+
+
+def check_both_ways(message: Message) -> None:
+    """Encode a message with either library, and compare what the other makes of it."""
+    cls = type(message)
     name = type_name(cls)
     encoded = cdr.encode(message)
     theirs = STORE.deserialize_cdr(encoded, name)
@@ -117,8 +140,8 @@ def test_rosbags_and_aionode_read_each_other(cls: type[Message], data: st.DataOb
     assert bytes(STORE.serialize_cdr(to_rosbags(cls, message), name)) == encoded
 
 
-@given(data=st.data(), cls=st.sampled_from(list(CLASSES.values())))
-@settings(few, max_examples=2 * EXAMPLES)
+@many
+@given(data=st.data(), cls=any_class)
 def test_big_endian_data_is_read_into_native_values(
     data: st.DataObject, cls: type[Message]
 ) -> None:
