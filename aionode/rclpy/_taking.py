@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.rclpy._impl.errors import InvalidHandle, TimerCancelledError
 from aionode.rclpy.subscription import Subscription
-from aionode.rclpy.timer import TimerInfo
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -51,8 +50,7 @@ def take_timer(executor: ExecutorLike, timer: Any) -> Callable[[], Any] | None:
     name = timer.info_argument(callback)
     if name is None:
         return partial(run, callback)
-    info = TimerInfo(**called, clock_type=timer.clock.clock_type)
-    return partial(run, partial(callback, **{name: info}))
+    return partial(run, partial(callback, **{name: timer.info(called)}))
 
 
 def take_subscription(executor: ExecutorLike, subscription: Any) -> Callable[[], Any] | None:

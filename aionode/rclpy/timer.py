@@ -133,6 +133,10 @@ class Timer(HandleOwner[TimerHandle]):
         with self._handle:
             return self._handle.time_until_next_call()
 
+    def info(self, called: dict[str, int]) -> TimerInfo:
+        """Return what its handle has said of a call, in the timer's clock."""
+        return TimerInfo(**called, clock_type=self._clock.clock_type)
+
     def info_argument(self, callback: Callable[..., object]) -> str | None:
         """Return the parameter of `callback` that takes a `TimerInfo`, or None."""
         if self._inspected is None or self._inspected[0] is not callback:

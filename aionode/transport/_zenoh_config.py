@@ -55,6 +55,9 @@ EVERYWHERE: Final = "0.0.0.0"  # noqa: S104  # only on request: ROS_AUTOMATIC_DI
 
 MAX_DOMAIN_ID: Final = 2**32 - 1
 
+FLUSH_S: Final = 2.0
+"""How long the end of a context waits for reliable messages, while their readers make progress."""
+
 BLOCK_US: Final = 7_000_000
 """How long a blocking send waits for a peer, in microseconds, before the connection is ended.
 

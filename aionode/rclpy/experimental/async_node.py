@@ -18,7 +18,7 @@ from aionode.rclpy.publisher import Publisher
 from aionode.rclpy.qos import qos_profile_services_default
 from aionode.rclpy.service import Service
 from aionode.rclpy.subscription import Subscription
-from aionode.rclpy.timer import Timer, TimerInfo
+from aionode.rclpy.timer import Timer
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -366,7 +366,7 @@ class AsyncNode(Node):
         try:
             inspect.signature(timer.callback).bind()  # type: ignore[arg-type] # it has one
         except TypeError:
-            return (TimerInfo(**info, clock_type=timer.clock.clock_type),)
+            return (timer.info(info),)
         return ()
 
     async def _answer(self, service: Any, request: Any, header: Any) -> None:

@@ -9,9 +9,8 @@ import zenoh
 
 from aionode.message import fields
 from aionode.qos import DurabilityPolicy, ReliabilityPolicy
-from aionode.transport._zenoh_config import BLOCK_US
+from aionode.transport._zenoh_config import BLOCK_US, FLUSH_S
 from aionode.transport.base import SampleInfo
-from aionode.transport.zenoh._session_state import FLUSH_S
 from aionode.wire._attachment import unpack_fields
 
 if TYPE_CHECKING:

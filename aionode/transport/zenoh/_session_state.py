@@ -17,6 +17,7 @@ from aionode.graph import EndpointKind
 from aionode.transport._content_filters import ContentFilters
 from aionode.transport._loop_waker import LoopWaker, ThreadsafeQueue
 from aionode.transport._send_thread import SendThread
+from aionode.transport._zenoh_config import FLUSH_S
 from aionode.transport.base import Registration
 from aionode.transport.zenoh._acknowledgements import Acknowledgements
 from aionode.transport.zenoh._assertions import Assertions
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from aionode.clock import TimeBase
     from aionode.graph import EndpointInfo, Graph, NodeInfo
 
-__all__ = ["FLUSH_S", "Declaration", "EndpointNames", "SessionState"]
+__all__ = ["Declaration", "EndpointNames", "SessionState"]
 
 T = TypeVar("T")
 
@@ -40,9 +41,6 @@ logger = logging.getLogger("aionode.transport.zenoh")
 BURST_BYTES: Final = 256 * 1024
 BURST_NS: Final = 10_000_000
 """So much in so many nanoseconds reaches every peer that is alive: a quarter of the queue."""
-
-FLUSH_S: Final = 2.0
-"""How long `flush` waits for reliable messages, while their readers make progress."""
 
 BULK_FLUSH_S: Final = 0.15
 """How long `flush` waits for large messages, which may be dropped, and for single contexts."""
