@@ -496,12 +496,14 @@ class LinkManager:
             raise FrameError(f"unexpected {type(control).__name__.upper()} on a link")
 
     def _on_publisher(self, connection: Connection, control: Opened | Gone) -> None:
+        if isinstance(control, Opened):
+            opened = connection.receivers.get(control.publisher, control.subscription)
+            if opened is not None:
+                opened.opened(control.sequence)
+            return
         for receiver in connection.receivers.of(control.publisher):
-            if isinstance(control, Gone):
-                receiver.gone()
-                connection.receivers.remove(control.publisher, receiver)
-            elif receiver.gid == control.subscription:
-                receiver.opened(control.sequence)
+            receiver.gone()
+            connection.receivers.remove(control.publisher, receiver)
 
     def _on_credit(self, connection: Connection, credit: Credit) -> None:
         writer = self.writers.get(credit.publisher)
