@@ -164,12 +164,12 @@ async def test_a_link_to_many_endpoints_looks_at_each_of_them_once() -> None:
         numbers = Counting(nodes)
         await numbers.until_linked()
         links, link = manager_of(nodes.b), link_of(nodes.b)
-        looks = []
+        looks: list[int] = []
         for count in (40, 80):
             for number in range(count // 2):
                 nodes.a.create_publisher(Int32, f"t{count}_{number}", 10)
                 nodes.b.create_subscription(Int32, f"t{count}_{number}", lambda _: None, 10)
-            while len(link.receivers.handlers) < 1 + sum((20, 40)[: len(looks) + 1]):
+            while len(link.receivers.handlers) < (61 if looks else 21):
                 await numbers.go()
             looks.append(calls_of(lambda: links._open_publishers(link)))
 
