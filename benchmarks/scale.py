@@ -7,10 +7,11 @@ half as many publishers and subscriptions as it has topics. Each size runs in a 
 so that the memory of one is not what another gave back. Wake-ups are turns of the event loop in one
 second in which nothing happens, beyond those that end the second itself.
 
-Then publishers with as many subscriptions in another process, over links and over Zenoh, and many
-processes that start at once. Each row says how its cost has grown beside the row before, and what
-is missing: in the graph, on the route, or in the answer of ``aionode topic list``. The program
-fails if anything is.
+Then publishers with as many subscriptions in another process, over links and over Zenoh, each with
+a topic of its own and all with one; clients that wait for services while other things change; and
+many processes that start at once, of one context or of several. Each row says how its cost has
+grown beside the row before, and what is missing: in the graph, on the route, or in the answer of
+``aionode topic list``. The program fails if anything is.
 
 Run it with ``python benchmarks/scale.py``; ``--quick`` leaves out the largest size. It prints a
 table and writes ``scale.json`` to ``benchmarks/results/``.
@@ -222,17 +223,17 @@ def main() -> None:
     print_table(rows)
     options.results.mkdir(parents=True, exist_ok=True)
     path = options.results / "scale.json"
-    pairs, processes = measure_transports(quick=options.quick)
+    tables = measure_transports(quick=options.quick)
     result = {
-        "nodes": [asdict(row) for row in rows],
-        "pairs": [asdict(row) for row in pairs],
-        "processes": [asdict(row) for row in processes],
+        name: [asdict(row) for row in table] for name, table in {"nodes": rows, **tables}.items()
     }
     path.write_text(json.dumps(result, indent=2), encoding="utf-8")
     print(f"Written: {path}")
-    missing = [row.missing for row in pairs] + [row.missing for row in processes]
-    if any(missing):
-        sys.exit(f"incomplete: {'; '.join(filter(None, missing))}")
+    missing = [
+        f"{name}: {row.missing}" for name, table in tables.items() for row in table if row.missing
+    ]
+    if missing:
+        sys.exit(f"incomplete: {'; '.join(missing)}")
 
 
 if __name__ == "__main__":

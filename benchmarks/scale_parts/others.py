@@ -1,4 +1,4 @@
-"""One other process of `scale.py`: subscriptions, or a node that counts the nodes it knows.
+"""One other process of `scale.py`: subscriptions, or nodes that count the nodes they know.
 
 It reads commands from its standard input, one a line, and answers each with one line of JSON.
 """
@@ -9,6 +9,7 @@ import asyncio
 import json
 import sys
 import time
+from contextlib import AsyncExitStack
 from typing import Any
 
 from aionode import Context, Node
@@ -24,28 +25,43 @@ async def pause(number: int) -> None:
         await asyncio.sleep(0)
 
 
-async def serve(name: str, *, link: bool) -> None:
-    """Do what the commands say."""
+def found(node: Node) -> list[int]:
+    """Return how many nodes a node knows, and with how many contexts its own is linked."""
+    by_link: Any = next(t for t in node.context.transports if hasattr(t, "manager"))
+    return [len(node.get_node_names()), len(by_link.manager.links)]
+
+
+async def serve(name: str, contexts: int, *, link: bool) -> None:
+    """Do what the commands say, in so many contexts; endpoints are in the first one."""
     loop = asyncio.get_running_loop()
-    async with Context(link=link) as context, Node(name, context=context) as node:
+    async with AsyncExitStack() as stack:
+        nodes = []
+        for number in range(contexts):
+            context = await stack.enter_async_context(Context(link=link))
+            node = Node(f"{name}_{number}", context=context)
+            nodes.append(await stack.enter_async_context(node))
+        node = nodes[0]
         node.create_subscription(String, "warm_up", lambda _: None, 10)
         made: list[Any] = []
         say("ready")
         while words := (await loop.run_in_executor(None, sys.stdin.readline)).split():
-            if words[0] == "make":
+            if words[0] in ("make", "crowd"):
                 for number in range(int(words[1])):
-                    made.append(node.create_subscription(String, f"t{number}", lambda _: None, 10))
+                    topic = "crowd" if words[0] == "crowd" else f"t{number}"
+                    made.append(node.create_subscription(String, topic, lambda _: None, 10))
                     await pause(number)
             elif words[0] == "destroy":
                 for number, subscription in enumerate(made):
                     subscription.destroy()
                     await pause(number)
             elif words[0] == "join":
-                made.append(node.create_publisher(String, "everyone", 10))
-                made.append(node.create_subscription(String, "everyone", lambda _: None, 10))
+                for each in nodes:
+                    made.append(each.create_publisher(String, "everyone", 10))
+                    made.append(each.create_subscription(String, "everyone", lambda _: None, 10))
             if words[0] == "found":
-                by_link: Any = next(t for t in context.transports if hasattr(t, "manager"))
-                say([len(node.get_node_names()), len(by_link.manager.links)])
+                each_found = [found(each) for each in nodes]
+                counts = [min(counts) for counts in zip(*each_found, strict=True)]
+                say([*counts, time.process_time()])
             else:
                 say({"cpu_s": time.process_time(), "threads": threads()})
 
@@ -59,10 +75,21 @@ def threads() -> int:
         return 0
 
 
+def raise_limit() -> None:
+    """Allow as many descriptors as the system does: a context has two for each other one."""
+    try:
+        import resource
+    except ImportError:  # Windows
+        return
+    _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
+
+
 def say(value: object) -> None:
     """Answer."""
     print(json.dumps(value), flush=True)
 
 
 if __name__ == "__main__":
-    asyncio.run(serve(sys.argv[1], link=sys.argv[2] == "link"))
+    raise_limit()
+    asyncio.run(serve(sys.argv[1], int(sys.argv[3]), link=sys.argv[2] == "link"))

@@ -9,20 +9,32 @@ import subprocess
 import sys
 import time
 from contextlib import asynccontextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode import Context, Node
 from aionode.interfaces.std_msgs.msg import String
+from aionode.interfaces.std_srvs.srv import Trigger
+from aionode.testing import settle
 from benchmarks.scale_parts.others import pause
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Callable
+    from collections.abc import AsyncIterator, Callable, Sequence
 
 PAIRS: Final = (100, 1000, 3000)
-PROCESSES: Final = (3, 10, 30)
-WAIT_S: Final = 30.0
+CROWDS: Final = (30, 100, 300)
+"""How many publishers and subscriptions of one topic."""
+
+WAITERS: Final = (100, 300, 1000)
+PROCESSES: Final = ((3, 1), (10, 1), (30, 1), (5, 5), (10, 10), (100, 1))
+"""How many processes, and how many contexts in each."""
+
+CHANGES: Final = 100
+"""How many changes of the graph are measured."""
+
+WAIT_S: Final = 60.0
 """How long everything may take to be known before a row is incomplete."""
 
 
@@ -31,13 +43,15 @@ class PairsRow:
     """What publishers here cost with as many subscriptions in another process.
 
     CPU is that of both processes with Zenoh's threads, for each pair. `growth` is the cost beside
-    that of the row before.
+    that of the row before, and `hand_over_ms` what passes after all are matched until all have
+    their route.
     """
 
     route: str
     pairs: int
     make_cpu_ms: float
     make_ms: float
+    hand_over_ms: float
     destroy_cpu_ms: float
     threads: int
     growth: float
@@ -45,14 +59,42 @@ class PairsRow:
 
 
 @dataclass(frozen=True)
-class ProcessesRow:
-    """How long many processes take that start at once.
+class CrowdRow:
+    """What publishers here cost with as many subscriptions to their topic in another process.
 
-    From the start of the last one until each knows the nodes of all, and is linked with all.
+    CPU of both processes, for each publisher and subscription that are matched, which is the square
+    of their number.
+    """
+
+    route: str
+    endpoints: int
+    make_cpu_us: float
+    growth: float
+    missing: str
+
+
+@dataclass(frozen=True)
+class WaitersRow:
+    """What CPU a change of the graph costs while clients wait for services of other names."""
+
+    waiters: int
+    change_cpu_us: float
+    growth: float
+    missing: str
+
+
+@dataclass(frozen=True)
+class ProcessesRow:
+    """How long many contexts take whose processes start at once.
+
+    From the start of the last one until each knows the nodes of all, and is linked with all. CPU is
+    that of all of them since their start, for each; their start itself is most of it.
     """
 
     processes: int
+    contexts: int
     known_s: float
+    cpu_s: float
     growth: float
     missing: str
 
@@ -76,12 +118,13 @@ class Other:
 
 
 @asynccontextmanager
-async def other(name: str, route: str) -> AsyncIterator[Other]:
+async def other(name: str, route: str, contexts: int = 1) -> AsyncIterator[Other]:
     """Run another process meanwhile."""
     program = str(Path(__file__).with_name("others.py"))
     process = await asyncio.create_subprocess_exec(
-        sys.executable, program, name, route, stdin=subprocess.PIPE, stdout=subprocess.PIPE
-    )
+        sys.executable, program, name, route, str(contexts),
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+    )  # fmt: skip
     try:
         yield Other(process)
     finally:
@@ -102,9 +145,9 @@ async def until(count: Callable[[], int], wanted: int) -> int:
     return found
 
 
-def lacking(what: str, found: int, wanted: int) -> str:
+def lacking(what: str, found: float, wanted: int) -> str:
     """Return what is incomplete, in words; nothing if nothing is."""
-    return "" if found >= wanted else f"{what}: {found} of {wanted}"
+    return "" if found >= wanted else f"{what}: {found:g} of {wanted}"
 
 
 async def listed_topics(count: int) -> str:
@@ -139,10 +182,12 @@ async def measure_pairs(route: str, count: int, before: PairsRow | None) -> Pair
         matched = await until(
             lambda: sum(publisher.get_subscription_count() for publisher in publishers), count
         )
+        matched_s = time.perf_counter()
         routes = await until(
             lambda: sum(route in publisher.stats.routes.values() for publisher in publishers), count
         )
         make_s = time.perf_counter() - began
+        hand_over_s = time.perf_counter() - matched_s
         made = await hearer.ask("time")
         make_cpu_s = time.process_time() - start_s[0] + made["cpu_s"] - start_s[1]
         missing = [
@@ -162,6 +207,7 @@ async def measure_pairs(route: str, count: int, before: PairsRow | None) -> Pair
             count,
             make_cpu_ms,
             round(make_s / count * 1e3, 3),
+            round(hand_over_s / count * 1e3, 3),
             round(cpu_s / count * 1e3, 3),
             made["threads"],
             round(make_cpu_ms / before.make_cpu_ms, 2) if before is not None else 1.0,
@@ -169,71 +215,135 @@ async def measure_pairs(route: str, count: int, before: PairsRow | None) -> Pair
         )
 
 
-async def measure_processes(count: int, before: ProcessesRow | None) -> ProcessesRow:
-    """Return how long `count` processes take that start at once."""
+async def measure_crowd(route: str, count: int, before: CrowdRow | None) -> CrowdRow:
+    """Return what `count` publishers and subscriptions of one topic cost."""
+    async with (
+        other("hearer", route) as hearer,
+        Context(link=route == "link") as context,
+        Node("sayer", context=context) as node,
+    ):
+        await hearer.answer()
+        warm_up = node.create_publisher(String, "warm_up", 10)
+        await warm_up.wait_for_subscribers()
+        start_s = time.process_time(), (await hearer.ask("time"))["cpu_s"]
+        publishers = [node.create_publisher(String, "crowd", 10) for _ in range(count)]
+        await hearer.ask(f"crowd {count}")
+        matched = await until(publishers[-1].get_subscription_count, count)
+        made = await hearer.ask("time")
+        cpu_s = time.process_time() - start_s[0] + made["cpu_s"] - start_s[1]
+        routed = sum(route in way for way in publishers[-1].stats.routes.values())
+        cpu_us = round(cpu_s / count**2 * 1e6, 1)
+        return CrowdRow(
+            route,
+            count,
+            cpu_us,
+            round(cpu_us / before.make_cpu_us, 2) if before is not None else 1.0,
+            lacking("graph", matched, count) if route == "zenoh" else lacking("link", routed, 1),
+        )
+
+
+def trigger(_: Any, response: Any) -> Any:
+    """Answer with what there is."""
+    return response
+
+
+async def measure_waiters(count: int, before: WaitersRow | None) -> WaitersRow:
+    """Return what a change of the graph costs beside `count` clients that wait."""
+    async with Context(transport="local") as context, Node("n", context=context) as node:
+        clients = [node.create_client(Trigger, f"wanted_{number}") for number in range(count)]
+        async with asyncio.TaskGroup() as tasks:
+            waits = [tasks.create_task(client.wait_for_service()) for client in clients]
+            await settle()
+            began = time.process_time()
+            for number in range(CHANGES):
+                node.create_publisher(String, f"t{number}", 10)
+                await asyncio.sleep(0)
+            change_us = round((time.process_time() - began) / CHANGES * 1e6, 1)
+            for client in clients:
+                node.create_service(Trigger, client.srv_name, trigger)
+            await asyncio.wait(waits, timeout=WAIT_S)
+            ready = sum(wait.done() for wait in waits)
+            for wait in waits:
+                wait.cancel()
+        return WaitersRow(
+            count,
+            change_us,
+            round(change_us / before.change_cpu_us, 2) if before is not None else 1.0,
+            lacking("services found", ready, count),
+        )
+
+
+async def measure_processes(size: tuple[int, int], before: ProcessesRow | None) -> ProcessesRow:
+    """Return how long processes that start at once take: their number, and contexts in each."""
+    count, contexts = size
+    everyone = asyncio.Barrier(count)
+    wanted = count * contexts
     async with asyncio.TaskGroup() as tasks:
 
-        async def one(number: int) -> tuple[float, float, list[int]]:
-            async with other(f"node_{number}", "link") as process:
+        async def one(number: int) -> tuple[float, float, list[float]]:
+            async with other(f"node_{number}", "link", contexts) as process:
                 await process.answer()
                 await process.ask("join")
                 started = time.perf_counter()
-                while (found := await process.ask("found")) != [count, count - 1]:
+                while (found := await process.ask("found"))[:2] != [wanted, wanted - 1]:
                     if time.perf_counter() > started + WAIT_S:
                         break
-                    await asyncio.sleep(0.05)
+                    await asyncio.sleep(0.2)
                 known = time.perf_counter()
                 await everyone.wait()  # a process that leaves would be missing in the others
                 return started, known, found
 
-        everyone = asyncio.Barrier(count)
         running = [tasks.create_task(one(number)) for number in range(count)]
     results = [task.result() for task in running]
     last_started = max(started for started, _, _ in results)
     known_s = round(max(known for _, known, _ in results) - last_started, 2)
     return ProcessesRow(
         count,
+        wanted,
         known_s,
+        round(sum(found[2] for *_, found in results) / wanted, 2),
         round(known_s / max(before.known_s, 0.01), 2) if before is not None else 1.0,
         "; ".join(
             filter(
                 None,
                 (
-                    lacking("nodes", min(found[0] for *_, found in results), count),
-                    lacking("links", min(found[1] for *_, found in results), count - 1),
+                    lacking("nodes", min(found[0] for *_, found in results), wanted),
+                    lacking("links", min(found[1] for *_, found in results), wanted - 1),
                 ),
             )
         ),
     )
 
 
-def measure_transports(*, quick: bool) -> tuple[list[PairsRow], list[ProcessesRow]]:
-    """Measure, and print each row when it is there."""
+def print_row(row: Any, *, header: bool) -> None:
+    """Print a row, and before the first one the names of its columns."""
+    columns = {name: value for name, value in asdict(row).items() if name != "missing"}
+    if header:
+        print("\n" + " ".join(f"{name:>15}" for name in columns))
+    print(
+        " ".join(f"{value:>15}" for value in columns.values())
+        + (row.missing and f"  INCOMPLETE: {row.missing}"),
+        flush=True,
+    )
+
+
+def measure_transports(*, quick: bool) -> dict[str, list[Any]]:
+    """Measure, print each row when it is there, and return the rows of each table."""
     port = 29_000 + os.getpid() % 300 * 3  # seldom those of another run
     os.environ["AIONODE_MEETING_PORTS"] = f"{port},{port + 1},{port + 2}"
-    pairs: list[PairsRow] = []
-    print(
-        f"\n{'route':>6} {'pairs':>6} {'make CPU':>11} {'make':>11} {'destroy CPU':>11} "
-        f"{'threads':>8} {'growth':>7}"
-    )
+    tables: dict[str, list[Any]] = {}
+
+    def measure(name: str, sizes: Sequence[Any], work: Callable[[Any, Any], Any]) -> None:
+        rows: list[Any] = []
+        for size in sizes[:-1] if quick else sizes:
+            rows.append(asyncio.run(work(size, rows[-1] if rows else None)))
+            print_row(rows[-1], header=len(rows) == 1)
+        tables[name] = rows
+
     for route in ("link", "zenoh"):
-        before = None
-        for count in PAIRS[:-1] if quick else PAIRS:
-            row = before = asyncio.run(measure_pairs(route, count, before))
-            pairs.append(row)
-            print(
-                f"{row.route:>6} {row.pairs:>6} {row.make_cpu_ms:8.3f} ms {row.make_ms:8.3f} ms "
-                f"{row.destroy_cpu_ms:8.3f} ms {row.threads:>8} {row.growth:>6} x"
-                f"{row.missing and '  INCOMPLETE: ' + row.missing}"
-            )
-    processes: list[ProcessesRow] = []
-    print(f"\n{'processes':>9} {'all known':>10} {'growth':>7}")
-    last = None
-    for count in PROCESSES[:-1] if quick else PROCESSES:
-        one = last = asyncio.run(measure_processes(count, last))
-        processes.append(one)
-        print(
-            f"{one.processes:>9} {one.known_s:>8} s {one.growth:>6} x"
-            f"{one.missing and '  INCOMPLETE: ' + one.missing}"
-        )
-    return pairs, processes
+        measure(f"pairs_{route}", PAIRS, partial(measure_pairs, route))
+    for route in ("link", "zenoh"):
+        measure(f"crowd_{route}", CROWDS, partial(measure_crowd, route))
+    measure("waiters", WAITERS, measure_waiters)
+    measure("processes", PROCESSES, measure_processes)
+    return tables

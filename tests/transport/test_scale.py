@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import sys
+from collections import defaultdict
 from dataclasses import replace
 from functools import partial
 from statistics import median
@@ -13,12 +14,18 @@ from aionode.graph import EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
 from aionode.testing import local_context
-from tests.support.links import folder, transport_of, two_nodes
+from aionode.transport.ipc._manager import LinkManager
+from aionode.transport.ipc._protocol import Open, Opened, Switched
+from tests.support.links import Counting, folder, link_of, manager_of, transport_of, two_nodes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    import pytest
+
     from aionode.graph import EndpointInfo
+    from aionode.transport.ipc._connection import Connection
+    from aionode.transport.ipc._protocol import Control
 
 __all__ = ["folder"]  # a fixture
 
@@ -124,3 +131,46 @@ async def test_a_subscription_of_another_context_costs_the_same_beside_many() ->
 
     assert median(came[-20:]) <= median(came[10:30]) + 5
     assert median(gone[:20]) <= median(gone[-30:-10]) + 5
+
+
+async def test_handing_subscriptions_over_to_a_link_costs_the_same_beside_many(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """With 3000 endpoints of another process it took 10 to 52 s."""
+    costs: dict[type, list[int]] = defaultdict(list)
+    on_control = LinkManager.on_control
+
+    def counted(self: LinkManager, connection: Connection, control: Control) -> None:
+        cost = calls_of(lambda: on_control(self, connection, control))
+        costs[type(control)].append(cost)
+
+    async with asyncio.timeout(30), two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.until_linked()
+        monkeypatch.setattr(LinkManager, "on_control", counted)
+        nodes.a.create_publisher(Int32, "many", 10)
+        for _ in range(100):
+            nodes.b.create_subscription(Int32, "many", lambda _: None, 10)
+        while len(costs[Switched]) < 100:
+            await numbers.go()
+
+    for kind in (Open, Opened, Switched):
+        assert median(costs[kind][-20:]) <= median(costs[kind][10:30]) + 5
+
+
+async def test_a_link_to_many_endpoints_looks_at_each_of_them_once() -> None:
+    """It comes up while thousands are known already."""
+    async with asyncio.timeout(30), two_nodes() as nodes:
+        numbers = Counting(nodes)
+        await numbers.until_linked()
+        links, link = manager_of(nodes.b), link_of(nodes.b)
+        looks: list[int] = []
+        for count in (40, 80):
+            for number in range(count // 2):
+                nodes.a.create_publisher(Int32, f"t{count}_{number}", 10)
+                nodes.b.create_subscription(Int32, f"t{count}_{number}", lambda _: None, 10)
+            while len(link.receivers.handlers) < (61 if looks else 21):
+                await numbers.go()
+            looks.append(calls_of(lambda: links._open_publishers(link)))
+
+    assert looks[1] <= 3.2 * looks[0]  # 60 of them after 20

@@ -23,7 +23,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Advertisement", "Listener", "available", "host_id", "is_own_user", "socket_folder"]
 
-BACKLOG: Final = 64
+BACKLOG: Final = 1024
+"""How many contexts may dial while this one is busy, for example while many start at once."""
+
+UNIX_SOCKETS: Final = Path("/proc/net/unix")
+"""Lists the sockets of this system, or of this container, with the paths they were bound to."""
+
 CREDENTIALS: Final = struct.Struct("3i")
 
 MAX_PATH_BYTES: Final = 107
@@ -203,7 +208,15 @@ class Listener:
                 age_ns = MachineTime().system_ns() - path.lstat().st_mtime_ns
                 if age_ns > NEW_S * S_TO_NS:
                     path.unlink()
+        listed: set[str] = set()
+        with suppress(OSError):
+            listed.update(
+                Path(line.rpartition(" ")[2]).stem
+                for line in UNIX_SOCKETS.read_text(errors="replace").splitlines()
+            )
         for path in self._folder.glob("*.sock"):
+            if path.stem in listed:
+                continue  # dialling all those that live would keep them busy while many start
             probe = new_socket()
             try:
                 probe.connect(os.fspath(path))

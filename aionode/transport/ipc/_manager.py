@@ -58,10 +58,14 @@ Twice as long after each attempt that failed, up to `LAST_AGAIN_S`.
 LAST_AGAIN_S: Final = 30.0
 
 HELLO_S: Final = 5.0
-"""How long the other end of a socket may take to send its `Hello`."""
+"""How long the other end of an accepted socket may take to send its `Hello`."""
 
 MAX_OPENING: Final = 64
-"""How many sockets may be without a `Hello` at once; with one more the oldest is closed."""
+"""How many accepted sockets may be without a `Hello`; with one more the oldest is closed.
+
+A context that was dialled may take as long as it likes, as it was announced: it is busy, and takes
+what was dialled when it is not.
+"""
 
 MAX_HELD: Final = 1 << 27
 """How much of incomplete frames is held for all links together, in bytes."""
@@ -385,9 +389,11 @@ class LinkManager:
         assert self._loop is not None  # noqa: S101  # set before anything is dialled or accepted
         connection = Connection(self._loop, sock, self.pool, self)
         self._opening[connection] = participant
-        while len(self._opening) > MAX_OPENING:
-            next(iter(self._opening)).close()
-        self.later(HELLO_S, lambda: self._close_if_silent(connection))
+        if participant is None:
+            accepted = [one for one, dialled in self._opening.items() if dialled is None]
+            for one in accepted[: max(len(accepted) - MAX_OPENING, 0)]:
+                one.close()
+            self.later(HELLO_S, lambda: self._close_if_silent(connection))
         connection.send(self._hello)
 
     def _close_if_silent(self, connection: Connection) -> None:
@@ -490,12 +496,14 @@ class LinkManager:
             raise FrameError(f"unexpected {type(control).__name__.upper()} on a link")
 
     def _on_publisher(self, connection: Connection, control: Opened | Gone) -> None:
+        if isinstance(control, Opened):
+            opened = connection.receivers.get(control.publisher, control.subscription)
+            if opened is not None:
+                opened.opened(control.sequence)
+            return
         for receiver in connection.receivers.of(control.publisher):
-            if isinstance(control, Gone):
-                receiver.gone()
-                connection.receivers.remove(control.publisher, receiver)
-            elif receiver.gid == control.subscription:
-                receiver.opened(control.sequence)
+            receiver.gone()
+            connection.receivers.remove(control.publisher, receiver)
 
     def _on_credit(self, connection: Connection, credit: Credit) -> None:
         writer = self.writers.get(credit.publisher)

@@ -45,19 +45,19 @@ class ReceiverTable:
 
     def __init__(self) -> None:
         self.handlers: dict[bytes, Callable[[Data, Frame, int], None]] = {}
-        self._receivers: dict[bytes, list[Receiver]] = {}
+        # By publisher, and then by subscription.
+        self._receivers: dict[bytes, dict[bytes, Receiver]] = {}
 
     def add(self, publisher: bytes, receiver: Receiver) -> None:
         """Pass the messages of a publisher of the other process to `receiver`."""
-        receivers = self._receivers.setdefault(publisher, [])
-        receivers.append(receiver)
+        receivers = self._receivers.setdefault(publisher, {})
+        receivers[receiver.gid] = receiver
         self.handlers[publisher] = handler_for(receivers)
 
     def remove(self, publisher: bytes, receiver: Receiver) -> None:
         """Pass nothing to `receiver` any more."""
-        receivers = self._receivers.get(publisher, [])
-        if receiver in receivers:
-            receivers.remove(receiver)
+        receivers = self._receivers.get(publisher, {})
+        receivers.pop(receiver.gid, None)
         if receivers:
             self.handlers[publisher] = handler_for(receivers)
         else:
@@ -66,23 +66,31 @@ class ReceiverTable:
 
     def of(self, publisher: bytes) -> list[Receiver]:
         """Return the subscriptions here that hear a publisher over this link."""
-        return list(self._receivers.get(publisher, ()))
+        return list(self._receivers.get(publisher, {}).values())
+
+    def get(self, publisher: bytes, subscription: bytes) -> Receiver | None:
+        """Return one subscription that hears a publisher, if it does.
+
+        Of the others none is looked at, as each of many asks for each of many publishers.
+        """
+        return self._receivers.get(publisher, {}).get(subscription)
 
     def clear(self) -> list[Receiver]:
         """Remove and return all of them: the link has ended."""
-        found = [receiver for receivers in self._receivers.values() for receiver in receivers]
+        found = [receiver for many in self._receivers.values() for receiver in many.values()]
         self._receivers.clear()
         self.handlers.clear()
         return found
 
 
-def handler_for(receivers: list[Receiver]) -> Callable[[Data, Frame, int], None]:
+def handler_for(receivers: dict[bytes, Receiver]) -> Callable[[Data, Frame, int], None]:
     """Return what passes a publisher's messages to its receivers; mostly there is one."""
     if len(receivers) == 1:
-        return receivers[0].from_link
+        (only,) = receivers.values()
+        return only.from_link
 
     def take(payload: Data, frame: Frame, inline_deadline_ns: int) -> None:
-        for receiver in tuple(receivers):
+        for receiver in tuple(receivers.values()):
             receiver.from_link(payload, frame, inline_deadline_ns)
 
     return take

@@ -109,18 +109,16 @@ class IpcSendQueue:
             raise FrameError(f"more than {MAX_READERS} subscriptions of one process to {self.name}")
         reader.used = self._sent
         self.readers[gid] = reader
-        self._readers_changed()
+        self.confirmed = self.confirmed or reader.confirms
+        self._limited = self._limited or bool(reader.window)
 
     def remove(self, gid: bytes) -> None:
         """Stop sending to a subscription."""
         self.readers.pop(gid, None)
-        self._readers_changed()
-        self._confirm()
-        self.on_writable()
-
-    def _readers_changed(self) -> None:
         self.confirmed = any(reader.confirms for reader in self.readers.values())
         self._limited = any(reader.window for reader in self.readers.values())
+        self._confirm()
+        self.on_writable()
 
     def credit(self, credit: Credit) -> None:
         """Extend the window of a subscription, and forget what it has confirmed."""

@@ -6,7 +6,7 @@ import asyncio
 import json
 import logging
 import os
-import select
+import selectors
 import socket
 import threading
 from contextlib import ExitStack, closing, contextmanager, suppress
@@ -134,28 +134,23 @@ async def run_in_own_thread(work: Callable[[], T], late: Callable[[T], object] |
 
 def answering_ports(ports: Iterable[int]) -> list[int]:
     """Return those ports of this machine that accept a connection."""
-    pending: dict[int, tuple[int, socket.socket]] = {}
     answering = []
     ends_ns = perf_ns() + int(PROBE_S * 1e9)
-    try:
+    # Not select(), which takes no descriptor above 1023.
+    with ExitStack() as stack, selectors.DefaultSelector() as pending:
         for port in ports:
-            probe = socket.socket()
+            probe = stack.enter_context(socket.socket())
             probe.setblocking(False)
-            pending[probe.fileno()] = (port, probe)
             with suppress(BlockingIOError):
-                # An immediate refusal is reported by select() too.
+                # An immediate refusal is reported by the selector too.
                 probe.connect_ex((LOOPBACK, port))
-        while pending and (left_s := (ends_ns - perf_ns()) / 1e9) > 0:
-            # Windows reports a refused connection in the third list.
-            _, writable, failed = select.select([], list(pending), list(pending), left_s)
-            for fd in {*writable, *failed}:
-                port, probe = pending.pop(fd)
+            pending.register(probe, selectors.EVENT_WRITE, (port, probe))
+        while pending.get_map() and (left_s := (ends_ns - perf_ns()) / 1e9) > 0:
+            for key, _ in pending.select(left_s):
+                port, probe = key.data
+                pending.unregister(probe)
                 if probe.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR) == 0:
                     answering.append(port)
-                probe.close()
-    finally:
-        for _, probe in pending.values():
-            probe.close()
     return answering
 
 
@@ -213,18 +208,18 @@ def can_listen(address: str, port: int) -> bool:
 def speaking_ports(ports: Iterable[int]) -> set[int]:
     """Return those ports of this machine where Zenoh answers; not all, if one answers at once."""
     syn = INIT_SYN + os.urandom(16)
-    probes: dict[socket.socket, int] = {}
     speaking: set[int] = set()
-    with ExitStack() as stack:
+    with ExitStack() as stack, selectors.DefaultSelector() as probes:
         for port in ports:
             with suppress(OSError):
                 probe = socket.create_connection((LOOPBACK, port), SPEAK_S)
-                probes[stack.enter_context(probe)] = port
+                probes.register(stack.enter_context(probe), selectors.EVENT_READ, (port, probe))
                 probe.sendall(len(syn).to_bytes(2, "little") + syn)
         ends_ns = perf_ns() + int(SPEAK_S * 1e9)
-        while probes and not speaking and (left_s := (ends_ns - perf_ns()) / 1e9) > 0:
-            for probe in select.select(list(probes), [], [], left_s)[0]:
-                port = probes.pop(probe)
+        while probes.get_map() and not speaking and (left_s := (ends_ns - perf_ns()) / 1e9) > 0:
+            for key, _ in probes.select(left_s):
+                port, probe = key.data
+                probes.unregister(probe)
                 with suppress(OSError):
                     answer = probe.recv(3)
                     if len(answer) == 3 and answer[2] & KIND in (INIT, CLOSE):

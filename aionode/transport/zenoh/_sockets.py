@@ -21,9 +21,9 @@ import socket
 import struct
 import sys
 import threading
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, suppress
 from stat import S_ISSOCK
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 import zenoh
 
@@ -88,7 +88,11 @@ def sockets(known: set[Descriptor] | None = None) -> Iterator[Descriptor]:
     skipped = set() if known is None else known.copy()
     if known is not None:
         known.clear()
-    for name in os.listdir(DESCRIPTORS):  # noqa: PTH208 - in half the time
+    try:
+        names = os.listdir(DESCRIPTORS)  # noqa: PTH208 - in half the time
+    except OSError:  # the process has no descriptor left
+        return
+    for name in names:
         with suppress(OSError):  # closed meanwhile
             status = os.fstat(int(name))
             descriptor = int(name), status.st_ino
@@ -110,12 +114,17 @@ def connection(descriptor: Descriptor, stack: ExitStack) -> tuple[str, socket.so
     return None
 
 
-@contextmanager
-def connections() -> Iterator[list[tuple[str, socket.socket]]]:
-    """Yield the TCP connections of this process, each with the address of its peer."""
-    with ExitStack() as stack:
-        found = [connection(descriptor, stack) for descriptor in sockets()]
-        yield [one for one in found if one is not None and one[0]]
+def connections() -> Iterator[tuple[str, socket.socket]]:
+    """Yield the TCP connections of this process, each with the address of its peer.
+
+    One duplicate is open at a time: several threads that duplicate all sockets, and the duplicates
+    of each other, soon have all descriptors that a process may have.
+    """
+    for descriptor in sockets():
+        with ExitStack() as stack:
+            peer, one = connection(descriptor, stack) or ("", None)
+            if one is not None and peer:
+                yield peer, one
 
 
 def queued_bytes(one: socket.socket) -> int:
@@ -131,8 +140,7 @@ def queued_bytes(one: socket.socket) -> int:
 def waiting_bytes(session: zenoh.Session) -> dict[str, int]:
     """Return how many bytes wait in the socket of each peer of a session; not those with none."""
     peers = {address_of(link) for link in session.info.links()}
-    with connections() as found:
-        waiting = {peer: queued_bytes(one) for peer, one in found if peer in peers}
+    waiting = {peer: queued_bytes(one) for peer, one in connections() if peer in peers}
     return {peer: size for peer, size in waiting.items() if size}
 
 
@@ -143,14 +151,12 @@ def address_of(link: zenoh.Link) -> str:
 
 def unanswered() -> set[str]:
     """Return the peers with which Zenoh has a connection on which nothing was received."""
-    with connections() as found:
-        return {
-            peer
-            for peer, one in found
-            if one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8) == ZENOH_LINGER
-            and one.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, RECEIVED.stop)[RECEIVED]
-            == NOTHING
-        }
+    return {
+        peer
+        for peer, one in connections()
+        if one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8) == ZENOH_LINGER
+        and one.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, RECEIVED.stop)[RECEIVED] == NOTHING
+    }
 
 
 def look(session: zenoh.Session, participant: str) -> tuple[bool, int] | None:
@@ -161,14 +167,13 @@ def look(session: zenoh.Session, participant: str) -> tuple[bool, int] | None:
     if not sys.platform.startswith("linux"):
         return None
     peers = {address_of(link) for link in session.info.links() if str(link.zid) == participant}
-    with connections() as found:
-        for peer, one in found:
-            if peer in peers:
-                poll = select.poll()
-                poll.register(one, select.POLLOUT)
-                info = one.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, ACKED.stop)
-                acked = int.from_bytes(info[ACKED], sys.byteorder)
-                return bool(poll.poll(0)), acked + queued_bytes(one)
+    for peer, one in connections():
+        if peer in peers:
+            poll = select.poll()
+            poll.register(one, select.POLLOUT)
+            info = one.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, ACKED.stop)
+            acked = int.from_bytes(info[ACKED], sys.byteorder)
+            return bool(poll.poll(0)), acked + queued_bytes(one)
     return None
 
 
@@ -188,12 +193,15 @@ class SocketOptions:
         session: The session.
     """
 
+    # Of all sessions: one of ten would look at the sockets of nine others each time.
+    _lock: ClassVar = threading.Lock()
+    _searching: ClassVar = threading.Lock()
+    # The peers of connections whose options are not set yet.
+    _new: ClassVar[set[str]] = set()
+    _known: ClassVar[set[Descriptor]] = set()
+
     def __init__(self, session: zenoh.Session) -> None:
-        self._lock = threading.Lock()
         self._timer: threading.Timer | None = None
-        # The peers of connections whose options are not set yet.
-        self._new: set[str] = set()
-        self._known: set[Descriptor] = set()
         self._closed = not sys.platform.startswith("linux")
         # It exists as long as this does, which its callback holds until the session is closed.
         self._listener = session.info.declare_link_events_listener(
@@ -224,28 +232,29 @@ class SocketOptions:
 
     def _set(self) -> None:
         """Set the options of all new connections; in the thread of the timer."""
-        with self._lock:
-            self._timer = None
-            new, self._new = self._new, set()
-        for descriptor in sockets(self._known):
-            with ExitStack() as stack, suppress(OSError):  # it is lost already
-                peer, one = connection(descriptor, stack) or ("", None)
-                if one is not None and peer in new:
-                    one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
-                    limit_ms = UNREAD_MS if is_near(f"tcp/{peer}") else UNREACHABLE_MS
-                    one.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, limit_ms)
-                if one is None or peer in new:
-                    self._known.add(descriptor)
+        with self._searching:
+            with self._lock:
+                self._timer = None
+                new = self._new.copy()
+                self._new.clear()
+            for descriptor in sockets(self._known) if new else ():
+                with ExitStack() as stack, suppress(OSError):  # it is lost already
+                    peer, one = connection(descriptor, stack) or ("", None)
+                    if one is not None and peer in new:
+                        one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
+                        limit_ms = UNREAD_MS if is_near(f"tcp/{peer}") else UNREACHABLE_MS
+                        one.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, limit_ms)
+                    if one is None or peer in new:
+                        self._known.add(descriptor)
 
 
 def cut(peers: set[str]) -> None:
     """Cut the connections to some peers, named by `address_of`."""
-    with connections() as found:
-        for peer, one in found:
-            if peer in peers:
-                with suppress(OSError):  # it is lost already
-                    one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, RESET)
-                    one.shutdown(socket.SHUT_RDWR)
+    for peer, one in connections():
+        if peer in peers:
+            with suppress(OSError):  # it is lost already
+                one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, RESET)
+                one.shutdown(socket.SHUT_RDWR)
 
 
 async def cut_stuck(session: zenoh.Session) -> None:

@@ -83,6 +83,38 @@ async def test_of_many_silent_sockets_the_oldest_are_closed(folder: Path) -> Non
             assert len(manager_of(node)._opening) == manager.MAX_OPENING
 
 
+async def test_a_context_that_was_dialled_may_take_as_long_as_it_likes(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of 100 that start at once, many are busy: given up, they were dialled again much later."""
+    monkeypatch.setattr(manager, "HELLO_S", 0.0)
+    monkeypatch.setattr(manager, "MAX_OPENING", 0)
+    async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
+        links = manager_of(node)
+        with ExitStack() as stack:
+            for number in range(70):
+                busy = stack.enter_context(closing(socket.socket(socket.AF_UNIX)))
+                busy.bind(str(folder / f"{number}.sock"))
+                busy.listen()
+                links._dial(str(number))
+            accepted = stack.enter_context(closing(await dialled(folder, node.context)))
+            await until_closed(accepted)
+
+            assert len(links._opening) == 70
+
+
+def test_the_sockets_of_contexts_that_live_are_not_dialled_at_the_start(folder: Path) -> None:
+    """Of 100 that start at once, each would be dialled by all others, and have to accept that."""
+    socket_folder(os.environ)
+    living = Listener(folder, "a1")
+    try:
+        Listener(folder, "b2").close()
+
+        assert living.accept() is None
+    finally:
+        living.close()
+
+
 async def test_a_long_frame_in_place_of_the_hello_is_refused(folder: Path) -> None:
     """An unknown client must not make a process hold megabytes."""
     async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:

@@ -39,6 +39,19 @@ def test_only_ports_that_accept_a_connection_answer() -> None:
         assert answering_ports([taken, free]) == [taken]
 
 
+def test_ports_answer_in_a_process_with_more_than_1023_descriptors() -> None:
+    """Such as one of several contexts among a hundred; select() takes no higher number."""
+    with ExitStack() as stack, closing(socket.create_server(("127.0.0.1", 0))) as server:
+        try:
+            for _ in range(1024):
+                stack.callback(os.close, os.dup(server.fileno()))
+        except OSError:
+            pytest.skip("the system allows fewer descriptors")
+        port = server.getsockname()[1]
+
+        assert answering_ports([port]) == [port]
+
+
 def held(stack: ExitStack, ports: Iterable[int], *, listening: bool = True) -> None:
     """Take ports as programs that do not speak Zenoh do."""
     for port in ports:

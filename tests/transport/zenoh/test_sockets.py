@@ -7,7 +7,8 @@ import os
 import socket
 import struct
 import sys
-from contextlib import AsyncExitStack
+from contextlib import AsyncExitStack, ExitStack
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -33,13 +34,17 @@ def session_of(context: Context) -> Any:
 def lingers(session: zenoh.Session) -> list[bool]:
     """Return for each connection of a session whether closing it waits for the peer."""
     peers = {_sockets.address_of(link) for link in session.info.links()}
-    with _sockets.connections() as found:
-        options = [
-            one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8)
-            for peer, one in found
-            if peer in peers
-        ]
+    options = [
+        one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8)
+        for peer, one in _sockets.connections()
+        if peer in peers
+    ]
     return [bool(struct.unpack("ii", option)[0]) for option in options]
+
+
+def descriptors() -> int:
+    """Return how many descriptors this process has."""
+    return len(list(Path("/proc/self/fd").iterdir()))
 
 
 async def test_no_connection_waits_for_its_peer_when_it_is_closed(
@@ -93,6 +98,20 @@ def test_only_new_descriptors_are_looked_at() -> None:
         known = {each for each in known if each[0] != new.fileno()}
 
         assert [number for number, _ in _sockets.sockets(known)] == [new.fileno()]
+
+
+def test_looking_at_all_connections_opens_one_descriptor_at_a_time() -> None:
+    """Processes of ten contexts ran out of 20000: each search found the duplicates of others."""
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        listener.listen()
+        with ExitStack() as stack:
+            for _ in range(10):
+                stack.enter_context(socket.create_connection(listener.getsockname()))
+            before = descriptors()
+            most = max(descriptors() for _ in _sockets.connections())
+
+    assert most == before + 1
 
 
 def test_a_descriptor_whose_number_is_used_again_is_new() -> None:
