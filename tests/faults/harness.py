@@ -332,7 +332,8 @@ class Stage:
             for child in living
             for hear in child.role.hear
             for sender in living
-            if sender is not child
+            # Two ROS 2 nodes find each other by Zenoh alone: that it may not is no fault of ours.
+            if sender is not child and not (sender.role.ros and child.role.ros)
             for publish in sender.role.publish
             if publish.topic == hear.topic and not publish.count
         ]
