@@ -31,15 +31,24 @@ def session_of(context: Context) -> Any:
     return transport.session_state.session
 
 
-def lingers(session: zenoh.Session) -> list[bool]:
-    """Return for each connection of a session whether closing it waits for the peer."""
+def options(session: zenoh.Session) -> list[tuple[bool, int]]:
+    """Return whether closing each connection waits for its peer, and its time limit in ms."""
     peers = {_sockets.address_of(link) for link in session.info.links()}
-    options = [
-        one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8)
+    return [
+        (
+            bool(struct.unpack("ii", one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8))[0]),
+            one.getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT),
+        )
         for peer, one in _sockets.connections()
         if peer in peers
     ]
-    return [bool(struct.unpack("ii", option)[0]) for option in options]
+
+
+async def until_set(session: zenoh.Session, wanted: tuple[bool, int]) -> None:
+    """Wait until all connections of a session have the wanted options."""
+    async with asyncio.timeout(20):
+        while set(options(session)) != {wanted}:
+            await checkpoint()
 
 
 def descriptors() -> int:
@@ -54,19 +63,29 @@ async def test_no_connection_waits_for_its_peer_when_it_is_closed(
     monkeypatch.setattr(_sockets, "SETTLE_S", 0.0)
     async with two_contexts() as both:
         for context in both:
-            async with asyncio.timeout(20):
-                while not (found := lingers(session_of(context))) or any(found):
-                    await checkpoint()
+            await until_set(session_of(context), (False, _sockets.UNREAD_MS))
+
+
+@pytest.mark.parametrize(("near", "limit_ms"), [(True, 7_000), (False, 5_000)])
+async def test_a_connection_whose_peer_reads_nothing_is_given_up_before_its_lease_ends(
+    near: bool, limit_ms: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Beside a thread that waited for it, Zenoh could not end it, and kept all others waiting."""
+    monkeypatch.setattr(_sockets, "SETTLE_S", 0.0)
+    monkeypatch.setattr(_sockets, "is_near", lambda _: near)
+    async with two_contexts() as both:
+        for context in both:
+            await until_set(session_of(context), (False, limit_ms))
 
 
 async def test_a_closed_context_looks_for_sockets_no_more() -> None:
     """A timer that is left would hold the closed session."""
     async with two_contexts() as both:
         transports: list[Any] = [context.transports[1] for context in both]
-        options = [transport._socket_options for transport in transports]
-        while not all(each._timer for each in options):
+        setters = [transport._socket_options for transport in transports]
+        while not all(each._timer for each in setters):
             await checkpoint()
-        timers = [each._timer for each in options]
+        timers = [each._timer for each in setters]
 
     for timer in timers:
         timer.join(10)
@@ -81,9 +100,8 @@ async def test_no_connection_of_a_router_waits_for_its_peer_when_it_is_closed(
     monkeypatch.setattr(_sockets, "SETTLE_S", 0.0)
     router = await open_router([f"tcp/127.0.0.1:{os.environ['AIONODE_ROUTER_PORT']}"])
     try:
-        async with Context(), asyncio.timeout(20):
-            while not (found := lingers(router)) or any(found):
-                await checkpoint()
+        async with Context():
+            await until_set(router, (False, _sockets.UNREAD_MS))
     finally:
         await close_session(router)
 
