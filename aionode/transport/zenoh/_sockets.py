@@ -95,24 +95,30 @@ def give_up_unreachable(session: zenoh.Session) -> None:
     Otherwise, TCP sends again after 0.2, 0.4, 0.8 … s: after a network was gone for 30 s, and is
     back, it is silent for up to 30 s more. A new connection finds the network at once.
     """
-    option = getattr(socket, "TCP_USER_TIMEOUT", None)
-    if option is None:  # not on Linux
+    if not hasattr(socket, "TCP_USER_TIMEOUT"):  # not on Linux
         return
-    held: list[zenoh.TransportEventsListener[None]] = []
+    held: list[zenoh.LinkEventsListener[None]] = []
 
-    def limit(event: zenoh.TransportEvent) -> None:
-        if event.kind != zenoh.SampleKind.PUT:
-            return
-        with connections() as found:
-            for peer, one in found:
-                if not is_near(f"tcp/{peer}"):
-                    with suppress(OSError):  # it is lost already
-                        one.setsockopt(socket.IPPROTO_TCP, option, UNREACHABLE_MS)
-                        one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
+    def limit(event: zenoh.LinkEvent) -> None:
+        # Looking through the descriptors of a router with hundreds of connections takes
+        # milliseconds, and what is near needs no limit.
+        peer = address_of(event.link)
+        if event.kind == zenoh.SampleKind.PUT and not is_near(f"tcp/{peer}"):
+            start_thread(threading.Thread(target=give_up_soon, args=(peer,), name="aionode-zenoh"))
 
-    listener = session.info.declare_transport_events_listener(direct(limit), history=True)
+    listener = session.info.declare_link_events_listener(direct(limit), history=True)
     # It listens as long as it exists; its callback holds it until the session is closed.
     held.append(listener)
+
+
+def give_up_soon(wanted: str) -> None:
+    """Let the connection to a peer end soon when nothing arrives there."""
+    with connections() as found:
+        for peer, one in found:
+            if peer == wanted:
+                with suppress(OSError):  # it is lost already
+                    one.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, UNREACHABLE_MS)
+                    one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
 
 
 def queued_bytes(one: socket.socket) -> int:

@@ -14,7 +14,7 @@ from aionode.transport.zenoh._graph_watcher import NodeDeclaration, Watcher
 from aionode.transport.zenoh._local_router import LocalRouter
 from aionode.transport.zenoh._peer_directory import ZenohPeerDirectory
 from aionode.transport.zenoh._publisher import ZenohWriter
-from aionode.transport.zenoh._recovery import Recovery, nodes_at_introducer
+from aionode.transport.zenoh._recovery import Recovery, graph_at_introducer
 from aionode.transport.zenoh._router_matching import RouterMatching
 from aionode.transport.zenoh._services import ZenohRequester, ZenohServer
 from aionode.transport.zenoh._session import (
@@ -146,7 +146,7 @@ class ZenohTransport(Transport):
             return False
         # Peers that a router, or another peer, has named may not be connected yet: nothing but what
         # that sees tells of them.
-        look = partial(nodes_at_introducer, session, self.network)
+        look = partial(graph_at_introducer, session, self.network)
         knows = self._watcher.knows
         missing = set(filterfalse(knows, await run_in_own_thread(look)))
         if not missing:

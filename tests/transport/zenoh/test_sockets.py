@@ -11,11 +11,14 @@ from contextlib import AsyncExitStack
 from typing import Any
 
 import pytest
+import zenoh  # noqa: TID251  # plays another machine, without aionode
 
 from aionode._concurrency import checkpoint
 from aionode.context import Context
+from aionode.transport._zenoh_config import look_settings
 from aionode.transport.zenoh import _sockets
-from tests.support.peers import two_contexts
+from aionode.transport.zenoh._session import close_session, open_router
+from tests.support.peers import Collector, two_contexts, zenoh_config
 
 pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"), reason="only Linux lists the sockets of a process"
@@ -81,3 +84,54 @@ async def test_a_context_closes_at_once_while_a_connection_is_not_answered(who: 
         took_s = asyncio.get_running_loop().time() - began_s
 
     assert took_s < 0.7
+
+
+async def test_only_connections_to_other_machines_are_looked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Each look costs a router with 200 connections 4 ms, in which it answers no newcomer."""
+    looked: list[str] = []
+    monkeypatch.setattr(_sockets, "give_up_soon", looked.append)
+    endpoint = f"tcp/127.0.0.1:{os.environ['AIONODE_ROUTER_PORT']}"
+    router = await open_router([endpoint])
+    try:
+        look = await asyncio.to_thread(zenoh.open, zenoh_config(look_settings(endpoint)))
+        look.close()
+    finally:
+        await close_session(router)
+
+    assert not looked
+
+
+real_give_up_soon = _sockets.give_up_soon
+
+
+async def test_a_connection_to_another_machine_is_given_up_soon(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """When nothing arrives there: TCP would wait for minutes. Here loopback is another machine."""
+    monkeypatch.setattr(_sockets, "is_near", lambda _: False)
+    limited = Collector()
+
+    def give_up_soon(peer: str) -> None:
+        real_give_up_soon(peer)
+        limited(peer)
+
+    monkeypatch.setattr(_sockets, "give_up_soon", give_up_soon)
+    endpoint = f"tcp/127.0.0.1:{os.environ['AIONODE_ROUTER_PORT']}"
+    router = await open_router([endpoint])
+    try:
+        look = await asyncio.to_thread(zenoh.open, zenoh_config(look_settings(endpoint)))
+        await limited.have(1)
+        with _sockets.connections() as found:
+            mine = {_sockets.address_of(link) for link in router.info.links()}
+            limits = [
+                one.getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT)
+                for peer, one in found
+                if peer in mine
+            ]
+        look.close()
+    finally:
+        await close_session(router)
+
+    assert limits == [_sockets.UNREACHABLE_MS]
