@@ -24,7 +24,7 @@ from aionode.transport.zenoh._session import (
     run_in_own_thread,
 )
 from aionode.transport.zenoh._session_state import SessionState
-from aionode.transport.zenoh._sockets import LingerSwitch, cut_stuck
+from aionode.transport.zenoh._sockets import SocketOptions, cut_stuck
 from aionode.transport.zenoh._subscription import ZenohReader
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ class ZenohTransport(Transport):
         self._missing = 0  # how many peers that accept connections were not connected in time
         self._recovery = Recovery(self._state, network, self._watcher.check)
         self._local_router = LocalRouter(self._state, network)
-        self._linger_switch: LingerSwitch | None = None
+        self._socket_options: SocketOptions | None = None
 
     def __repr__(self) -> str:
         state = "closed" if self._state.session is None else "open"
@@ -119,7 +119,7 @@ class ZenohTransport(Transport):
         self._state.connect(session, graph)
         links = ConnectionWatcher(session, self._state.queue)
         try:
-            self._linger_switch = LingerSwitch(session)
+            self._socket_options = SocketOptions(session)
             self._watcher.start(session)
             self.peer_directory.start(session)
             self._recovery.start(session)
@@ -190,9 +190,9 @@ class ZenohTransport(Transport):
         state = self._state
         self._answered = None
         await state.flush()
-        if self._linger_switch is not None:
-            self._linger_switch.close()
-            self._linger_switch = None
+        if self._socket_options is not None:
+            self._socket_options.close()
+            self._socket_options = None
         self._recovery.stop()
         self.peer_directory.stop()
         self._watcher.stop()
