@@ -264,21 +264,34 @@ class Recovery:
             self._look_in(FIRST_S if missing else AGAIN_S)
 
 
+def look_at(network: Network, connection: Connection) -> zenoh.Session:
+    """Open a session that sees what is to be seen at the other end of a connection."""
+    look_id = LOOK_IDS + secrets.token_hex(12)
+    return zenoh.open(load_config(network, {}, look_id, look_settings(connection.endpoint)))
+
+
 def seen_at(network: Network, connection: Connection, *keys: str) -> set[str]:
     """Return the tokens that match `keys` and are visible at the other end of a connection."""
-    look_id = LOOK_IDS + secrets.token_hex(12)
-    config = load_config(network, {}, look_id, look_settings(connection.endpoint))
-    with closing(zenoh.open(config)) as look:
+    with closing(look_at(network, connection)) as look:
         return tokens(look, *keys)
 
 
-def graph_at_introducer(session: zenoh.Session, network: Network) -> set[str]:
-    """Return all tokens of the graph that an introducer sees; none without it, or an answer."""
-    with suppress(zenoh.ZError, ConfigurationError):
+def graph_at_introducer(session: zenoh.Session, network: Network) -> set[str] | None:
+    """Return all tokens of the graph that an introducer sees, if there is one.
+
+    None if it does not answer, or not completely.
+    """
+    try:
         connection = introducer_connection(session, network)
-        if connection is not None:
-            return seen_at(network, connection, f"{ROS_PREFIX}/{network.domain_id}/**")
-    return set()
+        if connection is None:
+            return set()
+        with closing(look_at(network, connection)) as look:
+            keys = f"{ROS_PREFIX}/{network.domain_id}/**"
+            replies = [reply.ok for reply in look.liveliness().get(keys, timeout=ANSWER_S)]
+    except (zenoh.ZError, ConfigurationError):
+        return None
+    found = {str(token.key_expr) for token in replies if token is not None}
+    return found if None not in replies else None
 
 
 def participants(domain_id: int) -> tuple[str, ...]:
