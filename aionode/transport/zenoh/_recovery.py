@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from aionode.transport._zenoh_config import Network
     from aionode.transport.zenoh._session_state import SessionState
 
-__all__ = ["Recovery", "is_look", "nodes_at_introducer"]
+__all__ = ["Recovery", "graph_at_introducer", "is_look"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
@@ -233,8 +233,9 @@ class Recovery:
 
     def _missing(self, session: zenoh.Session, connection: Connection, lost: set[str]) -> set[str]:
         """Return those that only the introducer sees, and this one if the introducer does not."""
-        there = seen_at(self._network, connection)
-        here = tokens(session, self._state.domain_id)
+        keys = participants(self._state.domain_id)
+        there = seen_at(self._network, connection, *keys)
+        here = tokens(session, *keys)
         connected = {str(transport.zid) for transport in session.info.transports()}
         own = {token for token in here if participant_of(token) == self._state.participant}
         return {participant_of(token) for token in (there - here) | (own - there)} | {
@@ -263,28 +264,46 @@ class Recovery:
             self._look_in(FIRST_S if missing else AGAIN_S)
 
 
-def seen_at(network: Network, connection: Connection) -> set[str]:
-    """Return the tokens of nodes and contexts that are visible at the other end of a connection."""
+def look_at(network: Network, connection: Connection) -> zenoh.Session:
+    """Open a session that sees what is to be seen at the other end of a connection."""
     look_id = LOOK_IDS + secrets.token_hex(12)
-    config = load_config(network, {}, look_id, look_settings(connection.endpoint))
-    with closing(zenoh.open(config)) as look:
-        return tokens(look, network.domain_id)
+    return zenoh.open(load_config(network, {}, look_id, look_settings(connection.endpoint)))
 
 
-def nodes_at_introducer(session: zenoh.Session, network: Network) -> set[str]:
-    """Return the tokens of all nodes that an introducer sees; none without one, or an answer."""
-    with suppress(zenoh.ZError, ConfigurationError):
+def seen_at(network: Network, connection: Connection, *keys: str) -> set[str]:
+    """Return the tokens that match `keys` and are visible at the other end of a connection."""
+    with closing(look_at(network, connection)) as look:
+        return tokens(look, *keys)
+
+
+def graph_at_introducer(session: zenoh.Session, network: Network) -> set[str] | None:
+    """Return all tokens of the graph that an introducer sees, if there is one.
+
+    None if it does not answer, or not completely.
+    """
+    try:
         connection = introducer_connection(session, network)
-        if connection is not None:
-            return {key for key in seen_at(network, connection) if key.startswith(ROS_PREFIX)}
-    return set()
+        if connection is None:
+            return set()
+        with closing(look_at(network, connection)) as look:
+            keys = f"{ROS_PREFIX}/{network.domain_id}/**"
+            replies = [reply.ok for reply in look.liveliness().get(keys, timeout=ANSWER_S)]
+    except (zenoh.ZError, ConfigurationError):
+        return None
+    found = {str(token.key_expr) for token in replies if token is not None}
+    return found if None not in replies else None
 
 
-def tokens(session: zenoh.Session, domain_id: int) -> set[str]:
-    """Return the tokens of nodes and contexts in a domain that a session sees."""
+def participants(domain_id: int) -> tuple[str, ...]:
+    """Return the keys of the tokens of nodes and contexts in a domain."""
+    return f"{ROS_PREFIX}/{domain_id}/*/*/*/NN/**", f"@aionode/{domain_id}/*/link/**"
+
+
+def tokens(session: zenoh.Session, *keys: str) -> set[str]:
+    """Return the tokens that match `keys` and that a session sees."""
     found = set()
-    for keys in (f"{ROS_PREFIX}/{domain_id}/*/*/*/NN/**", f"@aionode/{domain_id}/*/link/**"):
-        for reply in session.liveliness().get(keys, timeout=ANSWER_S):
+    for key in keys:
+        for reply in session.liveliness().get(key, timeout=ANSWER_S):
             if reply.ok is not None:
                 found.add(str(reply.ok.key_expr))
     return found

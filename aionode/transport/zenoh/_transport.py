@@ -14,7 +14,7 @@ from aionode.transport.zenoh._graph_watcher import NodeDeclaration, Watcher
 from aionode.transport.zenoh._local_router import LocalRouter
 from aionode.transport.zenoh._peer_directory import ZenohPeerDirectory
 from aionode.transport.zenoh._publisher import ZenohWriter
-from aionode.transport.zenoh._recovery import Recovery, nodes_at_introducer
+from aionode.transport.zenoh._recovery import Recovery, graph_at_introducer
 from aionode.transport.zenoh._router_matching import RouterMatching
 from aionode.transport.zenoh._services import ZenohRequester, ZenohServer
 from aionode.transport.zenoh._session import (
@@ -146,26 +146,36 @@ class ZenohTransport(Transport):
             return False
         # Peers that a router, or another peer, has named may not be connected yet: nothing but what
         # that sees tells of them.
-        look = partial(nodes_at_introducer, session, self.network)
-        knows = self._watcher.knows
-        missing = set(filterfalse(knows, await run_in_own_thread(look)))
+        missing = await self._missing_tokens(session, quiet_s)
         if not missing:
-            return self._missing <= 0
+            return missing is not None and self._missing <= 0
         quiet_ns = int(quiet_s * 1e9)
         ends_ns = perf_ns() + NAMED_NS
         while missing:
             with suppress(TimeoutError):
                 async with asyncio.timeout(quiet_s):
                     await graph.until(partial(known_all, self._watcher, missing))
-            left = set(filterfalse(knows, missing))
-            if left:
-                left &= await run_in_own_thread(look)  # some have ended
+            left = await self._missing_tokens(session, quiet_s)
+            if left is None:
+                return False
+            left &= missing  # not what has come meanwhile
             now_ns = perf_ns()
             if left == missing and now_ns > min(self._watcher.newest_ns + quiet_ns, ends_ns):
                 return False
             missing = left
         self._ask(session)  # the tokens of these peers are complete after that
         return await self._has_answers(quiet_s) and self._missing <= 0
+
+    async def _missing_tokens(self, session: zenoh.Session, quiet_s: float) -> set[str] | None:
+        """Return the tokens that an introducer sees and the graph has not; None without answer."""
+        ends_ns = perf_ns() + int(quiet_s * 1e9)
+        while True:
+            look = partial(graph_at_introducer, session, self.network)
+            seen = await run_in_own_thread(look)
+            if seen is not None:
+                return set(filterfalse(self._watcher.knows, seen))
+            if perf_ns() > ends_ns:
+                return None
 
     async def _has_answers(self, quiet_s: float) -> bool:
         """Return whether all connected peers have told their tokens; wait while some arrive."""

@@ -91,7 +91,9 @@ DIFFERENT = {
     # The queue for feedback is deep, so that a goal whose reader pauses loses none. The last chunk
     # is for publishers of ROS 2 Lyrical, and ignored by all others.
     "%askfib%_action%feedback/": ("::,10:,:,:,,", "::,1000:,:,:,,/backends:cpu:"),
-    # The best available policies are chosen once, when the endpoint is created.
+    # The best available policies are chosen once, when the endpoint is created, and announced as
+    # chosen: from them other processes of aionode see whether to acknowledge messages and whether
+    # they take a link, and tools what the endpoint does.
     "MP/%/%/cap/%q_ba/": ("4:4:,10:,854775806:,:5,,854775806", ":1:,10:,:,:,,"),
     "MS/%/%/cap/%qs_ba/": ("4:4:,10:,854775806:,:5,,854775806", ":1:,10:,:,:3,,"),
 }

@@ -195,7 +195,9 @@ async def test_one_whose_connection_was_lost_is_missing_though_a_router_brings_i
     async with context("a1") as ours, context("b2"):
         session = ours._state.session
         assert session is not None
-        monkeypatch.setattr(recovery, "seen_at", lambda *_: recovery.tokens(session, DOMAIN_ID))
+        monkeypatch.setattr(
+            recovery, "seen_at", lambda _, __, *keys: recovery.tokens(session, *keys)
+        )
         await until_seen(ours, "b2")
         token = announce(session, "c3", "brought")
         way = Connection("", ("", 0), ("", 0), "")
