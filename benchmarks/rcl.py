@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 KINDS = ("rclpy-events", "aionode", "aionode-uvloop", "rclpy-default")
 PLAN = (("tight", 100, 0.0), ("100Hz", 20, 0.01))  # name, round trips, pause in seconds
 TEXT = "0123456789abcdef"
-LIMIT_S = 60.0  # of one turn
+LIMIT_S = 180.0  # of one turn, on a machine that does much else
 
 
 def main() -> None:

@@ -31,7 +31,7 @@ from aionode.transport.rcl._bindings import ByteArray
 if TYPE_CHECKING:
     import pytest
 
-__all__ = ["FakeRcl", "install"]
+__all__ = ["FakeRcl", "Reference", "install"]
 
 NOTHING = 401  # RCL_RET_SUBSCRIPTION_TAKE_FAILED
 REFUSED = 1  # RCL_RET_ERROR
@@ -110,6 +110,13 @@ class Messages:
     def from_cdr(self, payload: bytes, message: int) -> None:
         """Fill a message."""
         self._rcl.messages[message] = payload
+
+
+class Reference:
+    """What ``ctypes.byref`` returns."""
+
+    def __init__(self, structure: ctypes.Structure) -> None:
+        self._obj = structure
 
 
 class Handle:

@@ -1,0 +1,258 @@
+"""What the transport makes of rcl's answers, with an rcl of this process alone: `FakeRcl`.
+
+The contract of transports is in ``tests/transport/test_contract.py``, on this one too; here is what
+only rcl does.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from contextlib import AsyncExitStack
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from aionode.context import Context
+from aionode.errors import ServiceUnavailableError, TransportError
+from aionode.interfaces.std_msgs.msg import Int32, String, UInt8MultiArray
+from aionode.interfaces.test_msgs.srv import BasicTypes
+from aionode.node import Node
+from aionode.qos import KEEP_ALL_DEPTH, DurabilityPolicy, HistoryPolicy, QoSProfile
+from aionode.transport.rcl._bindings import view
+from tests.support import fake_rcl
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator
+
+    from tests.support.fake_rcl import FakeRcl
+
+KEPT = QoSProfile(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+@pytest.fixture
+def rcl(monkeypatch: pytest.MonkeyPatch) -> FakeRcl:
+    """The rcl of this test."""
+    return fake_rcl.install(monkeypatch)
+
+
+class Pair:
+    """Two running nodes, each in a context of its own."""
+
+    def __init__(self, left: Node, right: Node) -> None:
+        self.left = left
+        self.right = right
+
+
+@pytest.fixture
+async def pair(rcl: FakeRcl) -> AsyncIterator[Pair]:
+    """Two nodes that know each other."""
+    async with AsyncExitStack() as stack:
+        nodes = []
+        for name in ("left", "right"):
+            context = await stack.enter_async_context(Context(transport="rcl"))
+            nodes.append(await stack.enter_async_context(Node(name, context=context)))
+        await nodes[0].wait_for_node("/right")
+        await nodes[1].wait_for_node("/left")
+        yield Pair(*nodes)
+
+
+async def until(condition: Any) -> None:
+    """Wait until something holds that nothing tells of."""
+    async with asyncio.timeout(10):
+        while not condition():  # noqa: ASYNC110  # what rcl does sets no event
+            await asyncio.sleep(0.005)  # noqa: TID251  # as above
+
+
+# Messages
+
+
+async def test_what_is_published_before_the_start_is_kept_for_the_late(rcl: FakeRcl) -> None:
+    """The context joins the domain when its first node starts."""
+    context = Context(transport="rcl")
+    node = Node("early", context=context)
+    publisher = node.create_publisher(Int32, "map", KEPT)
+    for number in range(5):
+        publisher.publish(Int32(data=number))
+    async with (
+        node,
+        Context(transport="rcl") as other,
+        Node("late", context=other) as late,
+    ):
+        reader = late.create_subscription(Int32, "map", None, KEPT)
+        assert [(await reader.receive()).data for _ in range(3)] == [2, 3, 4]
+
+
+async def test_a_context_opens_again_with_its_entities(rcl: FakeRcl) -> None:
+    """Everything is made anew; nothing is left of the first time."""
+    context = Context(transport="rcl")
+    for _ in range(2):
+        async with Node("node", context=context) as node:
+            node.create_publisher(Int32, "numbers", 10)
+            node.create_service(BasicTypes, "add", lambda request, response: response)
+        await until(lambda: not rcl.of(fake_rcl.Entity))
+    assert not rcl.of(fake_rcl.NodeHandle)
+
+
+async def test_a_refused_message_is_counted_and_logged_once(
+    pair: Pair, rcl: FakeRcl, caplog: pytest.LogCaptureFixture
+) -> None:
+    """With rcl's reason."""
+    pair.right.create_subscription(Int32, "numbers")
+    publisher = pair.left.create_publisher(Int32, "numbers", 10)
+    await publisher.wait_for_subscribers()
+    rcl.refuses = "cannot send data"
+    with caplog.at_level(logging.WARNING):
+        for _ in range(3):
+            publisher.publish(Int32())
+    assert publisher.stats.dropped == 3
+    assert caplog.text.count("/numbers: a message was not sent: cannot send data") == 1
+
+
+async def test_large_messages_arrive_in_order_with_the_small_ones(pair: Pair) -> None:
+    """Although a thread sends them."""
+    reader = pair.right.create_subscription(UInt8MultiArray, "data", None, 10)
+    publisher = pair.left.create_publisher(UInt8MultiArray, "data", 10)
+    await publisher.wait_for_subscribers()
+    sizes = [10, 100_000, 20, 70_000, 30]
+    for size in sizes:
+        publisher.publish(UInt8MultiArray(data=bytes(size)))
+    assert [len((await reader.receive()).data) for _ in sizes] == sizes
+
+
+async def test_a_full_keep_all_subscription_leaves_messages_in_the_middleware(
+    pair: Pair, rcl: FakeRcl
+) -> None:
+    """It takes them as soon as there is room: none is lost."""
+    profile = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+    reader = pair.right.create_subscription(Int32, "numbers", None, profile)
+    publisher = pair.left.create_publisher(Int32, "numbers", profile)
+    await publisher.wait_for_subscribers()
+    count = KEEP_ALL_DEPTH + 100
+    for number in range(count):
+        publisher.publish(Int32(data=number))
+        if number % 1000 == 0:
+            await publisher.drain()
+    (handle,) = [
+        one
+        for one in rcl.of(fake_rcl.SubscriptionHandle)
+        if (one.name, one.node.name) == ("/numbers", "right")
+    ]
+    await until(lambda: len(handle.queue) and not reader._reader.has_room())
+    assert [(await reader.receive()).data for _ in range(count)] == list(range(count))
+
+
+async def test_messages_without_numbers_are_not_taken_for_lost(pair: Pair, rcl: FakeRcl) -> None:
+    """As those of Cyclone DDS."""
+    rcl.numbers = False
+    reader = pair.right.create_subscription(Int32, "numbers", None, 10)
+    publisher = pair.left.create_publisher(Int32, "numbers", 10)
+    await publisher.wait_for_subscribers()
+    for number in range(3):
+        publisher.publish(Int32(data=number))
+    assert [(await reader.receive()).data for _ in range(3)] == [0, 1, 2]
+    assert reader.stats.lost == 0
+
+
+async def test_bytes_in_no_known_form_are_counted(pair: Pair, rcl: FakeRcl) -> None:
+    """And what comes next arrives."""
+    reader = pair.right.create_subscription(String, "text", None, 10)
+    publisher = pair.left.create_publisher(String, "text", 10)
+    await publisher.wait_for_subscribers()
+    (handle,) = [one for one in rcl.of(fake_rcl.PublisherHandle) if one.name == "/text"]
+    broken = b"\x00\x01\x00\x00\xff\xff\xff\x7f"
+    rcl.publish(handle.pointer, fake_rcl.Reference(view(broken)), None)
+    publisher.publish(String(data="good"))
+    assert (await reader.receive()).data == "good"
+    assert reader.stats.errors == 1
+    assert pair.right.context.transports[1].malformed == {"/text": 1}  # type: ignore[attr-defined]
+
+
+# Services
+
+
+async def test_a_server_that_goes_ends_the_calls(pair: Pair) -> None:
+    """As soon as the graph says so: no other end is told."""
+
+    async def never(request: Any, response: Any) -> Any:
+        await asyncio.Event().wait()
+
+    server = pair.right.create_service(BasicTypes, "slow", never)
+    client = pair.left.create_client(BasicTypes, "slow")
+    await client.wait_for_service()
+
+    async def call() -> None:
+        with pytest.raises(ServiceUnavailableError):
+            await client.call(BasicTypes.Request())
+
+    async with asyncio.timeout(10), asyncio.TaskGroup() as tasks:
+        tasks.create_task(call())
+        await until(lambda: server.stats.received)
+        server.destroy()
+
+
+async def test_a_request_that_rcl_refuses_ends_its_call(pair: Pair, rcl: FakeRcl) -> None:
+    """It was never sent."""
+    pair.right.create_service(BasicTypes, "add", lambda request, response: response)
+    client = pair.left.create_client(BasicTypes, "add")
+    await client.wait_for_service()
+    rcl.refuses = "cannot send data"
+    with pytest.raises(ServiceUnavailableError):
+        await client.call(BasicTypes.Request())
+
+
+async def test_a_handler_that_fails_warns_once(
+    pair: Pair, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Its clients wait: services of ROS 2 have no form for an error."""
+
+    def fail(request: Any, response: Any) -> Any:
+        raise ValueError("no")
+
+    server = pair.right.create_service(BasicTypes, "fail", fail)
+    client = pair.left.create_client(BasicTypes, "fail")
+    await client.wait_for_service()
+    async with asyncio.TaskGroup() as tasks:
+        calls = [tasks.create_task(client.call(BasicTypes.Request())) for _ in range(2)]
+        await until(lambda: server.stats.errors == 2)
+        for call in calls:
+            call.cancel()
+    assert caplog.text.count("/fail: a request failed, and its client waits for ever") == 1
+
+
+# Graph
+
+
+async def test_an_answer_with_a_part_missing_is_asked_for_again(pair: Pair, rcl: FakeRcl) -> None:
+    """As DDS tells of a node before it tells of its services."""
+    rcl.silent = 3
+    pair.right.create_service(BasicTypes, "add", lambda request, response: response)
+    client = pair.left.create_client(BasicTypes, "add")
+    async with asyncio.timeout(10):
+        await client.wait_for_service()
+    assert rcl.silent == 0
+
+
+async def test_nodes_of_one_name_are_told_apart(pair: Pair) -> None:
+    """By their number, as rcl tells no id."""
+    async with (
+        Context(transport="rcl") as context,
+        Node("right", context=context) as twin,
+    ):
+        await twin.wait_for_node("/left")
+        await until(lambda: pair.left.get_node_names().count("right") == 2)
+    await until(lambda: pair.left.get_node_names().count("right") == 1)
+
+
+async def test_an_entity_that_rcl_refuses_is_named(
+    pair: Pair, rcl: FakeRcl, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With rcl's reason, and the node lives on."""
+
+    def refuse(*arguments: object) -> None:
+        raise RuntimeError("out of ports")
+
+    monkeypatch.setattr(rcl.module, "Publisher", refuse)
+    with pytest.raises(TransportError, match="publisher of /numbers: rcl refuses it: out of ports"):
+        pair.left.create_publisher(Int32, "numbers", 10)
+    pair.left.create_subscription(Int32, "numbers")
