@@ -74,7 +74,8 @@ class StandIn:
     Args:
         session: Its session.
         namespace: The namespace of its configuration.
-        config: Called with each query for its settings; by default it is answered.
+        joins_late: How many queries for its settings stay without an answer. A real bridge has its
+            token before its DDS participant, and declares its queryable after that.
 
     Attributes:
         zid: Its id.
@@ -84,7 +85,7 @@ class StandIn:
         received: The payloads that DDS subscriptions got, by topic.
     """
 
-    def __init__(self, session: zenoh.Session, namespace: str = "/") -> None:
+    def __init__(self, session: zenoh.Session, namespace: str = "/", joins_late: int = 0) -> None:
         self.session = session
         self.zid = str(session.zid())
         self.deaths: list[str] = []
@@ -97,6 +98,7 @@ class StandIn:
         self._declared: dict[str, list[Any]] = {}
         self._cut: set[str] = set()
         self._requests = 0
+        self._silent = joins_late
         self._config = {"domain": 0, "namespace": namespace, "nodename": "zenoh_bridge_ros2dds"}
         self._admin = session.declare_queryable(f"@/{self.zid}/ros2/**", self._answer)
         self._watch = session.liveliness().declare_subscriber(
@@ -163,6 +165,9 @@ class StandIn:
         answers: dict[str, Any] = {"config": self._config, "version": "v1.10.2"}
         answers |= {f"node/{key}": value for key, value in self.nodes.items()}
         with query:
+            if self._silent:
+                self._silent -= 1
+                return
             for key, value in answers.items():
                 full = f"@/{self.zid}/ros2/{key}"
                 if zenoh.KeyExpr(asked).intersects(zenoh.KeyExpr(full)):
@@ -272,7 +277,7 @@ def add(request: bytes) -> bytes:
 
 
 @contextmanager
-def stand_in(namespace: str = "/", *, first: bool = True) -> Iterator[StandIn]:
+def stand_in(namespace: str = "/", *, first: bool = True, joins_late: int = 0) -> Iterator[StandIn]:
     """A stand-in on the port of routers, or beside one there, that also dials who is there."""
     listen = os.environ["AIONODE_ROUTER_PORT"] if first else "0"
     port = os.environ["AIONODE_MEETING_PORTS"].split(",")[0]
@@ -293,7 +298,7 @@ def stand_in(namespace: str = "/", *, first: bool = True) -> Iterator[StandIn]:
     }.items():
         config.insert_json5(key, json.dumps(value))
     with closing(zenoh.open(config)) as session:
-        yield StandIn(session, namespace)
+        yield StandIn(session, namespace, joins_late)
 
 
 async def until(condition: Callable[[], Any]) -> None:
