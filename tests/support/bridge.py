@@ -180,16 +180,19 @@ class StandIn:
     ) -> Callable[[bytes], None]:
         """Have a DDS node publish: return the function that does."""
         key = self.key(name)
-        if qos == LATCHED:
-            route: Any = ext.declare_advanced_publisher(
-                self.session,
-                key,
-                cache=ext.CacheConfig(max_samples=100),
-                publisher_detection=True,
-                allowed_destination=REMOTE,
-            )
-        else:
-            route = self.session.declare_publisher(key, allowed_destination=REMOTE)
+        # A reliable route blocks: a reader that hangs holds up the robot.
+        reliable = qos.split(":")[1] == "1"
+        route = ext.declare_advanced_publisher(
+            self.session,
+            key,
+            cache=ext.CacheConfig(max_samples=100) if qos == LATCHED else None,
+            publisher_detection=qos == LATCHED,
+            reliability=zenoh.Reliability.RELIABLE,
+            congestion_control=(
+                zenoh.CongestionControl.BLOCK if reliable else zenoh.CongestionControl.DROP
+            ),
+            allowed_destination=REMOTE,
+        )
         self._declared[f"publisher {name}"] = [self.announce("MP", name, type_name, qos), route]
 
         def publish(payload: bytes) -> None:
