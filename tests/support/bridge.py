@@ -74,7 +74,8 @@ class StandIn:
     Args:
         session: Its session.
         namespace: The namespace of its configuration.
-        config: Called with each query for its settings; by default it is answered.
+        joins_late: How many queries for its settings stay without an answer. A real bridge has its
+            token before its DDS participant, and declares its queryable after that.
 
     Attributes:
         zid: Its id.
@@ -84,7 +85,7 @@ class StandIn:
         received: The payloads that DDS subscriptions got, by topic.
     """
 
-    def __init__(self, session: zenoh.Session, namespace: str = "/") -> None:
+    def __init__(self, session: zenoh.Session, namespace: str = "/", joins_late: int = 0) -> None:
         self.session = session
         self.zid = str(session.zid())
         self.deaths: list[str] = []
@@ -97,6 +98,7 @@ class StandIn:
         self._declared: dict[str, list[Any]] = {}
         self._cut: set[str] = set()
         self._requests = 0
+        self._silent = joins_late
         self._config = {"domain": 0, "namespace": namespace, "nodename": "zenoh_bridge_ros2dds"}
         self._admin = session.declare_queryable(f"@/{self.zid}/ros2/**", self._answer)
         self._watch = session.liveliness().declare_subscriber(
@@ -163,6 +165,9 @@ class StandIn:
         answers: dict[str, Any] = {"config": self._config, "version": "v1.10.2"}
         answers |= {f"node/{key}": value for key, value in self.nodes.items()}
         with query:
+            if self._silent:
+                self._silent -= 1
+                return
             for key, value in answers.items():
                 full = f"@/{self.zid}/ros2/{key}"
                 if zenoh.KeyExpr(asked).intersects(zenoh.KeyExpr(full)):
@@ -175,16 +180,19 @@ class StandIn:
     ) -> Callable[[bytes], None]:
         """Have a DDS node publish: return the function that does."""
         key = self.key(name)
-        if qos == LATCHED:
-            route: Any = ext.declare_advanced_publisher(
-                self.session,
-                key,
-                cache=ext.CacheConfig(max_samples=100),
-                publisher_detection=True,
-                allowed_destination=REMOTE,
-            )
-        else:
-            route = self.session.declare_publisher(key, allowed_destination=REMOTE)
+        # A reliable route blocks: a reader that hangs holds up the robot.
+        reliable = qos.split(":")[1] == "1"
+        route = ext.declare_advanced_publisher(
+            self.session,
+            key,
+            cache=ext.CacheConfig(max_samples=100) if qos == LATCHED else None,
+            publisher_detection=qos == LATCHED,
+            reliability=zenoh.Reliability.RELIABLE,
+            congestion_control=(
+                zenoh.CongestionControl.BLOCK if reliable else zenoh.CongestionControl.DROP
+            ),
+            allowed_destination=REMOTE,
+        )
         self._declared[f"publisher {name}"] = [self.announce("MP", name, type_name, qos), route]
 
         def publish(payload: bytes) -> None:
@@ -272,7 +280,7 @@ def add(request: bytes) -> bytes:
 
 
 @contextmanager
-def stand_in(namespace: str = "/", *, first: bool = True) -> Iterator[StandIn]:
+def stand_in(namespace: str = "/", *, first: bool = True, joins_late: int = 0) -> Iterator[StandIn]:
     """A stand-in on the port of routers, or beside one there, that also dials who is there."""
     listen = os.environ["AIONODE_ROUTER_PORT"] if first else "0"
     port = os.environ["AIONODE_MEETING_PORTS"].split(",")[0]
@@ -293,7 +301,7 @@ def stand_in(namespace: str = "/", *, first: bool = True) -> Iterator[StandIn]:
     }.items():
         config.insert_json5(key, json.dumps(value))
     with closing(zenoh.open(config)) as session:
-        yield StandIn(session, namespace)
+        yield StandIn(session, namespace, joins_late)
 
 
 async def until(condition: Callable[[], Any]) -> None:

@@ -41,6 +41,10 @@ logger = logging.getLogger("aionode.transport.zenoh")
 ANSWER_S: Final = 2.0
 """How long a bridge may take to answer; it takes a millisecond, but does so in its main task."""
 
+AGAIN_S: Final = (0.05, 0.1, 0.2, 0.5, 1.0, 1.0, 1.0, 1.0)
+"""After how long a bridge that did not answer is asked again: it announces itself before it has
+joined DDS, and answers only after that."""
+
 NODE_NAME: Final = "zenoh_bridge_ros2dds"
 """What a bridge calls its own node on DDS; it stands for the nodes that are not known."""
 
@@ -179,15 +183,26 @@ class BridgeWatcher:
 
     def _ask(self, zid: str) -> None:
         """Ask a new bridge where its keys are; until then it is not in the graph."""
-        session = self._session
-        if session is not None and zid not in self._asked:
+        if self._session is not None and zid not in self._asked:
             asked = self._asked[zid] = asyncio.get_running_loop().create_future()
-            self._query(session.get, config_key(zid), partial(self._meet, zid, asked))
+            self._ask_again(zid, asked, iter(AGAIN_S))
 
-    def _meet(self, zid: str, asked: asyncio.Future[None], replies: Replies) -> None:
-        """Show a bridge, with its answer or without, unless it has gone meanwhile."""
+    def _ask_again(self, zid: str, asked: asyncio.Future[None], delays_s: Iterator[float]) -> None:
+        if self._session is not None and not asked.done():
+            then = partial(self._meet, zid, asked, delays_s)
+            self._query(self._session.get, config_key(zid), then)
+
+    def _meet(
+        self, zid: str, asked: asyncio.Future[None], delays_s: Iterator[float], replies: Replies
+    ) -> None:
+        """Show a bridge when it has answered, or does not in time, unless it has gone meanwhile."""
         session, graph = self._session, self._graph
         if asked.done() or session is None or graph is None:
+            return
+        delay_s = None if replies else next(delays_s, None)
+        if delay_s is not None:
+            loop = asyncio.get_running_loop()
+            loop.call_later(delay_s, self._ask_again, zid, asked, delays_s)
             return
         namespace, name = "/", NODE_NAME
         for _, payload in replies:

@@ -493,6 +493,19 @@ async def test_a_bridge_with_a_namespace_carries_what_is_below_it(node: Node) ->
         assert bridge.deaths == []
 
 
+async def test_a_bridge_that_has_just_started_is_asked_again_for_its_namespace(node: Node) -> None:
+    """It announces itself before it can answer; without the answer, all keys would be wrong."""
+    with stand_in("/bot1", joins_late=2) as bridge:
+        subscription = node.create_subscription(String, "/bot1/chatter", None, 100)
+        node.create_subscription(String, "/chatter", None, 10)
+        await publish_until_heard(bridge.publisher("/chatter"), subscription)
+
+        assert {one.split("/")[4] for one in bridge.seen if len(one.split("/")) > 4} == {
+            "bot1§chatter"
+        }
+        assert node.graph.nodes_named("/bot1/zenoh_bridge_ros2dds")
+
+
 async def test_two_robots_with_namespaces_are_told_apart(node: Node) -> None:
     """One bridge for each, and one network."""
     with stand_in("/bot1") as one, stand_in("/bot2", first=False) as two:
