@@ -391,7 +391,7 @@ class Ring(Waitable):
         self.trace("execute", taken_data, thread_name())
 
     def get_num_entities(self) -> Any:
-        return NumberOfEntities(num_guards=1)
+        return NumberOfEntities(num_gcs=1)
 
     def add_to_wait_set(self, wait_set: Any) -> None:
         self.index = wait_set.add_guard_condition(self.guard.handle)
