@@ -16,6 +16,7 @@ from rclpy.clock import Clock, ClockType, JumpThreshold, ROSClock
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.guard_condition import GuardCondition
 from rclpy.logging import LoggingSeverity, get_logger
 from rclpy.parameter import Parameter
 from rclpy.parameter_client import AsyncParameterClient
@@ -373,7 +374,7 @@ class Ring(Waitable):
 
     def __init__(self, node: Any, trace: Trace) -> None:
         super().__init__(rclpy.callback_groups.MutuallyExclusiveCallbackGroup())
-        self.guard = node.create_guard_condition(None)
+        self.guard = GuardCondition(None, None, context=node.context)
         self.trace = trace
         self.rung = False
         self.index = 0
