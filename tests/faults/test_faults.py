@@ -17,6 +17,9 @@ from tests.faults.roles import missing, note
 STANDS_S = 0.5
 """For so long a loop may stand still where other tests run beside: what is tested takes seconds."""
 
+ENDS_S = 6.0
+"""A process takes so long to end there."""
+
 SHORT = {case.name: case for case in all_cases() if case.short}
 
 
@@ -38,7 +41,7 @@ def test_a_fault_breaks_no_promise(case: Case) -> None:
     if isinstance(outcome, BaseException):
         raise outcome
 
-    assert case.broken(outcome, STANDS_S) == []
+    assert case.broken(outcome, STANDS_S, ENDS_S) == []
 
 
 def test_names_of_cases_are_unique() -> None:
