@@ -1,4 +1,4 @@
-"""What executors take from entities that are ready, and what they call with it.
+"""What is ready in the nodes of an executor, and what it takes from them and calls.
 
 Each function takes, and returns what is to be called then, or None if there is nothing to do. The
 result of a call is awaited if it is a coroutine.
@@ -7,27 +7,69 @@ result of a call is awaited if it is a coroutine.
 from __future__ import annotations
 
 import inspect
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode.rclpy._impl.errors import InvalidHandle, TimerCancelledError
+from aionode.rclpy._impl.wait_set import WaitSet
 from aionode.rclpy.subscription import Subscription
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from aionode.rclpy._protocols import ExecutorLike, NodeLike
+    from aionode.rclpy.callback_groups import Entity
 
-    from aionode.rclpy._protocols import ExecutorLike
+
+__all__ = ["Ready", "Take", "await_or_execute", "ready_callbacks", "wait_set_of"]
 
 
-__all__ = [
-    "await_or_execute",
-    "take_client",
-    "take_guard_condition",
-    "take_service",
-    "take_subscription",
-    "take_timer",
-    "take_waitable",
-]
+Take = Callable[["ExecutorLike", Any], "Callable[[], Any] | None"]
+Ready = tuple["Entity", "NodeLike", Take]
+
+
+def ready_callbacks(
+    nodes: list[NodeLike], can_execute: Callable[[Entity], bool], context: Any
+) -> list[Ready]:
+    """Return what is ready now, in the order of a round."""
+    found: list[Ready] = []
+    for node in nodes:
+        found += [
+            (waitable, node, take_waitable)
+            for waitable in node._waitables
+            if can_execute(waitable) and is_ready(waitable, context)
+        ]
+    for node in nodes:
+        for entities, take in (
+            (node._timers, take_timer),
+            (node._subscriptions, take_subscription),
+            (node._guards, take_guard_condition),
+            (node._clients, take_client),
+            (node._services, take_service),
+        ):
+            for entity in entities:
+                if entity.handle.ready() and can_execute(entity):
+                    found.append((entity, node, take))  # few are
+    return found
+
+
+def is_ready(waitable: Any, context: Any) -> bool:
+    """Whether something can be taken from a waitable."""
+    wait_set = wait_set_of([waitable], context)
+    wait_set.look()
+    ready: bool = waitable.is_ready(wait_set)
+    return ready
+
+
+def wait_set_of(waitables: list[Any], context: Any) -> WaitSet:
+    """Return a wait set with the handles of waitables, without those that are being destroyed."""
+    wait_set = WaitSet(0, 0, 0, 0, 0, 0, context)
+    for waitable in waitables:
+        try:
+            with waitable:
+                waitable.add_to_wait_set(wait_set)
+        except InvalidHandle:
+            continue
+    return wait_set
 
 
 async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:

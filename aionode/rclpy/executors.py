@@ -16,8 +16,13 @@ from typing import TYPE_CHECKING, Any, Self, cast
 
 from aionode.clock import MachineTime
 from aionode.rclpy._impl.destroyable import Wakeup
-from aionode.rclpy._readiness import Ready, Take, ready_callbacks, wait_set_of
-from aionode.rclpy._taking import await_or_execute
+from aionode.rclpy._taking import (
+    Ready,
+    Take,
+    await_or_execute,
+    ready_callbacks,
+    wait_set_of,
+)
 from aionode.rclpy.task import Future, Task
 from aionode.rclpy.utilities import get_default_context
 

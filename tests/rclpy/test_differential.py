@@ -1,6 +1,6 @@
 """The same scenes on rclpy and on aionode: what can be seen of them is the same.
 
-`scenarios.py` has the scenes. ``expected.json`` is what rclpy 9.1.2 (ROS 2 Kilted) shows. With the
+`scenarios.py` and `more_scenarios.py` have the scenes. ``expected.json`` is what rclpy 9.1.2 (ROS 2 Kilted) shows. With the
 path of an interpreter that has rclpy in ``RCLPY_PYTHON`` it is asked again::
 
     python -m venv kilted; kilted/bin/pip install 'ros-rclpy[fastrtps]' ros-std-msgs
@@ -14,6 +14,7 @@ import os
 import re
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -22,16 +23,34 @@ import pytest
 from tests.support.peers import isolated_environment
 
 HERE = Path(__file__).parent
-SCENARIOS = HERE / "scenarios.py"
+PROGRAM = HERE / "more_scenarios.py"  # which imports the other ones
 EXPECTED = HERE / "expected.json"
 INTERPRETER = "RCLPY_PYTHON"
-NAMES = re.findall(r"^@scene\ndef (\w+)", SCENARIOS.read_text(encoding="utf-8"), re.MULTILINE)
+NAMES = [
+    name
+    for file in sorted(HERE.glob("*scenarios.py"))
+    for name in re.findall(r"^@scene\ndef (\w+)", file.read_text(encoding="utf-8"), re.MULTILINE)
+]
+PROCESSES = 4
+"""How many processes play at the same time, as most scenes wait most of the time."""
 
 
-def play(*command: str, environment: dict[str, str]) -> dict[str, Any]:
-    """Return the traces of all scenes, played in one process."""
+def play(*command: str, environments: list[dict[str, str]]) -> dict[str, Any]:
+    """Return the traces of all scenes, played in a process for each environment."""
+    with ThreadPoolExecutor() as pool:
+        parts = pool.map(
+            lambda number: play_some(
+                *command, *NAMES[number :: len(environments)], environment=environments[number]
+            ),
+            range(len(environments)),
+        )
+        return {name: trace for part in parts for name, trace in part.items()}
+
+
+def play_some(*command: str, environment: dict[str, str]) -> dict[str, Any]:
+    """Return the traces of some scenes, played in one process."""
     process = subprocess.run(
-        [*command, str(SCENARIOS)],
+        command,
         capture_output=True,
         text=True,
         timeout=110,
@@ -46,7 +65,8 @@ def play(*command: str, environment: dict[str, str]) -> dict[str, Any]:
 @pytest.fixture(scope="module")
 def played() -> dict[str, Any]:
     """Return what aionode shows."""
-    return play(sys.executable, "-m", "aionode.rclpy", environment=isolated_environment())
+    environments = [isolated_environment() for _ in range(PROCESSES)]
+    return play(sys.executable, "-m", "aionode.rclpy", str(PROGRAM), environments=environments)
 
 
 @pytest.mark.timeout(120)
@@ -63,9 +83,10 @@ def test_a_scene_shows_what_it_shows_on_rclpy(name: str, played: dict[str, Any])
 )
 def test_rclpy_shows_what_is_expected() -> None:
     """What aionode is compared with is what rclpy does, not what was once written down."""
-    shown = play(
-        os.environ[INTERPRETER],
-        environment={"ROS_DOMAIN_ID": "87", "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"},
-    )
+    environments = [
+        {"ROS_DOMAIN_ID": str(domain_id), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+        for domain_id in range(87, 87 + PROCESSES)
+    ]
+    shown = play(os.environ[INTERPRETER], str(PROGRAM), environments=environments)
 
     assert shown == json.loads(EXPECTED.read_text(encoding="utf-8"))
