@@ -57,7 +57,7 @@ def test_damaged_input_is_read_or_refused(target: Target, data: Any) -> None:
 
 @pytest.mark.parametrize("target", TARGETS.values(), ids=lambda target: target.name)
 @given(data=st.data())
-@settings(deadline=None, max_examples=30)
+@settings(deadline=None, max_examples=settings().max_examples // 3)
 def test_damaged_input_takes_no_more_memory_than_its_size_allows(target: Target, data: Any) -> None:
     """A length that it claims is believed only as far as the input reaches."""
     given_bytes = data.draw(damaged(target))

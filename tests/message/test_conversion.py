@@ -228,7 +228,11 @@ def test_texts_that_break_a_parser_are_message_errors(text: str) -> None:
         from_yaml(String, text) if ":" in text else from_json(String, text)
 
 
-@settings(max_examples=150, suppress_health_check=list(HealthCheck), deadline=None)
+@settings(
+    max_examples=settings().max_examples * 3 // 2,
+    suppress_health_check=list(HealthCheck),
+    deadline=None,
+)
 @given(any_messages())
 def test_every_message_survives_plain_values_json_and_yaml(message: Message) -> None:
     """For every type that is shipped."""

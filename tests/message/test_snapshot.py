@@ -410,7 +410,11 @@ def test_something_that_is_no_message_class_is_a_type_error() -> None:
         snapshotter(int)  # type: ignore[type-var] # the point of the test
 
 
-@settings(max_examples=150, suppress_health_check=list(HealthCheck), deadline=None)
+@settings(
+    max_examples=settings().max_examples * 3 // 2,
+    suppress_health_check=list(HealthCheck),
+    deadline=None,
+)
 @given(any_messages())
 def test_a_snapshot_of_any_message_equals_it(message: Message) -> None:
     """For every type that is shipped."""

@@ -89,7 +89,7 @@ def run(steps: list[tuple[str, int, Any]], *, concurrent: bool | int) -> None:
     asyncio.run(main())
 
 
-@hypothesis.settings(max_examples=150, deadline=None)
+@hypothesis.settings(max_examples=hypothesis.settings().max_examples * 3 // 2, deadline=None)
 @hypothesis.given(
     steps=st.lists(STEPS, min_size=1, max_size=12), concurrent=st.sampled_from([True, False, 2])
 )

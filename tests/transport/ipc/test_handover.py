@@ -242,7 +242,7 @@ STEPS: list[Callable[[Stream], None]] = [
 
 
 @given(st.lists(st.sampled_from(STEPS), max_size=80))
-@settings(max_examples=600)
+@settings(max_examples=settings().max_examples * 6)
 def test_each_message_comes_once_and_in_order_whatever_the_routes_do(
     steps: list[Callable[[Stream], None]],
 ) -> None:

@@ -320,7 +320,7 @@ ODD = st.one_of(
 
 
 @given(message=messages(Mixed), field=st.sampled_from(list(FALLBACK_ERRORS)), odd=ODD)
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=settings().max_examples * 3, deadline=None)
 def test_encode_and_check_agree_on_what_fits(message: Mixed, field: str, odd: Any) -> None:
     """A message that may be published to this process may be sent to others, and no other."""
     setattr(message, field, odd)
