@@ -103,7 +103,7 @@ async def until(count: Callable[[], int], wanted: int) -> int:
 
 
 def lacking(what: str, found: int, wanted: int) -> str:
-    """Return what is incomplete, in words; nothing if nothing is."""
+    """Describe what is incomplete; empty if nothing is."""
     return "" if found >= wanted else f"{what}: {found} of {wanted}"
 
 

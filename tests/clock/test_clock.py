@@ -190,7 +190,7 @@ def test_nothing_else_is_compared_with_or_added_to_a_time() -> None:
 
 
 def test_a_duration_is_stretched_by_numbers() -> None:
-    """Times infinity is for ever; whole factors go past what a float can hold."""
+    """Times infinity is infinite; whole factors may exceed what a float can hold."""
     assert Duration(seconds=2) * 0.5 == Duration(seconds=1)
     assert 3 * Duration(seconds=2) == Duration(seconds=6)
     assert Duration(nanoseconds=2**60 + 1) * 3 == Duration(nanoseconds=3 * 2**60 + 3)
@@ -446,7 +446,7 @@ def test_a_jump_callback_must_be_one() -> None:
 async def test_sleeping_for_nothing_takes_one_turn(
     clock_type: ClockType, duration_sec: float
 ) -> None:
-    """Others get their turn, and no time passes."""
+    """Other callbacks run, and no time passes."""
     turns: list[int] = []
     asyncio.get_running_loop().call_soon(turns.append, 1)
     await Clock(clock_type=clock_type, time_base=ManualClock()).sleep(duration_sec)
@@ -464,7 +464,7 @@ def alarms(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> N
 @pytest.mark.parametrize("clock_type", REAL_TYPES)
 @pytest.mark.parametrize("duration_ns", [1, 300_000, 1_400_000, 1_600_000])
 async def test_a_sleep_is_never_too_short(clock_type: ClockType, duration_ns: int) -> None:
-    """Loops round waits, uvloop by half a millisecond, so a clock has to look again."""
+    """Loops round waits, uvloop by half a millisecond, so the clock checks the time again."""
     clock = Clock(clock_type=clock_type)
     began_ns = time.monotonic_ns()
     await clock.sleep(duration_ns / 1e9)
@@ -606,7 +606,7 @@ async def test_setting_the_system_clock_changes_no_sleep() -> None:
 
 @pytest.mark.usefixtures("alarms")
 async def test_a_machine_alarm_rings_once_and_not_too_early() -> None:
-    """Whatever the loop rounds."""
+    """However the loop rounds."""
     machine = MachineTime()
     rung: asyncio.Future[int] = asyncio.get_running_loop().create_future()
     when_ns = machine.steady_ns() + 1_400_000
@@ -630,7 +630,7 @@ async def test_an_alarm_in_the_past_rings_later_all_the_same(
 
 @pytest.mark.usefixtures("alarms")
 async def test_a_cancelled_alarm_does_not_ring() -> None:
-    """Also when its time has come already but the loop has not got to it."""
+    """Not even if it is due and the loop has not reached it yet."""
     machine = MachineTime()
     rung: list[int] = []
     alarm = machine.call_at(machine.steady_ns(), lambda: rung.append(1))

@@ -66,7 +66,7 @@ def batches(cases: list[Case], size: int) -> Iterator[list[Case]]:
 
 
 def main() -> None:
-    """Run the cases, and tell what came of them."""
+    """Run the cases, and print the results."""
     parser = argparse.ArgumentParser(description="Faults over real processes.")
     parser.add_argument("--times", type=int, default=1, help="how often each case runs (1)")
     parser.add_argument("--only", default="", help="a regular expression for names of cases")
@@ -82,7 +82,7 @@ def main() -> None:
                 for case, result in zip(batch, asyncio.run(run_together(batch)), strict=True):
                     results[case.name].append(result)
                     print(row(case, [result])[0], flush=True)  # noqa: T201 - a program
-    finally:  # what has run is told also when the rest is not waited for
+    finally:  # report the cases that have run, even if interrupted
         rows = [row(case, results[case.name]) for case in cases if results[case.name]]
         tell(rows, options.side_by_side, options.write)
     broken = sum(is_broken for _, is_broken in rows)

@@ -20,7 +20,7 @@ FREEZES_S = (5, 14, 70)
 """Shorter than the lease of 10 s, longer, and longer than that of ROS 2 nodes, which is 60 s."""
 
 LEASE_S = 10.0
-"""After so long a process that is frozen counts as gone."""
+"""Time after which a frozen process counts as gone, in seconds."""
 
 ROUTER = Role("router", router="tcp/127.0.0.1:{AIONODE_ROUTER_PORT}")
 

@@ -31,7 +31,7 @@ LIMIT_S: Final = 0.05
 """How much later than the idle router the other one may have answered 99 % of the newcomers."""
 
 ANSWER_S: Final = 5.0
-"""After so long there is no answer."""
+"""Time after which a newcomer counts as unanswered, in seconds."""
 
 PERIOD_S: Final = 0.25
 PROCESSES: Final = 3
@@ -94,7 +94,7 @@ def routers(*ports: int) -> Iterator[None]:
 
 
 def main() -> None:
-    """Run the crowd and both newcomers, and say what came of them."""
+    """Run the crowd and both newcomers, and print the results."""
     parser = argparse.ArgumentParser(description="Nodes come and go beside a router.")
     parser.add_argument("--nodes", type=int, default=300)
     parser.add_argument("--seconds", type=float, default=120.0)

@@ -165,7 +165,7 @@ def test_the_files_written_are_returned(packages: Path, out: Path) -> None:
 
 
 def test_nothing_is_written_if_a_definition_is_wrong(packages: Path, out: Path) -> None:
-    """A half-written package would be found later, by someone else."""
+    """A half-written package would only be noticed later, by another user."""
     (packages / "other_msgs" / "msg" / "Bad.msg").write_text("nope x")
 
     with pytest.raises(IdlError):

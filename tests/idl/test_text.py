@@ -69,7 +69,7 @@ def test_nested_text_shows_what_fields_consist_of() -> None:
 
 
 def test_a_class_written_by_hand_has_a_text() -> None:
-    """To show to a C++ developer, for example."""
+    """For example to show it to a C++ developer."""
 
     class Words(Message, typename="tutorial/msg/Words"):
         LEVEL: ClassVar[byte] = b"\x02"

@@ -12,7 +12,7 @@ import pytest
 from tests.processes.process import Process
 
 STANDS_MS = 1000.0
-"""For so long a loop may stand still where other tests run beside: what is tested takes seconds."""
+"""The longest stall of a loop beside other tests, in ms; the defects took seconds."""
 
 ALONE_MS = 50.0
 """The same on a machine that does nothing else."""
@@ -59,7 +59,7 @@ def count(process: Process) -> int:
 
 
 def sleep_s(seconds: float) -> None:
-    """Let other processes go on for so long."""
+    """Let other processes run for some time."""
     time.sleep(seconds)
 
 

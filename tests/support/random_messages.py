@@ -12,7 +12,7 @@ from aionode.message._field_types import INT_RANGES
 
 __all__ = ["any_messages", "message_classes", "messages", "shipped_names"]
 
-TEXT = st.characters(exclude_categories=["Cs"])  # no half of a surrogate pair fits
+TEXT = st.characters(exclude_categories=["Cs"])  # lone surrogates cannot be encoded
 
 
 def message_classes() -> list[type[Message]]:

@@ -28,10 +28,10 @@ if TYPE_CHECKING:
 __all__ = ["message_classes", "messages", "shipped_types", "values"]
 
 HEAVIEST = 160
-"""Values of a message up to which it is drawn as a whole."""
+"""The most values that a message may have to be drawn as a whole."""
 
 MOST_ELEMENTS = 4
-"""Length of random sequences: each further element tells nothing new."""
+"""The longest random sequence: further elements would test nothing new."""
 
 INTEGERS = {
     name: (np.iinfo(dtype).min, np.iinfo(dtype).max)

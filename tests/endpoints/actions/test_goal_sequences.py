@@ -32,7 +32,7 @@ STEPS = st.one_of(
 
 
 async def send(robot: Node, client: Node, steps: list[tuple[str, int, Any]]) -> None:
-    """Send all that, with so many turns of the loop in between, and see that the node lives."""
+    """Send the steps, some iterations of the loop apart, and check that the node still runs."""
     hidden = "go/_action"
     goals = client.create_client(Impl.SendGoalService, f"{hidden}/send_goal")
     cancels = client.create_client(Impl.CancelGoalService, f"{hidden}/cancel_goal")
@@ -56,7 +56,7 @@ async def send(robot: Node, client: Node, steps: list[tuple[str, int, Any]]) -> 
 
 
 async def execute(goal: Goal) -> Fibonacci.Result:
-    """End after some turns in one of the ways that there are."""
+    """End in one of the possible ways after some iterations of the loop."""
     for _ in range(goal.request.order):
         await checkpoint()
     if goal.request.order == 2:

@@ -30,7 +30,7 @@ AUTOMATIC = MANUAL.replace(liveliness=LivelinessPolicy.AUTOMATIC)
 
 
 async def until_asserted(pair: Pair, subscription: Subscription[Int32]) -> None:
-    """Wait until a subscription has got an assertion of the last 0.4 s: that takes real time."""
+    """Wait for an assertion that is at most 0.4 s old, in real time."""
     liveliness = subscription._monitor._liveliness
     assert liveliness is not None
     (lease,) = liveliness._leases.values()

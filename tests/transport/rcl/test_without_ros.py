@@ -15,7 +15,7 @@ from aionode.transport.rcl._types import find, hash_text
 
 
 def test_without_rclpy_the_error_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    """In one line."""
+    """The error is one line."""
     for name in ("rclpy", "rclpy.impl", "rclpy.impl.implementation_singleton"):
         monkeypatch.setitem(sys.modules, name, None)
     load.cache_clear()

@@ -29,7 +29,7 @@ from tests.support.peers import (
 
 @pytest.fixture(autouse=True)
 def without_links(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As between hosts."""
+    """Links are off, as between hosts."""
     monkeypatch.setenv("AIONODE_LINK", "off")
 
 

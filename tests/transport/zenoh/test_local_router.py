@@ -1,4 +1,4 @@
-"""The router of this machine towards static peers: who opens it, and who takes its place."""
+"""The router of this machine to static peers: which process opens it, and which replaces it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ FAR = "tcp/192.0.2.1:7447"
 
 @pytest.fixture(autouse=True)
 def soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Do not wait for what is not there."""
+    """Do not wait for peers that do not exist."""
     monkeypatch.setattr(local_router, "LINKED_S", 0.0)
 
 

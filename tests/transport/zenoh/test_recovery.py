@@ -1,4 +1,4 @@
-"""Who was introduced once is connected again, whatever has ended the connection."""
+"""Participants that were introduced once are connected again, whatever ended the connection."""
 
 from __future__ import annotations
 
@@ -207,7 +207,7 @@ async def test_one_whose_connection_was_lost_is_missing_though_a_router_brings_i
     assert missing == {"c3"}
 
 
-async def test_a_look_makes_no_stranger() -> None:
+async def test_a_look_makes_no_unannounced_peer() -> None:
     """Else everything would go both ways for as long as it takes."""
     async with context("a1") as first, context("b2") as second:
         told: list[bool] = []
@@ -267,7 +267,9 @@ async def test_a_connection_that_takes_long_to_be_made_is_not_given_up() -> None
         token.undeclare()
 
 
-async def test_who_cannot_be_reached_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_an_unreachable_participant_is_given_up(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """A program on a host that only the router reaches would be looked for for ever."""
     cuts = Collector()
     monkeypatch.setattr(recovery, "cut", cuts)
@@ -313,7 +315,7 @@ async def test_the_graph_is_compared_with_the_tokens_that_are_there() -> None:
         assert second.network.domain_id == DOMAIN_ID
 
 
-async def test_nothing_is_watched_where_nobody_is_dialled(
+async def test_nothing_is_watched_where_no_process_is_dialled(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Then no session could introduce others."""

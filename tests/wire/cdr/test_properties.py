@@ -1,4 +1,4 @@
-"""Laws that hold for every message of every type, and for what is left of one on a bad line."""
+"""Properties of every message of every type, and of truncated and damaged ones."""
 
 from __future__ import annotations
 
