@@ -15,7 +15,7 @@ from tests.faults.harness import Case, Outcome, Skipped, run_together
 from tests.faults.roles import missing, note
 
 STANDS_S = 0.5
-"""The longest stall of a loop beside other tests, in ms; the defects took seconds."""
+"""The longest stall of a loop beside other tests, in seconds; the defects took several."""
 
 SHORT = {case.name: case for case in all_cases() if case.short}
 

@@ -81,7 +81,7 @@ def freeze_reader(
         before = count(healthy)
         sleep_s(freeze_s)
         assert max(gap_ms(process) for process in watched) < limit_ms
-        assert count(healthy) - before > 50 * freeze_s  # of 200 in a second
+        assert count(healthy) - before > 10 * freeze_s  # of 200 in a second, on an idle machine
         assert count(keeper) < messages
         reader.send(signal.SIGCONT)
         keeper.expect(f"sent {messages} 0")

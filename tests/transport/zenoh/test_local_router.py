@@ -19,7 +19,7 @@ from aionode.transport.zenoh._session_state import SessionState
 from aionode.transport.zenoh._transport import ZenohTransport
 from tests.support.peers import ros_router
 
-LIMIT_S = 5.0
+LIMIT_S = 15.0
 FAR = "tcp/192.0.2.1:7447"
 """An address for documentation: nothing answers there."""
 

@@ -77,7 +77,7 @@ def test_a_port_that_speaks_zenoh_is_told_from_others() -> None:
 
 async def both_seen(node: Node) -> None:
     """Wait until a node sees both of a test."""
-    async with asyncio.timeout(5):
+    async with asyncio.timeout(20):
         await node.graph.until(lambda: {"one", "two"} == {n.name for n in node.graph.nodes()})
 
 
