@@ -205,7 +205,8 @@ class Graph:
         self._endpoints: dict[EndpointInfo, None] = {}
         self._by_name: dict[tuple[EndpointKind, str], dict[EndpointInfo, None]] = defaultdict(dict)
         self._by_node: dict[NodeInfo, dict[EndpointInfo, None]] = defaultdict(dict)
-        self._waiters: dict[asyncio.Future[None], None] = {}  # of `changed`, until the next change
+        # Of `changed`, by the name they wait for, None for any; until the next such change.
+        self._waiters: dict[str | None, dict[asyncio.Future[None], None]] = {}
         self._nodes_by_name: dict[str, dict[NodeInfo, None]] = defaultdict(dict)
         self._listeners: list[Callable[[EndpointInfo], None]] = []
         self._node_listeners: list[Callable[[NodeInfo], None]] = []
@@ -224,14 +225,14 @@ class Graph:
             self._nodes_by_name[node.fully_qualified_name][node] = None
             for listener in self._node_listeners:
                 listener(node)
-            self._wake()
+            self._wake(node.fully_qualified_name)
 
     def remove_node(self, node: NodeInfo) -> None:
         """Remove `node`, if it is known."""
         if node in self._nodes:
             del self._nodes[node]
             _take_out(self._nodes_by_name, node.fully_qualified_name, node)
-            self._wake()
+            self._wake(node.fully_qualified_name)
 
     def add_endpoint(self, endpoint: EndpointInfo) -> None:
         """Add `endpoint`; adding it again has no effect."""
@@ -244,7 +245,7 @@ class Graph:
         for listener in self._listeners:
             listener(endpoint)
         self._tell_watchers(endpoint, present=True)
-        self._wake()
+        self._wake(endpoint.name)
 
     def remove_endpoint(self, endpoint: EndpointInfo) -> None:
         """Remove `endpoint`, if it is known."""
@@ -255,7 +256,7 @@ class Graph:
         _take_out(self._by_node, endpoint.node, endpoint)
         self.unreported.pop(endpoint, None)
         self._tell_watchers(endpoint, present=False)
-        self._wake()
+        self._wake(endpoint.name)
 
     def identify(self, endpoint: EndpointInfo, gid: bytes) -> None:
         """Give an endpoint the gid that the middleware has chosen.
@@ -318,30 +319,42 @@ class Graph:
         for watcher in tuple(self._watchers.get((endpoint.kind, endpoint.name), ())):
             watcher(endpoint, present)
 
-    def changed(self) -> asyncio.Future[None]:
+    def changed(self, *full_names: str) -> asyncio.Future[None]:
         """Return a future that is done at the next change: a node or endpoint added or removed.
 
         Await it, or keep it to cancel the wait from elsewhere; cancelling is safe.
+
+        Args:
+            full_names: Full names of topics, services or nodes: then only changes of nodes and
+                endpoints with one of these names end the wait. In a large system, that costs much
+                less than looking again at every change.
         """
         waiter: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self._waiters[waiter] = None
-        waiter.add_done_callback(self._forget)
+        keys = full_names or (None,)
+        for key in keys:
+            self._waiters.setdefault(key, {})[waiter] = None
+
+        def forget(_: asyncio.Future[None]) -> None:
+            for key in keys:
+                if key in self._waiters:
+                    self._waiters[key].pop(waiter, None)
+                    if not self._waiters[key]:
+                        del self._waiters[key]
+
+        waiter.add_done_callback(forget)
         return waiter
 
-    async def until(self, condition: Callable[[], bool]) -> None:
-        """Wait until `condition()` is true; it is called again at each change."""
+    async def until(self, condition: Callable[[], bool], *full_names: str) -> None:
+        """Wait until `condition()` is true; it is called again at each change, as by `changed`."""
         while not condition():
-            await self.changed()
+            await self.changed(*full_names)
 
-    def _forget(self, waiter: asyncio.Future[None]) -> None:
-        self._waiters.pop(waiter, None)
-
-    def _wake(self) -> None:
+    def _wake(self, full_name: str) -> None:
         self.changes += 1
-        for waiter in list(self._waiters):
-            if not waiter.done():
-                waiter.set_result(None)
-        self._waiters.clear()
+        for key in (full_name, None):
+            for waiter in self._waiters.pop(key, ()):
+                if not waiter.done():
+                    waiter.set_result(None)
 
     # Queries
 
@@ -381,7 +394,7 @@ class Graph:
 
     def find_nodes(self, fully_qualified_name: str) -> Iterator[NodeInfo]:
         """Return an iterator over the nodes of this full name; names need not be unique."""
-        return (n for n in self._nodes if n.fully_qualified_name == fully_qualified_name)
+        return iter(self.nodes_named(fully_qualified_name))
 
 
 def _take_out(index: dict[K, dict[V, None]], key: K, member: V) -> None:

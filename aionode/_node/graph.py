@@ -106,11 +106,11 @@ class NodeGraphQueries(NodeBase):
         wanted = "/" + fully_qualified_node_name.removeprefix("/")
 
         def is_there() -> bool:
-            return any(self.graph.find_nodes(wanted))
+            return bool(self.graph.nodes_named(wanted))
 
         try:
             async with asyncio.timeout(timeout):
-                await self.graph.until(is_there)
+                await self.graph.until(is_there, wanted)
         except TimeoutError:
             return is_there()
         return True

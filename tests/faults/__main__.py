@@ -18,9 +18,17 @@ from importlib.metadata import version
 from pathlib import Path
 
 from tests.faults.cases import all_cases
-from tests.faults.harness import GAP_LIMIT_S, RECOVERY_LIMIT_S, Case, Outcome, Skipped, run_together
+from tests.faults.harness import (
+    END_S,
+    GAP_LIMIT_S,
+    RECOVERY_LIMIT_S,
+    Case,
+    Outcome,
+    Skipped,
+    run_together,
+)
 
-SIDE_BY_SIDE = 10
+JOBS = 10
 """How many cases run at once; of those that mostly wait, twice as many."""
 
 LONG_S = 10.0
@@ -36,8 +44,10 @@ def row(case: Case, results: list[Result]) -> tuple[str, bool]:
     if skipped:
         return f"| {case.name} | 0 |{'  |' * 10} skipped: {skipped[0]} |", False
     done = [result for result in results if isinstance(result, Outcome)]
-    problems = [text for result in done for text in case.broken(result)]
-    problems += [repr(result) for result in results if not isinstance(result, Outcome)]
+    broken = [case.broken(result) for result in done]
+    broken += [[repr(result)] for result in results if not isinstance(result, Outcome)]
+    problems = [text for texts in broken for text in texts]
+    kept = f"{sum(not texts for texts in broken)} of {len(results)}"
     cells = (
         case.name,
         len(results),
@@ -52,15 +62,16 @@ def row(case: Case, results: list[Result]) -> tuple[str, bool]:
             for gap in ("own_gap_s", "gap_s", "control_gap_s")
         ),
         f"{max((each.end_s for each in done), default=0):.1f} s",
-        f"broken: {problems[0]}" if problems else "kept",
+        f"kept {kept}" + (f": {problems[0]}" if problems else ""),
     )
     line = " | ".join(str(cell).replace("\n", " ").replace("|", "/") for cell in cells)
     return f"| {line} |", bool(problems)
 
 
 def batches(cases: list[Case], size: int) -> Iterator[list[Case]]:
-    """Yield cases that run side by side."""
-    for is_long, alike in itertools.groupby(cases, lambda case: case.lasts_s > LONG_S):
+    """Yield cases that run side by side: those that take about as long."""
+    ordered = sorted(cases, key=lambda case: case.lasts_s)
+    for is_long, alike in itertools.groupby(ordered, lambda case: case.lasts_s > LONG_S):
         while batch := list(itertools.islice(alike, 2 * size if is_long else size)):
             yield batch
 
@@ -71,34 +82,41 @@ def main() -> None:
     parser.add_argument("--times", type=int, default=1, help="how often each case runs (1)")
     parser.add_argument("--only", default="", help="a regular expression for names of cases")
     parser.add_argument("--write", type=Path, help="the page to write")
-    parser.add_argument("--side-by-side", type=int, default=SIDE_BY_SIDE, help=f"({SIDE_BY_SIDE})")
+    parser.add_argument(
+        "--jobs", type=int, default=JOBS, help=f"how many run at once, of any round ({JOBS})"
+    )
     options = parser.parse_args()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))  # cleans up
-    cases = [case for case in all_cases() if re.search(options.only, case.name)]
+    # Each run has cases of its own, and so network namespaces of its own.
+    rounds = [
+        [case for case in all_cases() if re.search(options.only, case.name)]
+        for _ in range(options.times)
+    ]
+    cases = rounds[0]
     results: dict[str, list[Result]] = {case.name: [] for case in cases}
     try:
-        for _ in range(options.times):
-            for batch in batches(cases, options.side_by_side):
-                for case, result in zip(batch, asyncio.run(run_together(batch)), strict=True):
-                    results[case.name].append(result)
-                    print(row(case, [result])[0], flush=True)  # noqa: T201 - a program
+        for batch in batches(list(itertools.chain(*rounds)), options.jobs):
+            for case, result in zip(batch, asyncio.run(run_together(batch)), strict=True):
+                results[case.name].append(result)
+                print(row(case, [result])[0], flush=True)  # noqa: T201 - a program
     finally:  # report the cases that have run, even if interrupted
         rows = [row(case, results[case.name]) for case in cases if results[case.name]]
-        tell(rows, options.side_by_side, options.write)
+        tell(rows, options.jobs, options.write)
     broken = sum(is_broken for _, is_broken in rows)
     sys.exit(f"{broken} of {len(rows)} cases broke a promise" if broken else 0)
 
 
-def tell(rows: list[tuple[str, bool]], side_by_side: int, path: Path | None) -> None:
+def tell(rows: list[tuple[str, bool]], jobs: int, path: Path | None) -> None:
     """Print the page, and write it where it is wanted."""
     page = PAGE.read_text(encoding="utf-8").format(
-        together=side_by_side,
+        together=jobs,
         cores=os.cpu_count(),
         system=platform.system(),
         python=platform.python_version(),
         version=version("aionode"),
         limit=RECOVERY_LIMIT_S,
         gap=1000 * GAP_LIMIT_S,
+        end=END_S,
         rows="\n".join(line for line, _ in rows),
     )
     print(page)  # noqa: T201 - a program

@@ -8,7 +8,15 @@ from collections.abc import Iterator
 
 import msgspec
 
-from tests.faults.faults import arrive, end_and_replace, freeze, freeze_idle, replace, wait
+from tests.faults.faults import (
+    arrive,
+    end_and_replace,
+    end_beside_frozen,
+    freeze,
+    freeze_idle,
+    replace,
+    wait,
+)
 from tests.faults.harness import Case, Skipped
 from tests.faults.hosts import host_cases
 from tests.faults.roles import Hear, Output, Publish, Role
@@ -18,6 +26,9 @@ __all__ = ["all_cases"]
 WAYS = {"link": "on", "Zenoh": "off"}
 FREEZES_S = (5, 14, 70)
 """Shorter than the lease of 10 s, longer, and longer than that of ROS 2 nodes, which is 60 s."""
+
+RETURNS_S = (5, 14, 33, 70)
+"""And between the two: a peer of ROS 2 nodes is gone for itself, but not yet for them."""
 
 LEASE_S = 10.0
 """Time after which a frozen process counts as gone, in seconds."""
@@ -113,6 +124,14 @@ def freezes(way: str) -> Iterator[Case]:
             wait(seconds),
             lasts_s=seconds,
         )
+        yield Case(
+            f"{way}: KEEP_ALL talker ended after its reader was frozen {seconds} s",
+            on(way, *talk(keep_all=True, period_s=0.02 if short else 0.1)),
+            end_beside_frozen("talker", "reader", seconds),
+            ("reader",),
+            loss="told",
+            lasts_s=seconds,
+        )
         for roles, kind in ((CALLING, "calls"), (ACTING, "goals")):
             for name in ("server", "client"):
                 yield Case(
@@ -124,6 +143,7 @@ def freezes(way: str) -> Iterator[Case]:
                     lasts_s=seconds,
                     short=short and kind == "calls" and name == "server" and way == "Zenoh",
                 )
+    for seconds in RETURNS_S:
         yield Case(
             f"{way}: one of three frozen {seconds} s, all hear all",
             on(way, *members(3)),
@@ -290,7 +310,15 @@ def routers() -> Iterator[Case]:
         loss="any",
         short=True,
     )
-    for seconds in (5, 14, 33, 70):
+    for seconds in RETURNS_S:
+        yield Case(
+            f"router, one of three frozen {seconds} s, all hear all",
+            (ROUTER, *on("Zenoh", *members(3))),
+            freeze("member2", seconds),
+            ("member2",),
+            loss="any",
+            lasts_s=seconds,
+        )
         for name in ("member2", "ros0"):
             yield Case(
                 f"router and two ROS 2 nodes, {name[:-1]} frozen {seconds} s, all hear all",
@@ -303,11 +331,11 @@ def routers() -> Iterator[Case]:
 
 
 def all_cases() -> list[Case]:
-    """Return every case, those that take about as long after each other."""
+    """Return every case."""
     cases = [
         case
         for way in WAYS
         for make in (freezes, kills, comings, crowds, outputs)
         for case in make(way)
     ]
-    return sorted([*cases, *routers(), *host_cases()], key=lambda case: case.lasts_s)
+    return [*cases, *routers(), *host_cases()]

@@ -14,6 +14,7 @@ __all__ = [
     "all_of",
     "arrive",
     "end_and_replace",
+    "end_beside_frozen",
     "freeze",
     "freeze_idle",
     "replace",
@@ -39,6 +40,18 @@ def freeze(name: str, seconds: float) -> Fault:
         stage.children[name].send(signal.SIGSTOP)
         await asyncio.sleep(seconds)
         stage.children[name].send(signal.SIGCONT)
+
+    return strike
+
+
+def end_beside_frozen(name: str, frozen: str, seconds: float) -> Fault:
+    """End a process with SIGTERM while another has been frozen for some time."""
+
+    async def strike(stage: Stage) -> None:
+        stage.children[frozen].send(signal.SIGSTOP)
+        await asyncio.sleep(seconds)
+        await stage.children[name].end()
+        stage.children[frozen].send(signal.SIGCONT)
 
     return strike
 

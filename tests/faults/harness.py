@@ -30,7 +30,17 @@ from tests.faults.roles import (
 )
 from tests.support.peers import isolated_environment
 
-__all__ = ["Case", "Outcome", "Skipped", "Stage", "run_case", "run_together"]
+__all__ = [
+    "END_S",
+    "GAP_LIMIT_S",
+    "RECOVERY_LIMIT_S",
+    "Case",
+    "Outcome",
+    "Skipped",
+    "Stage",
+    "run_case",
+    "run_together",
+]
 
 ROOT = Path(__file__).parent.parent.parent
 
@@ -55,6 +65,12 @@ QUIET_LIMIT_S = 10.0
 END_LIMIT_S = 10.0
 """How long a process may take to end; then it is killed."""
 
+
+END_S = 3.0
+"""How long it should take: a second more than it waits for readers to take what they lack."""
+
+STAGGER_S = 0.25
+"""The faults of cases that run side by side strike, and end, so long after each other."""
 
 GAP_LIMIT_S = 0.05
 """How long a loop may stand still by itself."""
@@ -124,7 +140,9 @@ class Case(msgspec.Struct, frozen=True):
     short: bool = False
     around: contextlib.AbstractContextManager[None] = contextlib.nullcontext()
 
-    def broken(self, outcome: Outcome, gap_limit_s: float = GAP_LIMIT_S) -> list[str]:
+    def broken(
+        self, outcome: Outcome, gap_limit_s: float = GAP_LIMIT_S, end_limit_s: float = END_S
+    ) -> list[str]:
         """Return which promises an outcome breaks."""
         untold = outcome.lost - outcome.told
         return [
@@ -145,6 +163,7 @@ class Case(msgspec.Struct, frozen=True):
                     outcome.own_gap_s > gap_limit_s,
                     f"a loop stood still for {1000 * outcome.own_gap_s:.0f} ms",
                 ),
+                (outcome.end_s > end_limit_s, f"ended in {outcome.end_s:.1f} s"),
             )
             if is_broken
         ]
@@ -445,13 +464,16 @@ async def staged(case: Case) -> AsyncIterator[Stage]:
             raise failure
 
 
-async def run_case(case: Case, barrier: asyncio.Barrier | None = None) -> Outcome:
+async def run_case(
+    case: Case, barrier: asyncio.Barrier | None = None, after_s: float = 0.0
+) -> Outcome:
     """Run a case once.
 
     Args:
         case: The case.
         barrier: Where it waits for the others of its batch, so that their processes, when they
             start, take no time from its own.
+        after_s: How much later than the first of them it goes on.
 
     Raises:
         Skipped: The machine cannot do it.
@@ -466,7 +488,7 @@ async def run_case(case: Case, barrier: asyncio.Barrier | None = None) -> Outcom
         finally:
             if barrier is not None:
                 await barrier.wait()
-        await asyncio.sleep(BEFORE_S / 2)
+        await asyncio.sleep(after_s + BEFORE_S / 2)
         steady_s = time.monotonic()
         await asyncio.sleep(BEFORE_S / 2)
         if hung:
@@ -488,9 +510,10 @@ async def run_case(case: Case, barrier: asyncio.Barrier | None = None) -> Outcom
 
 
 async def run_together(cases: Sequence[Case]) -> list[Outcome | Skipped | Exception]:
-    """Run several cases side by side, once each; all faults strike at the same time."""
+    """Run several cases side by side, once each; all faults strike at about the same time."""
     barrier = asyncio.Barrier(len(cases))
     results: list[Any] = await asyncio.gather(
-        *(run_case(case, barrier) for case in cases), return_exceptions=True
+        *(run_case(case, barrier, number * STAGGER_S) for number, case in enumerate(cases)),
+        return_exceptions=True,
     )
     return results

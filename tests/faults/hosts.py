@@ -42,8 +42,10 @@ class TwoHosts:
         names: Of the namespaces; each has the address of its place in `ADDRESSES`.
     """
 
-    def __init__(self, number: int) -> None:
-        tag = f"{os.getpid() % 100_000}x{number}"
+    _numbers = itertools.count()
+
+    def __init__(self) -> None:
+        tag = f"{os.getpid() % 100_000}x{next(self._numbers)}"
         self.names = (f"aionode{tag}a", f"aionode{tag}b")
         self._devices = (f"v{tag}a", f"v{tag}b")
 
@@ -175,12 +177,11 @@ def host_cases() -> Iterator[Case]:
         ("loses 5 % for 5 s", ("netem", "loss", "5%")),
         ("carries 1 Mbit/s for 5 s", ("tbf", "rate", "1mbit", "burst", "10kb", "latency", "50ms")),
     ]
-    numbers = itertools.count()
     for what, how in shapes:
         for roles, where in ((TWO_ROUTERS, "a router on each"), (ONE_ROUTER, "one router")):
             if roles is ONE_ROUTER and isinstance(how, tuple):
                 continue
-            hosts = TwoHosts(next(numbers))
+            hosts = TwoHosts()
             if isinstance(how, tuple):
                 strike = hosts.shape(5, *how)
             else:
@@ -195,7 +196,7 @@ def host_cases() -> Iterator[Case]:
                 short=how == -3 and roles is ONE_ROUTER,
             )
     for seconds in (3, 14, 70):
-        hosts = TwoHosts(next(numbers))
+        hosts = TwoHosts()
         yield Case(
             f"two hosts, KEEP_ALL, the cable swallows everything for {seconds} s",
             hosts.placed(KEEPING),
@@ -204,7 +205,7 @@ def host_cases() -> Iterator[Case]:
             lasts_s=seconds,
             around=hosts,
         )
-    hosts = TwoHosts(next(numbers))
+    hosts = TwoHosts()
     yield Case(
         "two hosts, one router, the process that links them killed and replaced",
         hosts.placed(ONE_ROUTER),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import importlib.metadata
 import importlib.util
 import os
 import subprocess
@@ -10,7 +11,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-__all__ = ["ros_domain", "ros_missing", "ros_peer"]
+__all__ = ["gids_of_a_client", "ros_domain", "ros_missing", "ros_peer"]
 
 
 @functools.cache
@@ -23,6 +24,14 @@ def ros_missing() -> str:
                 "a ROS 2; see CONTRIBUTING.md"
             )
     return ""
+
+
+def gids_of_a_client() -> int:
+    """Return how many gids one client of the installed ROS has in service events.
+
+    In Jazzy, Fast DDS tells the client one and the server another: ros2/rmw, issue 357.
+    """
+    return 1 if importlib.metadata.version("rclpy") >= "9" else 2
 
 
 def ros_domain(offset: int = 0) -> int:

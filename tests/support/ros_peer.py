@@ -5,8 +5,9 @@ Commands are strings on ``/commands``, such as ``call 7``; the results go to ``/
 
 from __future__ import annotations
 
-import os
 import sys
+import threading
+from contextlib import suppress
 from functools import partial
 from typing import Any
 
@@ -17,7 +18,10 @@ from rclpy.action import (  # noqa: TID251  # the same
     CancelResponse,
 )
 from rclpy.callback_groups import ReentrantCallbackGroup  # noqa: TID251  # the same
-from rclpy.executors import MultiThreadedExecutor  # noqa: TID251  # the same
+from rclpy.executors import (  # noqa: TID251  # the same
+    ExternalShutdownException,
+    MultiThreadedExecutor,
+)
 from rclpy.node import Node  # noqa: TID251  # the same
 from rclpy.parameter import Parameter  # noqa: TID251  # the same
 from rclpy.parameter_client import AsyncParameterClient  # noqa: TID251  # the same
@@ -96,6 +100,18 @@ class Peer(Node):  # type: ignore[misc]  # rclpy has no types here
         answer = await self.parameters.set_parameters([parameter])
         self.tell(answer.results[0].successful)
 
+    async def knows(self, name: str) -> None:
+        """Tell when a node has come."""
+        while name not in self.get_node_names():
+            self.create_rate(50).sleep()
+        self.tell("known")
+
+    async def leaves(self, name: str) -> None:
+        """Tell when a node has gone."""
+        while name in self.get_node_names():
+            self.create_rate(50).sleep()
+        self.tell("gone")
+
     async def execute(self, goal: Any) -> Any:
         """Execute a goal; one of order 0 runs until it is cancelled."""
         feedback = Fibonacci.Feedback(sequence=[0, 1])
@@ -126,21 +142,22 @@ async def never(request: Any, response: Any) -> Any:
 
 
 def main() -> None:
-    """Spin until stdin is closed."""
+    """Spin until stdin is closed, and end as a program of rclpy that is interrupted does."""
     rclpy.init()
     executor = MultiThreadedExecutor(4)
     peer = Peer()
     executor.add_node(peer)
     executor.create_task(partial(print, "ready", flush=True))
-    import threading
-
-    threading.Thread(target=executor.spin, daemon=True).start()
-    sys.stdin.read()
-    executor.shutdown(3)
+    threading.Thread(target=shut_down_at_end, daemon=True).start()
+    with suppress(ExternalShutdownException):
+        executor.spin()
     peer.destroy_node()
+
+
+def shut_down_at_end() -> None:
+    """Let the executor end when stdin is closed."""
+    sys.stdin.read()
     rclpy.shutdown()
-    peer.context.destroy()
-    os._exit(0)  # whatever callbacks wait for
 
 
 if __name__ == "__main__":

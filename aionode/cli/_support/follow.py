@@ -104,7 +104,9 @@ async def wait_for_type(
         hint = lookup.close_to(topic, lookup.names_and_types(node, *TOPIC_KINDS))
         output.progress(f"WARNING: topic [{topic}] does not appear to be published yet{hint}")
         with output.waiting(f"waiting for a publisher of {topic}"):
-            await node.graph.until(lambda: bool(lookup.endpoints(node, *TOPIC_KINDS, name=topic)))
+            await node.graph.until(
+                lambda: bool(lookup.endpoints(node, *TOPIC_KINDS, name=topic)), topic
+            )
         found = await lookup.topic_type(node, topic)
     assert found is not None  # noqa: S101  # the topic has an endpoint now
     return found

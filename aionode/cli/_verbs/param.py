@@ -83,7 +83,7 @@ async def wait_for_node(node: Node, name: str, timeout_s: float, *, hidden: bool
 
     try:
         async with asyncio.timeout(timeout_s):
-            await node.graph.until(lambda: name in names())
+            await node.graph.until(lambda: name in names(), name)
     except TimeoutError:
         raise lookup.unknown("Node not found:", name, names(), "node list") from None
 

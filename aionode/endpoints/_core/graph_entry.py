@@ -86,7 +86,7 @@ class GraphEntry:
         )
 
     async def until(self, condition: Callable[[], bool]) -> None:
-        """Wait until `condition()` is true; it is checked again whenever the graph changes.
+        """Wait until `condition()` is true; it is checked again when endpoints of its name change.
 
         Raises:
             CancelledError: the endpoint was closed during the wait.
@@ -95,7 +95,7 @@ class GraphEntry:
             if self._closed:
                 # A change in the same iteration of the loop had ended the wait before `close`.
                 raise asyncio.CancelledError(f"{self.endpoint.name}: destroyed")
-            wait = self._graph.changed()
+            wait = self._graph.changed(self.endpoint.name)
             self._waits.add(wait)
             wait.add_done_callback(self._waits.discard)
             await wait

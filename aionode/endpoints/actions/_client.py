@@ -217,12 +217,17 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         return True
 
     async def _change(self) -> None:
-        """Wait until endpoints appear or disappear.
+        """Wait until endpoints of this action appear or disappear.
 
         Raises:
             CancelledError: the client was destroyed during the wait.
         """
-        wait = self._graph.changed()
+        clients = (self._send_goal, self._cancel_goal, self._get_result)
+        wait = self._graph.changed(
+            *(client.srv_name for client in clients),
+            self._feedback.topic_name,
+            self._status.topic_name,
+        )
         self._waits.add(wait)
         wait.add_done_callback(self._waits.discard)
         await wait

@@ -191,10 +191,9 @@ class LinkManager:
         """Incremented whenever endpoints or links change."""
         return self._link_changes + (0 if self._graph is None else self._graph.changes)
 
-    @property
-    def has_unannounced_peers(self) -> bool:
-        """Whether there may be subscriptions that nothing announces."""
-        return self._peer_directory.has_unannounced_peers
+    def may_be_heard(self, publisher: EndpointInfo, changed: Callable[[], None]) -> bool:
+        """Return whether there may be subscriptions to a publisher that nothing announces."""
+        return self._peer_directory.may_be_heard(publisher, changed)
 
     def linked(self, participant: str) -> Connection | None:
         """Return the link to a context, if there is one."""
@@ -231,7 +230,10 @@ class LinkManager:
 
     def remove(self, gid: bytes) -> None:
         """Forget an endpoint of this context, which was closed."""
-        self.writers.remove(gid)
+        writer = self.writers.get(gid)
+        if writer is not None:
+            self.writers.remove(gid)
+            self._peer_directory.forget(writer.endpoint, writer.reconsider)
         self.readers.remove(gid)
         self.servers.pop(gid, None)
         self.requesters.pop(gid, None)

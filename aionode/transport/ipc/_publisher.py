@@ -262,7 +262,7 @@ class IpcWriter(Writer):
     def update(self) -> bool:
         """Return whether a subscription needs Zenoh: it has not switched, or is not announced."""
         registry = self._registry
-        if not self._send_queues or registry.has_unannounced_peers:
+        if not self._send_queues:
             self._needs_zenoh = True
         elif self._asked_at != registry.changes:
             self._asked_at = registry.changes
@@ -276,5 +276,5 @@ class IpcWriter(Writer):
                 other.gid not in switched
                 for other in registry.remote(EndpointKind.SUBSCRIPTION, self.endpoint.name)
                 if self.endpoint.matches(other)
-            )
+            ) or registry.may_be_heard(self.endpoint, self.reconsider)
         return self._needs_zenoh

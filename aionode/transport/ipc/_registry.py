@@ -35,9 +35,11 @@ class LinkRegistry(Protocol):
     def changes(self) -> int:
         """A number that is incremented whenever endpoints or links change."""
 
-    @property
-    def has_unannounced_peers(self) -> bool:
-        """Whether there may be subscriptions that nothing announces."""
+    def may_be_heard(self, publisher: EndpointInfo, changed: Callable[[], None]) -> bool:
+        """Return whether there may be subscriptions to a publisher that nothing announces.
+
+        `changed` is called when the answer may have changed, until the publisher is removed.
+        """
 
     def linked(self, participant: str) -> Connection | None:
         """Return the link to a context, if there is one."""
@@ -62,17 +64,24 @@ class PeerDirectory(Protocol):
         advertisement: What it announces of this context; None for nothing.
         on_advertisement: Called with what another context announces, and whether it is present.
         content_filters: The filters that subscriptions of other contexts have announced.
-        has_unannounced_peers: Whether there may be subscriptions that nothing announces.
-        on_unannounced_peers: Called when that has changed.
+        on_unannounced_peers: Called when participants that announce nothing have come or gone.
         on_retransmit: Called with what another context has retransmitted to this one.
     """
 
     advertisement: str | None
     on_advertisement: Callable[[str, bool], None]
     content_filters: ContentFilters
-    has_unannounced_peers: bool
     on_unannounced_peers: Callable[[bool], None]
     on_retransmit: Callable[[bytes], None]
+
+    def may_be_heard(self, publisher: EndpointInfo, changed: Callable[[], None]) -> bool:
+        """Return whether there may be subscriptions to a publisher that nothing announces.
+
+        `changed` is called when the answer may have changed, until `forget`.
+        """
+
+    def forget(self, publisher: EndpointInfo, changed: Callable[[], None]) -> None:
+        """Do not call `changed` any more, as the publisher is closed."""
 
     def retransmit(self, participant: str, data: bytes) -> None:
         """Send bytes to one other context, in order."""

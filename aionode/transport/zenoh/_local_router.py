@@ -30,7 +30,7 @@ from aionode.transport.zenoh._session import (
     load_config,
     run_in_own_thread,
 )
-from aionode.transport.zenoh._sockets import give_up_unreachable
+from aionode.transport.zenoh._sockets import SocketOptions
 
 if TYPE_CHECKING:
     from aionode.transport._zenoh_config import Network
@@ -151,7 +151,7 @@ class LocalRouter:
             except zenoh.ZError as error:  # another process was faster
                 logger.debug("%s: no router was opened: %s", here, reason(error))
                 return
-        give_up_unreachable(router)
+        SocketOptions(router)
         until_linked(router)
 
     def _router_at(self, port: int) -> str:

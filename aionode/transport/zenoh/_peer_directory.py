@@ -18,6 +18,8 @@ from aionode.wire._liveliness import PREFIX as ROS_PREFIX
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from aionode.graph import EndpointInfo
+    from aionode.transport.zenoh._router_matching import RouterMatching
     from aionode.transport.zenoh._session_state import SessionState
 
 __all__ = ["ZenohPeerDirectory"]
@@ -38,10 +40,7 @@ class ZenohPeerDirectory:
     A session is known once it has announced a node or an aionode context, in any domain: then it
     announces its subscriptions as well. All others are unannounced peers, which may subscribe to
     anything: a connected session that has not announced itself; and a router, as the sessions
-    behind it are not visible. A router could be asked through its admin space, but must not be: it
-    holds the lock of its routing table while it answers, and takes it once more for each reply.
-    With a declaration in between it deadlocks (zenoh 1.8 to 1.10, pull request 2619), and no other
-    process can join the system any more.
+    behind it are not visible. What those subscribe to is known of single keys: `RouterMatching`.
 
     Attributes:
         advertisement: What this context announces, as chunks of a key that begin with the
@@ -53,13 +52,16 @@ class ZenohPeerDirectory:
         on_retransmit: Called with what other contexts have sent; in order for each of them.
     """
 
-    def __init__(self, state: SessionState) -> None:
+    def __init__(self, state: SessionState, router_matching: RouterMatching) -> None:
         self.advertisement: str | None = None
         self.on_advertisement: Callable[[str, bool], None] = ignore
         self.has_unannounced_peers = False
         self.on_unannounced_peers: Callable[[bool], None] = ignore
         self.on_retransmit: Callable[[bytes], None] = ignore
         self._state = state
+        self._router_matching = router_matching
+        # Whether there is an unannounced peer that is no router.
+        self._has_plain_peers = False
         self._prefix = f"{PREFIX}/{state.domain_id}/"
         self.content_filters = state.content_filters
         self._filters_declared: Any = None
@@ -148,6 +150,8 @@ class ZenohPeerDirectory:
         self._known.clear()
         self._hosts.clear()
         self._connected.clear()
+        self._router_matching.stop()
+        self._has_plain_peers = False
         self.has_unannounced_peers = False
         self._state.has_unannounced_peers = True
         self.content_filters.clear()
@@ -215,6 +219,21 @@ class ZenohPeerDirectory:
         await answered
         return LinkStatus(advertisements, pairs)
 
+    def may_be_heard(self, publisher: EndpointInfo, changed: Callable[[], None]) -> bool:
+        """Return whether an unannounced peer may subscribe to what a publisher sends.
+
+        Args:
+            publisher: One of this context.
+            changed: Called when the answer may have changed, and `on_unannounced_peers` is not.
+        """
+        if not self.has_unannounced_peers or self._has_plain_peers:
+            return self.has_unannounced_peers
+        return self._router_matching.may_match(self._state.names_of(publisher).key, changed)
+
+    def forget(self, publisher: EndpointInfo, changed: Callable[[], None]) -> None:
+        """Do not call `changed` any more, as the publisher is closed."""
+        self._router_matching.forget(self._state.names_of(publisher).key, changed)
+
     def _retransmit_key(self, participant: str) -> str:
         return f"{self._prefix}{participant}/post"
 
@@ -278,10 +297,14 @@ class ZenohPeerDirectory:
         unknown = {zid for zid in self._connected if zid not in self._known and not is_look(zid)}
         # All other contexts reach the clients of this session, but do not see them.
         self._warn(needed=bool(unknown & self._of_kind(zenoh.WhatAmI.CLIENT)))
+        routers = self._of_kind(zenoh.WhatAmI.ROUTER)
+        self._router_matching.set_routers(routers)
+        had = self.has_unannounced_peers, self._has_plain_peers
         has_unannounced_peers = bool(unknown or self._hosts)
+        self._has_plain_peers = bool(unknown - routers or self._hosts)
         self._state.note_unannounced_peers(there_are=has_unannounced_peers)
-        if has_unannounced_peers != self.has_unannounced_peers:
-            self.has_unannounced_peers = has_unannounced_peers
+        self.has_unannounced_peers = has_unannounced_peers
+        if had != (has_unannounced_peers, self._has_plain_peers):
             self.on_unannounced_peers(has_unannounced_peers)
 
     def _warn(self, *, needed: bool) -> None:

@@ -29,7 +29,7 @@ from aionode.transport._zenoh_config import (
     session_settings,
 )
 from aionode.transport.zenoh._handlers import direct, reason
-from aionode.transport.zenoh._sockets import give_up_unreachable
+from aionode.transport.zenoh._sockets import SocketOptions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -309,8 +309,6 @@ async def open_session(network: Network, participant: str) -> tuple[zenoh.Sessio
                 used, taken = meeting(network, answering) if len(ports) > 1 else (network, set())
                 settings = session_settings(used, taken)
                 session = zenoh.open(load_config(network, settings, participant))
-            if network.may_reach_far:
-                give_up_unreachable(session)
         except zenoh.ZError as error:
             raise TransportError(
                 f"Zenoh: no session could be opened: {reason(error)}; look at "
@@ -348,7 +346,7 @@ async def open_router(listen: Iterable[str], connect: Iterable[str] = ()) -> zen
                 f"router on {', '.join(endpoints)}: {reason(error)}; "
                 "is another router running there?"
             ) from error
-        give_up_unreachable(router)
+        SocketOptions(router)
         return router
 
     return await run_in_own_thread(work, late=lambda session: session.close())

@@ -2,7 +2,7 @@
 
 Zenoh sets SO_LINGER on each of them: closing one whose peer has not taken everything waits for up
 to ten seconds, and with it the thread of Zenoh that closes it, which may be the only one that sends
-or connects for this process. That is switched off soon after a connection was made.
+or connects for this process. `SocketOptions` switches that off soon after a connection was made.
 
 In `close`, and in blocking sends, Zenoh waits until such a peer reads on or the connection is lost;
 in `close`, also until one has answered that it has just dialled, or that has just dialled. Shutting
@@ -15,14 +15,13 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import os
 import select
 import socket
 import struct
 import sys
 import threading
 from contextlib import ExitStack, contextmanager, suppress
-from os import dup, fstat
-from pathlib import Path
 from stat import S_ISSOCK
 from typing import TYPE_CHECKING, Final
 
@@ -35,11 +34,11 @@ from aionode.transport.zenoh._handlers import direct
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["LingerSwitch", "cut_stuck", "give_up_unreachable", "look"]
+__all__ = ["SocketOptions", "cut_stuck", "look"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
-DESCRIPTORS: Final = Path("/proc/self/fd")
+DESCRIPTORS: Final = "/proc/self/fd"
 
 INTERNET: Final = {socket.AF_INET, socket.AF_INET6}
 """The families of connections between hosts."""
@@ -72,47 +71,47 @@ SETTLE_S: Final = 0.5
 """How long after a new connection its socket is looked for; several are made at once."""
 
 
+Descriptor = tuple[int, int]
+"""A descriptor and its inode, as its number is used again."""
+
+
+def sockets(known: set[Descriptor] | None = None) -> Iterator[Descriptor]:
+    """Yield the sockets of this process; not those in `known`, from which closed ones are removed.
+
+    Args:
+        known: Descriptors that need not be looked at; those of other kinds are added.
+    """
+    skipped = set() if known is None else known.copy()
+    if known is not None:
+        known.clear()
+    for name in os.listdir(DESCRIPTORS):  # noqa: PTH208 - in half the time
+        with suppress(OSError):  # closed meanwhile
+            status = os.fstat(int(name))
+            descriptor = int(name), status.st_ino
+            if descriptor not in skipped and S_ISSOCK(status.st_mode):
+                yield descriptor
+            elif known is not None:
+                known.add(descriptor)
+
+
+def connection(descriptor: Descriptor, stack: ExitStack) -> tuple[str, socket.socket] | None:
+    """Return a duplicate of a TCP socket, and the address of its peer, empty if it has none."""
+    with suppress(OSError):  # closed meanwhile
+        one = stack.enter_context(socket.socket(fileno=os.dup(descriptor[0])))
+        if one.type == socket.SOCK_STREAM and one.family in INTERNET:
+            with suppress(OSError):  # it listens, or is not connected yet, or not any more
+                host, port = one.getpeername()[:2]
+                return f"[{host}]:{port}" if ":" in host else f"{host}:{port}", one
+            return "", one
+    return None
+
+
 @contextmanager
 def connections() -> Iterator[list[tuple[str, socket.socket]]]:
     """Yield the TCP connections of this process, each with the address of its peer."""
     with ExitStack() as stack:
-        found = []
-        for entry in list(DESCRIPTORS.iterdir()):
-            with suppress(OSError):  # no socket, or closed meanwhile
-                fd = int(entry.name)
-                if not S_ISSOCK(fstat(fd).st_mode):
-                    continue
-                one = stack.enter_context(socket.socket(fileno=dup(fd)))
-                if one.type == socket.SOCK_STREAM and one.family in INTERNET:
-                    host, port = one.getpeername()[:2]
-                    found.append((f"[{host}]:{port}" if ":" in host else f"{host}:{port}", one))
-        yield found
-
-
-def give_up_unreachable(session: zenoh.Session) -> None:
-    """Let the connections of a session to other machines end soon when nothing arrives there.
-
-    Otherwise, TCP sends again after 0.2, 0.4, 0.8 … s: after a network was gone for 30 s, and is
-    back, it is silent for up to 30 s more. A new connection finds the network at once.
-    """
-    option = getattr(socket, "TCP_USER_TIMEOUT", None)
-    if option is None:  # not on Linux
-        return
-    held: list[zenoh.TransportEventsListener[None]] = []
-
-    def limit(event: zenoh.TransportEvent) -> None:
-        if event.kind != zenoh.SampleKind.PUT:
-            return
-        with connections() as found:
-            for peer, one in found:
-                if not is_near(f"tcp/{peer}"):
-                    with suppress(OSError):  # it is lost already
-                        one.setsockopt(socket.IPPROTO_TCP, option, UNREACHABLE_MS)
-                        one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
-
-    listener = session.info.declare_transport_events_listener(direct(limit), history=True)
-    # It listens as long as it exists; its callback holds it until the session is closed.
-    held.append(listener)
+        found = [connection(descriptor, stack) for descriptor in sockets()]
+        yield [one for one in found if one is not None and one[0]]
 
 
 def queued_bytes(one: socket.socket) -> int:
@@ -169,54 +168,70 @@ def look(session: zenoh.Session, participant: str) -> tuple[bool, int] | None:
     return None
 
 
-def switch_linger_off(peers: set[str]) -> None:
-    """Let the connections to some peers be closed without waiting for them."""
-    with connections() as found:
-        for peer, one in found:
-            if peer in peers:
-                with suppress(OSError):  # it is lost already
-                    one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
+class SocketOptions:
+    """Sets the options of each connection of a session, soon after it was made.
 
+    Closing one never waits for its peer. One to another machine is lost when nothing has arrived
+    there for `UNREACHABLE_MS`: otherwise, TCP sends again after 0.2, 0.4, 0.8 … s, and when a
+    network was gone for 30 s, and is back, it is silent for up to 30 s more. A new connection finds
+    the network at once.
 
-class LingerSwitch:
-    """Switches SO_LINGER off for each connection of a session.
+    It works until the session is closed. The connections of a burst are looked for at once, and of
+    all descriptors of the process only those that are new.
 
     Args:
-        session: The session; its loop is the one that runs.
+        session: The session.
     """
 
     def __init__(self, session: zenoh.Session) -> None:
-        self._loop = asyncio.get_running_loop()
-        self._timer: asyncio.TimerHandle | None = None
+        self._lock = threading.Lock()
+        self._timer: threading.Timer | None = None
+        # The peers of connections whose options are not set yet.
         self._new: set[str] = set()
-        self._closed = False
+        self._known: set[Descriptor] = set()
+        self._closed = not sys.platform.startswith("linux")
+        # It exists as long as this does, which its callback holds until the session is closed.
         self._listener = session.info.declare_link_events_listener(
             direct(self._on_event), history=True
         )
 
     def close(self) -> None:
         """Stop watching."""
-        self._closed = True
+        with self._lock:
+            self._closed = True
+            if self._timer is not None:
+                self._timer.cancel()
         self._listener.undeclare()
-        if self._timer is not None:
-            self._timer.cancel()
 
     def _on_event(self, event: zenoh.LinkEvent) -> None:
         """Handle a connection that was made or lost; in a thread of Zenoh."""
-        if event.kind == zenoh.SampleKind.PUT and sys.platform.startswith("linux"):
-            with suppress(RuntimeError):  # the loop was closed meanwhile
-                self._loop.call_soon_threadsafe(self._add, address_of(event.link))
+        if event.kind != zenoh.SampleKind.PUT:
+            return
+        with self._lock:
+            if self._closed:
+                return
+            self._new.add(address_of(event.link))
+            if self._timer is None:
+                self._timer = threading.Timer(SETTLE_S, self._set)
+                self._timer.name = "aionode-zenoh"
+                self._timer.daemon = True
+                start_thread(self._timer)
 
-    def _add(self, peer: str) -> None:
-        self._new.add(peer)
-        if self._timer is None and not self._closed:
-            self._timer = self._loop.call_later(SETTLE_S, self._switch)
-
-    def _switch(self) -> None:
-        self._timer = None
-        new, self._new = self._new, set()
-        # Looking through all descriptors of a large process takes some milliseconds.
-        start_thread(threading.Thread(target=switch_linger_off, args=(new,), name="aionode-zenoh"))
+    def _set(self) -> None:
+        """Set the options of all new connections; in the thread of the timer."""
+        with self._lock:
+            self._timer = None
+            new, self._new = self._new, set()
+        for descriptor in sockets(self._known):
+            with ExitStack() as stack, suppress(OSError):  # it is lost already
+                peer, one = connection(descriptor, stack) or ("", None)
+                if one is not None and peer in new:
+                    one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
+                    if not is_near(f"tcp/{peer}"):
+                        option = socket.TCP_USER_TIMEOUT
+                        one.setsockopt(socket.IPPROTO_TCP, option, UNREACHABLE_MS)
+                if one is None or peer in new:
+                    self._known.add(descriptor)
 
 
 def cut(peers: set[str]) -> None:

@@ -13,10 +13,11 @@ from aionode.transport.zenoh._local_router import LocalRouter
 from aionode.transport.zenoh._peer_directory import ZenohPeerDirectory
 from aionode.transport.zenoh._publisher import ZenohWriter
 from aionode.transport.zenoh._recovery import Recovery
+from aionode.transport.zenoh._router_matching import RouterMatching
 from aionode.transport.zenoh._services import ZenohRequester, ZenohServer
 from aionode.transport.zenoh._session import ConnectionWatcher, close_session, open_session
 from aionode.transport.zenoh._session_state import SessionState
-from aionode.transport.zenoh._sockets import LingerSwitch, cut_stuck
+from aionode.transport.zenoh._sockets import SocketOptions, cut_stuck
 from aionode.transport.zenoh._subscription import ZenohReader
 
 if TYPE_CHECKING:
@@ -61,13 +62,14 @@ class ZenohTransport(Transport):
         self.session_state = SessionState(participant, network.domain_id, time_base)
         self._state = self.session_state
         self._watcher = Watcher(self._state)
-        self.peer_directory = ZenohPeerDirectory(self._state)
+        self._router_matching = RouterMatching(self._state, network)
+        self.peer_directory = ZenohPeerDirectory(self._state, self._router_matching)
         # Done when the tokens of all connected peers are in the graph.
         self._answered: asyncio.Future[None] | None = None
         self._missing = 0  # how many peers that accept connections were not connected in time
         self._recovery = Recovery(self._state, network, self._watcher.check)
         self._local_router = LocalRouter(self._state, network)
-        self._linger_switch: LingerSwitch | None = None
+        self._socket_options: SocketOptions | None = None
 
     def __repr__(self) -> str:
         state = "closed" if self._state.session is None else "open"
@@ -104,7 +106,7 @@ class ZenohTransport(Transport):
         self._state.connect(session, graph)
         links = ConnectionWatcher(session, self._state.queue)
         try:
-            self._linger_switch = LingerSwitch(session)
+            self._socket_options = SocketOptions(session)
             self._watcher.start(session)
             self.peer_directory.start(session)
             self._recovery.start(session)
@@ -140,9 +142,9 @@ class ZenohTransport(Transport):
         state = self._state
         self._answered = None
         await state.flush()
-        if self._linger_switch is not None:
-            self._linger_switch.close()
-            self._linger_switch = None
+        if self._socket_options is not None:
+            self._socket_options.close()
+            self._socket_options = None
         self._recovery.stop()
         self.peer_directory.stop()
         self._watcher.stop()
@@ -150,6 +152,7 @@ class ZenohTransport(Transport):
         if session is not None:
             await cut_stuck(session)
             await close_session(session)
+        await self._router_matching.close()
         await self._local_router.close()
         state.waker.close()
 

@@ -198,9 +198,8 @@ async def test_its_endpoints_are_in_the_graph(node: Node) -> None:
 
 
 @pytest.mark.one_loop
-@pytest.mark.stress
-async def test_a_process_that_ends_cleanly_ends_its_calls() -> None:
-    """And its node leaves the graph."""
+async def test_a_process_that_ends_cleanly_ends_its_calls_at_once() -> None:
+    """And its node leaves the graph, long before its lease of 20 s ends."""
     alone = ros_domain(50)
     with ros_peer(alone) as process:
         async with our_node(alone) as node:
@@ -210,10 +209,22 @@ async def test_a_process_that_ends_cleanly_ends_its_calls() -> None:
             await asyncio.wait([call], timeout=0.5)
             assert process.stdin is not None
             process.stdin.close()
-            with pytest.raises(ServiceUnavailableError):
-                await call
-            while client.service_is_ready() or "peer" in node.get_node_names():
-                await node.graph.changed()
+            async with asyncio.timeout(10):
+                with pytest.raises(ServiceUnavailableError):
+                    await call
+                while client.service_is_ready() or "peer" in node.get_node_names():
+                    await node.graph.changed()
+
+
+async def test_it_learns_at_once_that_our_context_ends(node: Node) -> None:
+    """Its node leaves the graph, long before its lease of 20 s ends."""
+    async with (
+        Context(transport="rcl", domain_id=ros_domain()) as context,
+        Node("leaver", context=context),
+    ):
+        assert await told(node, "knows leaver") == "known"
+    async with asyncio.timeout(10):
+        assert await told(node, "leaves leaver") == "gone"
 
 
 @pytest.mark.one_loop

@@ -11,10 +11,12 @@ from contextlib import AsyncExitStack
 from typing import Any
 
 import pytest
+import zenoh  # noqa: TID251  # type of sessions
 
 from aionode._concurrency import checkpoint
 from aionode.context import Context
 from aionode.transport.zenoh import _sockets
+from aionode.transport.zenoh._session import close_session, open_router
 from tests.support.peers import two_contexts
 
 pytestmark = pytest.mark.skipif(
@@ -22,10 +24,15 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-def lingers(context: Context) -> list[bool]:
-    """Return for each connection of a context whether closing it waits for the peer."""
+def session_of(context: Context) -> Any:
+    """Return the Zenoh session of an open context."""
     transport: Any = context.transports[1]
-    peers = {_sockets.address_of(link) for link in transport._state.session.info.links()}
+    return transport.session_state.session
+
+
+def lingers(session: zenoh.Session) -> list[bool]:
+    """Return for each connection of a session whether closing it waits for the peer."""
+    peers = {_sockets.address_of(link) for link in session.info.links()}
     with _sockets.connections() as found:
         options = [
             one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8)
@@ -43,7 +50,7 @@ async def test_no_connection_waits_for_its_peer_when_it_is_closed(
     async with two_contexts() as both:
         for context in both:
             async with asyncio.timeout(20):
-                while not (found := lingers(context)) or any(found):
+                while not (found := lingers(session_of(context))) or any(found):
                     await checkpoint()
 
 
@@ -51,12 +58,52 @@ async def test_a_closed_context_looks_for_sockets_no_more() -> None:
     """A timer that is left would hold the closed session."""
     async with two_contexts() as both:
         transports: list[Any] = [context.transports[1] for context in both]
-        switches = [transport._linger_switch for transport in transports]
-        while not all(switch._timer for switch in switches):
+        options = [transport._socket_options for transport in transports]
+        while not all(each._timer for each in options):
             await checkpoint()
+        timers = [each._timer for each in options]
 
-    assert all(switch._timer.cancelled() for switch in switches)
-    assert [transport._linger_switch for transport in transports] == [None, None]
+    for timer in timers:
+        timer.join(10)
+    assert [timer.is_alive() for timer in timers] == [False, False]
+    assert [transport._socket_options for transport in transports] == [None, None]
+
+
+async def test_no_connection_of_a_router_waits_for_its_peer_when_it_is_closed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A router stood still for all when one of its peers had stopped, and was lost."""
+    monkeypatch.setattr(_sockets, "SETTLE_S", 0.0)
+    router = await open_router([f"tcp/127.0.0.1:{os.environ['AIONODE_ROUTER_PORT']}"])
+    try:
+        async with Context(), asyncio.timeout(20):
+            while not (found := lingers(router)) or any(found):
+                await checkpoint()
+    finally:
+        await close_session(router)
+
+
+def test_only_new_descriptors_are_looked_at() -> None:
+    """A process with many connections would look through all of them at each new one."""
+    with socket.socket() as before, socket.socket() as new:
+        known = set(_sockets.sockets(set()))
+        numbers = {number for number, _ in known}
+        assert {before.fileno(), new.fileno()} <= numbers
+
+        known = {each for each in known if each[0] != new.fileno()}
+
+        assert [number for number, _ in _sockets.sockets(known)] == [new.fileno()]
+
+
+def test_a_descriptor_whose_number_is_used_again_is_new() -> None:
+    """The system gives the lowest free number to a new connection."""
+    with socket.socket() as one:
+        known = set(_sockets.sockets(set()))
+        number = one.fileno()
+    with socket.socket() as other:
+        assert other.fileno() == number
+
+        assert number in {each for each, _ in _sockets.sockets(known)}
 
 
 @pytest.mark.parametrize("who", ["we dial", "it dials"])

@@ -1,0 +1,82 @@
+"""The graph wakes those that wait for a change, and no others."""
+
+from __future__ import annotations
+
+import asyncio
+
+from aionode.graph import Graph, NodeInfo
+from aionode.interfaces.std_msgs.msg import Int32
+from aionode.interfaces.std_srvs.srv import Trigger
+from aionode.node import Node
+from aionode.testing import local_context, settle
+
+
+def node_info(name: str) -> NodeInfo:
+    """Return a node of another context."""
+    return NodeInfo("a1", 0, name, "/")
+
+
+async def test_a_wait_for_a_name_is_not_ended_by_changes_of_others() -> None:
+    """In a large system, each wait would look again at every change of anything."""
+    graph = Graph()
+    looked = 0
+
+    def is_there() -> bool:
+        nonlocal looked
+        looked += 1
+        return bool(graph.nodes_named("/wanted"))
+
+    async with asyncio.TaskGroup() as tasks:
+        tasks.create_task(graph.until(is_there, "/wanted"))
+        for number in range(10):
+            await settle()
+            graph.add_node(node_info(f"other_{number}"))
+        await settle()
+        graph.add_node(node_info("wanted"))
+
+    assert looked == 2
+
+
+async def test_a_wait_for_several_names_ends_with_any_of_them_and_leaves_nothing() -> None:
+    """An action client waits for five names at once."""
+    graph = Graph()
+    wait = graph.changed("/one", "/two")
+    cancelled = graph.changed("/three")
+    graph.add_node(node_info("two"))
+    cancelled.cancel()
+    await wait
+    await settle()
+
+    assert cancelled.cancelled()
+    assert graph._waiters == {}
+
+
+async def test_a_wait_without_a_name_ends_with_any_change() -> None:
+    """As `node.graph.changed()` has always done."""
+    graph = Graph()
+    wait = graph.changed()
+    graph.add_node(node_info("any"))
+    await wait
+
+
+async def test_a_client_that_waits_for_a_service_does_not_look_at_new_topics() -> None:
+    """Waiting for the last of many nodes would otherwise cost the square of their number."""
+    async with Node("n", context=local_context()) as node, asyncio.TaskGroup() as tasks:
+        client = node.create_client(Trigger, "wanted")
+        asked = 0
+        is_ready = client.service_is_ready
+
+        def count() -> bool:
+            nonlocal asked
+            asked += 1
+            return is_ready()
+
+        client.service_is_ready = count  # type: ignore[method-assign]  # to count
+        tasks.create_task(client.wait_for_service())
+        for number in range(5):
+            await settle()
+            node.create_publisher(Int32, f"t{number}", 10)
+        await settle()
+        node.create_service(Trigger, "wanted", lambda _, response: response)
+
+    assert asked == 2
