@@ -28,7 +28,7 @@ from aionode.message import (
     to_json,
     to_yaml,
 )
-from tests.support.random_messages import any_messages
+from tests.support.strategies import any_messages
 
 TWIST = """\
 linear:

@@ -43,7 +43,7 @@ from aionode.message import (
     snapshot,
     snapshotter,
 )
-from tests.support.random_messages import any_messages
+from tests.support.strategies import any_messages
 
 
 class Texts(Message, typename="tutorial/msg/Texts"):
