@@ -64,7 +64,7 @@ def sleep_s(seconds: float) -> None:
 
 
 def freeze_reader(
-    freeze_s: float, *, role: str = "reader", messages: int = 30_000, limit_ms: float = STANDS_MS
+    freeze_s: float, *, role: str = "reader", messages: int = 15_000, limit_ms: float = STANDS_MS
 ) -> None:
     """Freeze the reader of a KEEP_ALL publisher: in the end it has everything, others never lag."""
     with members(
@@ -126,11 +126,11 @@ def test_a_publisher_ends_at_once_beside_a_frozen_reader_and_says_what_is_lost(r
 
 def test_a_reader_that_pauses_with_its_loop_free_has_everything() -> None:
     """Its network thread used to wait with it, and then the connection was lost."""
-    with members(("reader", "big", 30_000), ("keeper", "big", 30_000, 500)) as (reader, keeper):
+    with members(("reader", "big", 15_000), ("keeper", "big", 15_000, 500)) as (reader, keeper):
         keeper.expect("matched")
         reader.write("pause 2")
-        keeper.expect("sent 30000 0")
-        reader.expect("heard 30000")
+        keeper.expect("sent 15000 0")
+        reader.expect("heard 15000")
         assert gap_ms(reader) < STANDS_MS
         assert not [line for line in reader.rest_so_far() if line.startswith("wrong")]
 
