@@ -1,4 +1,4 @@
-"""The main program: help, wrong arguments, errors in one line, output without a reader."""
+"""The main program: help, wrong arguments, one-line errors, output without a reader."""
 
 from __future__ import annotations
 

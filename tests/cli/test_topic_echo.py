@@ -254,7 +254,9 @@ async def test_with_a_type_it_waits_for_the_topic(
     assert screen.text == "data: late\n---\n"
 
 
-async def test_a_timeout_without_a_message_is_said(tool: Node, talker: Node, screen: Any) -> None:
+async def test_a_timeout_without_a_message_is_reported(
+    tool: Node, talker: Node, screen: Any
+) -> None:
     """Otherwise a script could not tell silence from success."""
     talker.create_publisher(String, "/topic", 10)
 
@@ -292,7 +294,7 @@ async def test_two_types_need_a_choice(
         await echo(tool, "/topic", output=screen.output)
 
 
-async def test_lost_messages_are_said(running: Any, screen: Any) -> None:
+async def test_lost_messages_are_reported(running: Any, screen: Any) -> None:
     """On stderr, as they are no data; the count is of all so far."""
     faulty = FaultyTransport(LocalTransport(), drop=0.5, seed=2)
     async with (

@@ -185,7 +185,7 @@ def test_the_arrays_of_a_new_message_can_be_changed() -> None:
         ),
     ],
 )
-def test_a_misfit_names_its_path(cls: type[Message], text: str, error: str) -> None:
+def test_an_invalid_value_is_named_with_its_path(cls: type[Message], text: str, error: str) -> None:
     """From plain values, YAML and JSON alike."""
     data = yaml.safe_load(text)
     readers: list[tuple[Callable[..., Message], object]] = [

@@ -226,7 +226,7 @@ def test_what_means_the_same_is_taken_in_one_form(message: Message, value: objec
     ],
     ids=lambda value: None if isinstance(value, str) else type(value).__name__,
 )
-def test_a_misfit_names_its_path_its_value_and_what_fits(message: Message, text: str) -> None:
+def test_an_invalid_value_is_named_with_its_path_and_what_fits(message: Message, text: str) -> None:
     """The error suffices to fix the mistake without a debugger."""
     for validate in (snapshot, check):
         with pytest.raises(MessageError) as caught:

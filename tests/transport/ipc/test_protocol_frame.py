@@ -1,4 +1,4 @@
-"""Frames on a stream come out as they went in, and garbage is noticed."""
+"""Frames are received as they were sent, and malformed data is detected."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def test_what_is_cut_off_stays_missing(one: Frame, data: st.DataObject) -> None:
 
 @given(st.binary(max_size=400), st.lists(st.integers(0, 400), max_size=4))
 @settings(max_examples=settings().max_examples * 2)
-def test_garbage_is_an_error_or_waits_for_more(stream: bytes, cuts: list[int]) -> None:
+def test_malformed_data_is_an_error_or_incomplete(stream: bytes, cuts: list[int]) -> None:
     """Nothing else may come out of it, whatever the other end sends."""
     parser = FrameParser()
     try:

@@ -323,7 +323,7 @@ async def test_a_topic_without_bytes_has_one_key() -> None:
 # Malformed data from the network
 
 
-async def test_garbage_is_counted_logged_once_and_stops_nothing(
+async def test_malformed_data_is_counted_logged_once_and_stops_nothing(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     """Any process may put any data on a key."""
