@@ -2,7 +2,7 @@
 #
 #   make demo      two nodes talk: python -m aionode.examples.pubsub
 #   make test      the tests, in WORKERS processes: one more than there are processors
-#   make stress    variants of tests that take long: what differs little from what `make test` runs
+#   make stress    variants that take long or differ little from what `make test` runs
 #   make check     style, types, layers and structure, the documentation and its code
 #   make coverage  how much of aionode the tests reach that start no process; fails below 92 %
 #   make bench     the benchmarks; tables, JSON and pictures in benchmarks/results/
@@ -41,7 +41,7 @@ test: .venv/installed-dev
 	$(BIN)/python -m pytest -q -n $(WORKERS)
 
 stress: .venv/installed-dev
-	$(BIN)/python -m pytest -q -n $(WORKERS) -m stress
+	$(BIN)/python -m pytest -q -n $(WORKERS) -m "stress or second_loop" --hypothesis-profile=thorough
 
 check: .venv/installed-dev
 	$(BIN)/ruff check
@@ -55,7 +55,8 @@ check: .venv/installed-dev
 # Lines are counted in the tests' own process only. Tests with time limits may fail meanwhile:
 # `make test` is what judges them, so only the share of the code counts.
 coverage: .venv/installed-dev
-	-$(BIN)/python -m pytest -q -n $(WORKERS) -m "not processes and not stress" \
+	-$(BIN)/python -m pytest -q -n $(WORKERS) \
+		-m "not processes and not faults and not stress and not second_loop" \
 		--cov --cov-report= --cov-fail-under=0
 	$(BIN)/coverage report --skip-covered --sort=cover
 

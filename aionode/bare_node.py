@@ -37,13 +37,10 @@ if TYPE_CHECKING:
         Registration,
         Requester,
         Serve,
-        Transport,
         Writer,
     )
 
 __all__ = ["BareCall", "BareClient", "BareEndpoint", "BareNode", "BarePublisher"]
-
-RegisteredT = TypeVar("RegisteredT", bound="Registration")
 
 
 class BareEndpoint:
@@ -275,7 +272,7 @@ class BareNode:
         self._endpoints: dict[BareEndpoint, None] = {}
         self._destroyed = False
         context._add_node(self)
-        self._registrations = self._register(lambda transport: transport.create_node(self.info))
+        self._registrations = self.context._register(lambda one: one.create_node(self.info))
         context.graph.add_node(self.info)
 
     def create_publisher(self, msg_type: Any, topic: str, profile: QoSProfile) -> BarePublisher:
@@ -285,7 +282,7 @@ class BareNode:
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
         endpoint = self._describe(EndpointKind.PUBLISHER, topic, msg_type, profile)
-        writers = self._register(lambda one: one.create_writer(endpoint, msg_type))
+        writers = self.context._register(lambda one: one.create_writer(endpoint, msg_type))
         return self._add(BarePublisher(self, endpoint, writers))
 
     def create_subscription(
@@ -301,7 +298,9 @@ class BareNode:
         endpoint = reader.endpoint = self._describe(
             EndpointKind.SUBSCRIPTION, topic, msg_type, profile
         )
-        registrations = self._register(lambda one: one.create_reader(endpoint, msg_type, reader))
+        registrations = self.context._register(
+            lambda one: one.create_reader(endpoint, msg_type, reader)
+        )
         return self._add(BareEndpoint(self, endpoint, registrations))
 
     def create_server(
@@ -313,7 +312,9 @@ class BareNode:
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
         endpoint = self._describe(EndpointKind.SERVER, service, srv_type, profile)
-        registrations = self._register(lambda one: one.create_server(endpoint, srv_type, serve))
+        registrations = self.context._register(
+            lambda one: one.create_server(endpoint, srv_type, serve)
+        )
         return self._add(BareEndpoint(self, endpoint, registrations))
 
     def create_client(self, srv_type: Any, service: str, profile: QoSProfile) -> BareClient:
@@ -323,7 +324,7 @@ class BareNode:
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
         endpoint = self._describe(EndpointKind.CLIENT, service, srv_type, profile)
-        requesters = self._register(lambda one: one.create_requester(endpoint, srv_type))
+        requesters = self.context._register(lambda one: one.create_requester(endpoint, srv_type))
         return self._add(BareClient(self, endpoint, requesters))
 
     def destroy_node(self) -> None:
@@ -356,17 +357,6 @@ class BareNode:
         elif kind is EndpointKind.SUBSCRIPTION:
             profile = qos.best_available_for_subscription(profile, others)
         return self.context._describe_endpoint(kind, self.info, name, ros_type, profile.resolved())
-
-    def _register(self, register: Callable[[Transport], RegisteredT]) -> list[RegisteredT]:
-        """Register something with every transport of the context, or, if one refuses, with none."""
-        made: list[RegisteredT] = []
-        try:
-            made.extend(map(register, self.context.transports))
-        except BaseException:
-            for registration in made:
-                registration.close()
-            raise
-        return made
 
     def _add(self, endpoint: EndpointT) -> EndpointT:
         self._endpoints[endpoint] = None

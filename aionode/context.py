@@ -11,7 +11,7 @@ import os
 import secrets
 import threading
 import weakref
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, TypeVar
 
 from aionode._concurrency import spin_before_blocking, to_the_end
 from aionode._distribution import NO_TYPE_HASH, choose_distribution
@@ -25,7 +25,7 @@ from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from aionode.logging import get_logger
 from aionode.message import type_name
 from aionode.transport._zenoh_config import network_from, unheard_middleware
-from aionode.transport.base import Transport
+from aionode.transport.base import Registration, Transport
 from aionode.transport.local import LocalTransport
 from aionode.wire._liveliness import endpoint_token, gid_of
 from aionode.wire.typehash import type_hash
@@ -39,6 +39,8 @@ if TYPE_CHECKING:
     from aionode.qos import QoSProfile
 
 __all__ = ["Context"]
+
+RegisteredT = TypeVar("RegisteredT", bound=Registration)
 
 TRANSPORT_VARIABLE = "AIONODE_TRANSPORT"
 
@@ -469,6 +471,17 @@ class Context:
         """Return a number that no other node or endpoint of this context has."""
         self._next_id += 1
         return self._next_id - 1
+
+    def _register(self, register: Callable[[Transport], RegisteredT]) -> list[RegisteredT]:
+        """Register something with every transport, or with none if one refuses."""
+        made: list[RegisteredT] = []
+        try:
+            made.extend(map(register, self.transports))
+        except BaseException:
+            for registration in made:
+                registration.close()
+            raise
+        return made
 
     def _describe_node(self, name: str, namespace: str, enclave: str) -> NodeInfo:
         """Return the graph entry of a new node."""

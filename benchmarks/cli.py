@@ -106,7 +106,7 @@ def rates(env: dict[str, str], seconds: int) -> list[dict[str, Any]]:
             process.send_signal(signal.SIGINT)
         said = [json.loads(line)["rate_hz"] for line in watcher.communicate()[0].splitlines()]
         true = [float(line) for line in talker.communicate()[0].splitlines()]
-        # The first second of each is that of the start.
+        # The first second of each includes its start.
         row = {
             "wanted_hz": wanted,
             "published_hz": statistics.mean(true[1:]),

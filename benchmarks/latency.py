@@ -237,7 +237,7 @@ def loops() -> dict[str, Callable[[], asyncio.AbstractEventLoop]]:
 
 
 def environment() -> dict[str, str]:
-    """Return what the figures depend on."""
+    """Return the machine and versions that the figures depend on."""
     packages = ("aionode", "uvloop", "numpy", "msgspec")
     return {
         "python": platform.python_version(),
@@ -247,7 +247,7 @@ def environment() -> dict[str, str]:
 
 
 def version(package: str) -> str:
-    """Return the installed version of a package, or that there is none."""
+    """Return the installed version of a package, or ``not installed``."""
     try:
         return metadata.version(package)
     except metadata.PackageNotFoundError:

@@ -266,7 +266,7 @@ async def collect(loop: str, messages: int, rounds: int) -> list[Row]:
 
 
 def machine() -> dict[str, Any]:
-    """Return what the figures depend on."""
+    """Return the machine and versions that the figures depend on."""
     return {
         "python": platform.python_version(),
         "machine": f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",

@@ -46,7 +46,7 @@ LEVEL_LIMIT_SEC: Final = 20.0
 
 
 class Level(NamedTuple):
-    """What there is of everything that could be left behind."""
+    """Counts of everything that could be left behind."""
 
     tasks: int
     descriptors: int
@@ -60,11 +60,11 @@ class Level(NamedTuple):
 
 
 ALLOWED: Final = Level(3, 4, 2, 12_000, 4, 0)
-"""How much of each may have come in addition: calls under way, and what is first needed late."""
+"""How much each may grow: calls under way, and what is needed late for the first time."""
 
 
 def level(entities: int) -> Level:
-    """Return what there is now; 0 where the system does not tell."""
+    """Return the current level; 0 where the system does not tell."""
     gc.collect()
     me = Path("/proc/self")
     try:
@@ -136,7 +136,7 @@ class Soak:
         return Fibonacci.Result(sequence=[goal.request.order])
 
     async def flood(self) -> None:
-        """Publish without end."""
+        """Publish until cancelled."""
         while True:
             for _ in range(20):
                 self.publisher.publish(String(data=f"message {self.sent}"))
@@ -197,7 +197,7 @@ class Soak:
             self.processes += 1
 
     async def level(self) -> Level:
-        """Send all guests away, and return what is there when nothing gets less any more."""
+        """End all guests, and return the level once it no longer falls."""
         self.invited.clear()
         while self.guests:  # noqa: ASYNC110 - many set it
             await asyncio.sleep(0.1)
@@ -212,7 +212,7 @@ class Soak:
         return last
 
     async def look(self) -> Level:
-        """Return what there is, with what a newcomer finds on the network."""
+        """Return the level, including what a newcomer finds on the network."""
         async with Context() as newcomer, Node("newcomer", context=newcomer) as node:
             graph = node.graph
             entities = len(graph.nodes()) + len(graph.endpoints())
@@ -263,7 +263,7 @@ async def be_guest() -> None:
 
 
 async def soak(seconds: float) -> list[str]:
-    """Do all of it for some time, and return what was wrong."""
+    """Run everything for some time, and return the failures."""
     async with Context() as context:
         work = Soak(context)
         async with work.node, asyncio.TaskGroup() as tasks:

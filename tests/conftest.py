@@ -1,4 +1,4 @@
-"""What every test of the project runs under: debug mode, and both event loops."""
+"""What every test of the project runs under: debug mode, event loops, hypothesis, compiled code."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import asyncio
 import functools
 import inspect
 import os
+import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -21,11 +23,25 @@ if TYPE_CHECKING:
 
 # How long an example takes depends on what else runs, such as the other workers.
 settings.register_profile(
-    "tests", deadline=None, suppress_health_check=[HealthCheck.too_slow], print_blob=True
+    "tests",
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow],
+    print_blob=True,
+    max_examples=40,
 )
 settings.load_profile("tests")
-# For `make fuzz`. Tests that set a number of examples of their own take it as a part of this one.
+# `.ci/run` and `make stress` use "thorough", `make fuzz` uses "fuzz". Tests that set a number of
+# examples of their own take it as a part of that of the profile.
+settings.register_profile("thorough", settings.get_profile("tests"), max_examples=100)
 settings.register_profile("fuzz", settings.get_profile("tests"), max_examples=2000)
+
+# Hundreds of processes would each compile aionode where Python is told to write no bytecode. What
+# they share is not written beside the sources then.
+if sys.dont_write_bytecode:
+    sys.dont_write_bytecode = False
+    sys.pycache_prefix = str(Path(__file__).parent.parent / ".pytest_cache" / "bytecode")
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix
 
 
 def debugging_loop() -> asyncio.AbstractEventLoop:
@@ -41,6 +57,10 @@ PROCESSES = (
     "tests/faults/",
     "tests/cli/test_terminal.py",
     "tests/cli/test_ending.py",
+    "tests/cli/test_shells.py",
+    "tests/cli/test_complete_answers.py",
+    "tests/cli/test_distribution.py",
+    "tests/rclpy/test_terminals.py",
     "tests/rclpy/test_run.py",
     "tests/rclpy/test_distribution.py",
     "tests/test_examples.py",
@@ -48,6 +68,23 @@ PROCESSES = (
     "tests/typing/",
 )
 """Files and folders whose tests start processes. They take long, so several workers begin here."""
+
+BOTH_LOOPS = (
+    "tests/clock/",
+    "tests/endpoints/core/",
+    "tests/endpoints/timer/",
+    "tests/node/",
+    "tests/processes/",
+    "tests/test_concurrency.py",
+    "tests/test_context.py",
+    "tests/test_runner.py",
+    "tests/transport/",
+)
+"""Files and folders whose tests always run on asyncio and on uvloop.
+
+They are about what differs between the two: alarms, sockets, threads, the order of callbacks, and
+the start and end of a loop. On uvloop, tests in other places have the mark `second_loop`.
+"""
 
 
 @pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads its options
@@ -73,8 +110,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         if isinstance(item, pytest.Function) and inspect.iscoroutinefunction(item.obj):
             marker = item.get_closest_marker("timeout")
             item.obj = bounded(item.obj, marker.args[0] if marker and marker.args else 60.0)
-            if item.get_closest_marker("one_loop") and "uvloop" in item.name:
-                item.add_marker("stress")
+            if "uvloop" in item.name:
+                if item.get_closest_marker("one_loop"):
+                    item.add_marker("stress")
+                elif not item.nodeid.startswith(BOTH_LOOPS):
+                    item.add_marker("second_loop")
     if hasattr(config, "workerinput"):  # of pytest-xdist
         items.sort(key=lambda item: not item.nodeid.startswith(PROCESSES))
 

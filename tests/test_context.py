@@ -91,7 +91,7 @@ async def test_a_node_that_comes_while_the_context_closes_opens_it_anew() -> Non
         second.destroy_node()
 
 
-async def test_a_shut_down_context_is_not_opened_for_those_who_waited() -> None:
+async def test_a_shut_down_context_is_not_opened_for_nodes_that_waited() -> None:
     """Their nodes are destroyed already, and end without a word."""
     transport = SlowTransport()
     context = Context(transport=transport)

@@ -1,4 +1,4 @@
-"""The documentation keeps its word: its code is run, its commands and links exist."""
+"""The documentation is true: its code runs, its commands and links exist."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Block:
 
     @property
     def is_shown_only(self) -> bool:
-        """Whether it says that it is not to be run: code for other frameworks."""
+        """Whether it is marked as not run, as code for other frameworks is."""
         return self.note.startswith("<!-- not run")
 
 

@@ -75,7 +75,7 @@ def test_rows_may_be_padded() -> None:
 
 
 def test_a_part_of_an_image_is_put_into_one_piece() -> None:
-    """A message has no gaps of someone else's pixels."""
+    """A message must not contain the pixels between its rows."""
     part = from_numpy(BGR[:, 1:], "bgr8")
 
     assert part.step == 6
@@ -115,7 +115,7 @@ def test_passthrough_takes_the_type_of_opencv() -> None:
 def test_colours_come_in_the_order_that_is_wanted(
     have: str, want: str, pixel: Any, result: Any
 ) -> None:
-    """What each library takes for granted."""
+    """Each library assumes its own order."""
     dtype = np.uint16 if "16" in have else np.uint8
     image = from_numpy(np.array([[pixel]], dtype), have)
 

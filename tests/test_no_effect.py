@@ -50,7 +50,7 @@ async def test_a_rule_that_matches_nothing_is_named(
     assert text.endswith("did you mean '/chatter'?")
 
 
-async def test_a_parameter_that_nobody_declares_is_named(
+async def test_a_parameter_that_no_node_declares_is_named(
     clock: ManualClock, caplog: pytest.LogCaptureFixture
 ) -> None:
     """With the one that was probably meant."""
@@ -115,7 +115,7 @@ async def test_what_is_of_use_to_any_node_is_not_mentioned(
 async def test_a_node_that_takes_any_parameter_has_use_for_each(
     clock: ManualClock, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """It asks for them when it wants."""
+    """It may read them at any time."""
     context = program(clock, "-p", "any:=1")
     async with Node("node", context=context, allow_undeclared_parameters=True):
         await clock.advance(5.0)

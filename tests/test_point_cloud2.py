@@ -119,7 +119,7 @@ def test_the_highest_byte_may_be_first() -> None:
 
 
 def test_points_without_all_numbers_are_left_out_on_request() -> None:
-    """Unless the cloud says that there are none, which spares the look."""
+    """Unless the cloud says that there are none; then no point is checked."""
     points = XYZ.copy()
     points[1, 2] = np.nan
     cloud = create_cloud_xyz32(HEADER, points)
@@ -182,7 +182,7 @@ def test_points_of_another_type_are_converted() -> None:
 
 @pytest.mark.parametrize("points", [[], np.zeros((0, 3), np.float32)])
 def test_an_empty_cloud_is_a_cloud(points: Any) -> None:
-    """A lidar in a fog."""
+    """As from a lidar in fog."""
     cloud = create_cloud_xyz32(HEADER, points)
 
     assert (cloud.width, len(cloud.data)) == (0, 0)

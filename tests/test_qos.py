@@ -1,4 +1,4 @@
-"""QoS: profiles, presets, and who fits whom."""
+"""QoS: profiles, presets, and which profiles are compatible."""
 
 from __future__ import annotations
 
@@ -426,7 +426,7 @@ def test_a_publisher_promises_what_the_most_demanding_subscription_asks() -> Non
     assert all(qos.mismatch(taken, each) is None for each in subscriptions)
 
 
-def test_only_policies_that_are_best_available_are_settled() -> None:
+def test_only_policies_that_are_best_available_are_resolved() -> None:
     """A policy that the user has chosen stays."""
     mixed = QoSProfile(
         depth=3,
@@ -439,7 +439,7 @@ def test_only_policies_that_are_best_available_are_settled() -> None:
     assert str(taken) == "keep_last(3) best_effort volatile"
 
 
-def test_best_available_is_settled_so_that_it_fits_everybody() -> None:
+def test_best_available_is_resolved_so_that_it_fits_every_publisher() -> None:
     """For every mixture of publishers a subscription with BEST_AVAILABLE hears all."""
     limits = [Duration(), Duration(seconds=1)]
     all_kinds = [

@@ -182,7 +182,7 @@ def test_ctrl_c_names_the_thread_that_it_waits_for_and_a_second_one_ends_at_once
     assert err == "aionode: ended at once by a second signal (SIGINT)\n"
 
 
-def test_a_second_ctrl_c_ends_a_program_whose_stderr_nobody_reads() -> None:
+def test_a_second_ctrl_c_ends_a_program_whose_stderr_is_not_read() -> None:
     """A full pipe would block the write of the last line."""
     full = """
     def callback():
@@ -434,7 +434,7 @@ async def test_frozen_objects_are_left_out_of_collections() -> None:
 def test_a_program_without_garbage_collector_is_not_collected(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """It has its reasons."""
+    """The program has disabled it for a reason."""
     monkeypatch.setattr("aionode.runner.STARTED_SEC", 0.0)
     monkeypatch.setattr("aionode.runner.freeze_objects", pytest.fail)
 

@@ -1,4 +1,4 @@
-"""How the modules of aionode hang together: their length, their imports, and the private line."""
+"""The structure of aionode's modules: their length, their imports, and what is private."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Robot(Node):
-    """Fails or ends at a word."""
+    """Fails or ends when it hears a certain word."""
 
     def __init__(self, context: Context) -> None:
         super().__init__("robot", context=context)
@@ -30,7 +30,7 @@ class Robot(Node):
         self.create_service(AddTwoInts, "/add", self.add)
 
     def hear(self, msg: String) -> None:
-        """Do what is said."""
+        """Obey one word."""
         if msg.data == "fail":
             raise ValueError("no map")
         self.destroy_node()
@@ -44,7 +44,7 @@ class Robot(Node):
 
 @pytest.fixture
 async def say(node_factory: Callable[..., Node]) -> Callable[[str], None]:
-    """What says a word to the robot."""
+    """A function that publishes a word to the robot."""
     publisher = node_factory("operator").create_publisher(String, "/word", 10)
     return lambda word: publisher.publish(String(data=word))
 
@@ -258,7 +258,7 @@ async def test_what_the_block_raises_comes_out_as_it_is(
     [{"restart": "sometimes"}, {"min_delay_sec": -1.0}, {"min_delay_sec": 2.0, "max_delay_sec": 1}],
 )
 def test_impossible_options_are_refused(options: dict[str, object]) -> None:
-    """Where they are given."""
+    """The error is raised where they are given."""
     with pytest.raises(ValueError, match="Supervisor: "):
         Supervisor(lambda: Node("node"), **options)  # type: ignore[arg-type]  # the mistake
 

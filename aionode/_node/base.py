@@ -28,12 +28,11 @@ if TYPE_CHECKING:
     from aionode.endpoints._core.graph_entry import GraphEntry
     from aionode.graph import Graph
     from aionode.logging import RcutilsLogger
-    from aionode.transport.base import Registration, Transport
+    from aionode.transport.base import Registration
 
 __all__ = ["NodeBase"]
 
 EntityT = TypeVar("EntityT", bound="Entity")
-RegisteredT = TypeVar("RegisteredT", bound="Registration")
 
 
 class NodeBase:
@@ -238,7 +237,7 @@ class NodeBase:
             ForkedProcessError: the context belongs to the parent process.
         """
         self.context._add_node(self)
-        self._registrations = self._register(lambda transport: transport.create_node(self._info))
+        self._registrations = self.context._register(lambda one: one.create_node(self._info))
         self.context.graph.add_node(self._info)
 
     def _leave(self) -> None:
@@ -359,17 +358,6 @@ class NodeBase:
         Action clients use it: their requests to cancel goals have to reach the servers.
         """
         self._ending.expect(answer)
-
-    def _register(self, register: Callable[[Transport], RegisteredT]) -> list[RegisteredT]:
-        """Register something with every transport of the context, or, if one refuses, with none."""
-        made: list[RegisteredT] = []
-        try:
-            made.extend(map(register, self.context.transports))
-        except BaseException:
-            for registration in made:
-                registration.close()
-            raise
-        return made
 
     def _refuse_if_destroyed(self, wanted: str) -> None:
         if self.destroyed:

@@ -102,7 +102,7 @@ class NodeEndpoints(NodeParameters):
         publisher = Publisher(
             graph_entry,
             msg_type,
-            lambda: self._register(
+            lambda: self.context._register(
                 lambda transport: transport.create_writer(graph_entry.endpoint, msg_type)
             ),
             self.context.time_base,
@@ -208,7 +208,7 @@ class NodeEndpoints(NodeParameters):
                 content_filter_options.expression_parameters,
             )
         subscription._add_registrations(
-            self._register(
+            self.context._register(
                 lambda transport: transport.create_reader(
                     graph_entry.endpoint, msg_type, subscription._reader
                 )
@@ -262,7 +262,7 @@ class NodeEndpoints(NodeParameters):
             offload=offload,
         )
         service._add_registrations(
-            self._register(
+            self.context._register(
                 lambda transport: transport.create_server(
                     graph_entry.endpoint, srv_type, service._serve
                 )
@@ -293,7 +293,7 @@ class NodeEndpoints(NodeParameters):
         self._refuse_if_destroyed("client")
         expect_service_type(srv_type, f"client of {srv_name}")
         graph_entry = self._graph_entry(EndpointKind.CLIENT, srv_name, srv_type, qos_profile)
-        requesters = self._register(
+        requesters = self.context._register(
             lambda transport: transport.create_requester(graph_entry.endpoint, srv_type)
         )
         return self._add_entity(

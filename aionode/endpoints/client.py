@@ -6,12 +6,12 @@ import asyncio
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from aionode.clock import perf_ns
-from aionode.endpoints._core.entity import EndStage, Entity
+from aionode.endpoints._core.entity import EndStage
 from aionode.endpoints._core.future import Futures, asks
 from aionode.endpoints.service_introspection import (
     REQUEST_SENT,
     RESPONSE_RECEIVED,
-    Introspection,
+    IntrospectedEntity,
 )
 from aionode.endpoints.stats import ClientStats
 from aionode.errors import (
@@ -28,12 +28,10 @@ from aionode.transport.base import SampleInfo
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from aionode.clock import Clock, TimeBase
+    from aionode.clock import TimeBase
     from aionode.endpoints._core.graph_entry import GraphEntry
     from aionode.endpoints.publisher import Publisher
-    from aionode.endpoints.service_introspection import ServiceIntrospectionState
     from aionode.errors import ServiceError
-    from aionode.qos import QoSProfile
     from aionode.transport.base import Call, Requester
 
 __all__ = ["Client", "Exchange"]
@@ -43,7 +41,7 @@ RequestT = TypeVar("RequestT", bound=Message)
 ResponseT = TypeVar("ResponseT", bound=Message)
 
 
-class Client(Entity, Generic[RequestT, ResponseT]):
+class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
     """Calls a service. Made by `Node.create_client`.
 
     Attributes:
@@ -60,14 +58,10 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         time_base: TimeBase,
         create_publisher: Callable[..., Publisher[Any]],
     ) -> None:
-        super().__init__(f"client of {graph_entry.endpoint.name}", EndStage.LAST)
-        self.srv_type = srv_type
-        self.qos_profile: QoSProfile = graph_entry.endpoint.qos
+        subject = f"client of {graph_entry.endpoint.name}"
+        super().__init__(subject, graph_entry, srv_type, create_publisher, EndStage.LAST)
         self.stats = ClientStats()
-        self._graph_entry = graph_entry
         self._requesters = tuple(requesters)
-        self._introspection = Introspection(srv_type, graph_entry.endpoint.name, create_publisher)
-        self._introspects = False  # whether it publishes events
         self._check = checker(srv_type.Request)
         self._now_ns = time_base.system_ns
         self._answers: set[asyncio.Future[Any]] = set()
@@ -79,40 +73,6 @@ class Client(Entity, Generic[RequestT, ResponseT]):
         return (
             f"<Client {self.srv_name} {self._graph_entry.endpoint.type_name} "
             f"calls={self.stats.calls} errors={self.stats.errors}>"
-        )
-
-    @property
-    def srv_name(self) -> str:
-        """The full name of the service."""
-        return self._graph_entry.endpoint.name
-
-    service_name = srv_name
-
-    def configure_introspection(
-        self,
-        clock: Clock,
-        service_event_qos_profile: QoSProfile | int,
-        introspection_state: ServiceIntrospectionState,
-    ) -> None:
-        """Publish each request sent and response received from now on.
-
-        The topic is ``<service>/_service_event``, and ``aionode service echo`` prints it. It may be
-        called at any time, with another state.
-
-        Args:
-            clock: Where the time stamps come from, such as ``node.get_clock()``.
-            service_event_qos_profile: QoS of the publisher.
-            introspection_state: Whether to publish nothing, which requests there are, or their
-                contents as well.
-
-        Raises:
-            TypeError: `clock` or the profile has the wrong type.
-            ValueError: `introspection_state` is unknown.
-            EntityDestroyedError: the client was destroyed (a RuntimeError).
-        """
-        self._refuse_if_destroyed("configure introspection")
-        self._introspects = self._introspection.configure(
-            clock, service_event_qos_profile, introspection_state
         )
 
     def service_is_ready(self) -> bool:

@@ -13,12 +13,11 @@ from aionode.endpoints._core.callback_runner import (
     consume,
     is_unfinished,
 )
-from aionode.endpoints._core.entity import Entity
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints.service_introspection import (
     REQUEST_RECEIVED,
     RESPONSE_SENT,
-    Introspection,
+    IntrospectedEntity,
 )
 from aionode.endpoints.stats import CallbackStats
 from aionode.message import Message, type_name
@@ -26,12 +25,9 @@ from aionode.message import Message, type_name
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from aionode.clock import Clock
     from aionode.endpoints._core.callback_runner import OnError
     from aionode.endpoints._core.graph_entry import GraphEntry
     from aionode.endpoints.publisher import Publisher
-    from aionode.endpoints.service_introspection import ServiceIntrospectionState
-    from aionode.qos import QoSProfile
     from aionode.transport.base import Registration, Request
 
 __all__ = ["Service", "ServiceCallback"]
@@ -53,7 +49,7 @@ ServiceCallback = (
 )
 
 
-class Service(Entity, Generic[RequestT, ResponseT]):
+class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
     """Answers requests. Made by `Node.create_service`.
 
     Attributes:
@@ -74,14 +70,10 @@ class Service(Entity, Generic[RequestT, ResponseT]):
         on_error: OnError,
         offload: bool,
     ) -> None:
-        super().__init__(f"service {graph_entry.endpoint.name}")
-        self.srv_type = srv_type
-        self.qos_profile: QoSProfile = graph_entry.endpoint.qos
+        subject = f"service {graph_entry.endpoint.name}"
+        super().__init__(subject, graph_entry, srv_type, create_publisher)
         self.callback = callback
         self.stats = CallbackStats()
-        self._graph_entry = graph_entry
-        self._introspection = Introspection(srv_type, graph_entry.endpoint.name, create_publisher)
-        self._introspects = False  # whether it publishes events
         self._registrations: list[Registration] = []  # one for each transport
         self._message_queue: MessageQueue[Request] = MessageQueue(
             WAITING_REQUESTS, self.stats, keep_all=True
@@ -99,40 +91,6 @@ class Service(Entity, Generic[RequestT, ResponseT]):
         return (
             f"<Service {self.srv_name} {self._graph_entry.endpoint.type_name} "
             f"received={self.stats.received} errors={self.stats.errors}>"
-        )
-
-    @property
-    def srv_name(self) -> str:
-        """The full name of the service."""
-        return self._graph_entry.endpoint.name
-
-    service_name = srv_name
-
-    def configure_introspection(
-        self,
-        clock: Clock,
-        service_event_qos_profile: QoSProfile | int,
-        introspection_state: ServiceIntrospectionState,
-    ) -> None:
-        """Publish each request received and response sent from now on.
-
-        The topic is ``<service>/_service_event``, and ``aionode service echo`` prints it. It may be
-        called at any time, with another state.
-
-        Args:
-            clock: Where the time stamps come from, such as ``node.get_clock()``.
-            service_event_qos_profile: QoS of the publisher.
-            introspection_state: Whether to publish nothing, which requests there are, or their
-                contents as well.
-
-        Raises:
-            TypeError: `clock` or the profile has the wrong type.
-            ValueError: `introspection_state` is unknown.
-            EntityDestroyedError: the service was destroyed (a RuntimeError).
-        """
-        self._refuse_if_destroyed("configure introspection")
-        self._introspects = self._introspection.configure(
-            clock, service_event_qos_profile, introspection_state
         )
 
     def _add_registrations(self, registrations: Sequence[Registration]) -> None:

@@ -11,12 +11,14 @@ import contextlib
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, Final
 
+from aionode.endpoints._core.entity import EndStage, Entity
 from aionode.errors import QueueFullError, brief
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.clock import Clock
+    from aionode.endpoints._core.graph_entry import GraphEntry
     from aionode.endpoints.publisher import Publisher
     from aionode.qos import QoSProfile
     from aionode.transport.base import SampleInfo
@@ -121,3 +123,68 @@ class Introspection:
         # A reader that keeps all and does not read is no reason to fail the call.
         with contextlib.suppress(QueueFullError):
             publisher.publish(event)
+
+
+class IntrospectedEntity(Entity):
+    """A service, or a client of one: its type, its name, and what is published about its calls.
+
+    Args:
+        subject: What it is, for errors and logs.
+        graph_entry: Its entry in the graph.
+        srv_type: The service class.
+        create_publisher: The node's method.
+        stage: When it is destroyed as its node ends.
+
+    Attributes:
+        srv_type: The service class.
+        qos_profile: Its profile.
+    """
+
+    def __init__(
+        self,
+        subject: str,
+        graph_entry: GraphEntry,
+        srv_type: Any,
+        create_publisher: Callable[..., Publisher[Any]],
+        stage: EndStage = EndStage.CALLBACKS,
+    ) -> None:
+        super().__init__(subject, stage)
+        self.srv_type = srv_type
+        self.qos_profile: QoSProfile = graph_entry.endpoint.qos
+        self._graph_entry = graph_entry
+        self._introspection = Introspection(srv_type, graph_entry.endpoint.name, create_publisher)
+        self._introspects = False  # whether it publishes events
+
+    @property
+    def srv_name(self) -> str:
+        """The full name of the service."""
+        return self._graph_entry.endpoint.name
+
+    service_name = srv_name
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile | int,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Publish each request and response that is sent or received from now on.
+
+        The topic is ``<service>/_service_event``, and ``aionode service echo`` prints it. It may be
+        called at any time, with another state.
+
+        Args:
+            clock: Where the time stamps come from, such as ``node.get_clock()``.
+            service_event_qos_profile: QoS of the publisher.
+            introspection_state: Whether to publish nothing, which requests there are, or their
+                contents as well.
+
+        Raises:
+            TypeError: `clock` or the profile has the wrong type.
+            ValueError: `introspection_state` is unknown.
+            EntityDestroyedError: the service or client was destroyed (a RuntimeError).
+        """
+        self._refuse_if_destroyed("configure introspection")
+        self._introspects = self._introspection.configure(
+            clock, service_event_qos_profile, introspection_state
+        )

@@ -19,7 +19,7 @@ and `LifecycleManager` from a program.
 from __future__ import annotations
 
 from aionode.errors import EntityInactiveError, TransitionError
-from aionode.lifecycle._managed import (
+from aionode.lifecycle._entities import (
     LifecyclePublisher,
     LifecycleTimer,
     ManagedEntity,

@@ -15,7 +15,7 @@ from aionode.interfaces.lifecycle_msgs.srv import (
     GetAvailableTransitions,
     GetState,
 )
-from aionode.lifecycle._managed import Gate, LifecyclePublisher, LifecycleTimer, ManagedEntity
+from aionode.lifecycle._entities import Gate, LifecyclePublisher, LifecycleTimer, ManagedEntity
 from aionode.lifecycle._runner import SUCCESS, TransitionRunner
 from aionode.lifecycle.states import (
     ERROR_PROCESSING,

@@ -2,7 +2,7 @@
 
 However a transition ends, the node is in a primary state afterwards::
 
-    the callback returns SUCCESS, FAILURE or ERROR    according to the table in `_states`
+    the callback returns SUCCESS, FAILURE or ERROR    according to the table in `states`
     it returns anything else, or raises               as for ERROR, with the exception
     it is canceled: its task, `cancel`, a timeout     as for FAILURE, at once
     something that it awaits is canceled              as for ERROR, with `CallbackCancelledError`
@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from aionode.errors import CallbackCancelledError, TransitionError
-from aionode.lifecycle._managed import SimpleManagedEntity
+from aionode.lifecycle._entities import SimpleManagedEntity
 from aionode.lifecycle.states import (
     ACTIVE,
     ERROR_PROCESSING,
@@ -33,7 +33,7 @@ from aionode.lifecycle.states import (
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable
 
-    from aionode.lifecycle._managed import ManagedEntity
+    from aionode.lifecycle._entities import ManagedEntity
     from aionode.lifecycle.states import State, Transition
     from aionode.logging import RcutilsLogger
 

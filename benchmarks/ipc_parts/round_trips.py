@@ -15,7 +15,7 @@ from benchmarks.ipc_parts.common import IMAGE_BYTES, SIZE, TEXT
 
 
 class Player(Protocol):
-    """One way to and fro."""
+    """One route, there and back."""
 
     async def play(self, count: int, pause_s: float) -> list[int]:
         """Return the times of so many round trips in nanoseconds, with a sleep before each."""

@@ -61,7 +61,7 @@ class Ends:
 
     @property
     def matched(self) -> bool:
-        """Whether there is another end."""
+        """Whether the other end is matched."""
         writers = (self._words, self._blocks)
         readers = (self._word_reader,)
         return all(writer.get_matched_subscriptions() for writer in writers) and all(

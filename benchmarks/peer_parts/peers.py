@@ -163,7 +163,7 @@ class Queue(LoopPeer):
             take(await queue.get())
 
     def say(self, word: str) -> None:
-        """Put it."""
+        """Put it into the queue."""
         self.there.put_nowait(word)
 
 
@@ -320,11 +320,11 @@ class Zenoh(LoopPeer):
         self.hear(data.decode() if len(data) < 100 else "")
 
     def say(self, word: str) -> None:
-        """Put it."""
+        """Put it into the queue."""
         self.publisher.put(word.encode())
 
     def say_block(self, block: bytes) -> None:
-        """Put it."""
+        """Put it into the queue."""
         self.publisher.put(block)
 
 
@@ -385,11 +385,11 @@ class CycloneDds(LoopPeer):
             await asyncio.sleep(0.05)
 
     def arrived(self) -> None:
-        """Take what is there, in the loop; called in a thread of DDS."""
+        """Take what has arrived, in the loop; called in a thread of DDS."""
         self.loop.call_soon_threadsafe(self.take)
 
     def take(self) -> None:
-        """Hand over what is there."""
+        """Hand over what has arrived."""
         for word in self.ends.take():
             self.hear(word)
 

@@ -16,7 +16,7 @@ from aionode import Context, Node
 from aionode.interfaces.std_msgs.msg import String
 
 EVERY = 10
-"""After so many endpoints the event loop has a turn."""
+"""Number of endpoints after which the event loop gets a turn."""
 
 
 async def pause(number: int) -> None:

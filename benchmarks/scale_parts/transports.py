@@ -146,7 +146,7 @@ async def until(count: Callable[[], int], wanted: int) -> int:
 
 
 def lacking(what: str, found: float, wanted: int) -> str:
-    """Return what is incomplete, in words; nothing if nothing is."""
+    """Describe what is incomplete; empty if nothing is."""
     return "" if found >= wanted else f"{what}: {found:g} of {wanted}"
 
 

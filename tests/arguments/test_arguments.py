@@ -25,7 +25,7 @@ from aionode.logging import LoggingSeverity
 
 
 def parse(line: str, **files: str) -> Arguments:
-    """Parse a command line; `files` are the parameter files that there are, by stem."""
+    """Parse a command line; `files` are the existing parameter files, by stem."""
 
     def read(path: str) -> Iterable[ParameterRule]:
         return parse_parameter_yaml(files[Path(path).stem], path)
@@ -53,12 +53,12 @@ def test_a_second_start_inside_a_block_changes_nothing() -> None:
 
 
 def test_no_arguments_say_nothing() -> None:
-    """The defaults are those of a program without arguments."""
+    """A program without arguments gets the defaults."""
     assert parse("") == Arguments() == parse("--ros-args")
 
 
 def test_a_double_dash_outside_of_a_block_is_the_programs() -> None:
-    """It ends something of the program's own."""
+    """Outside a block it belongs to the program."""
     assert parse("-- a --ros-args").non_ros_args == ("--", "a")
 
 
@@ -72,7 +72,7 @@ def test_a_double_dash_outside_of_a_block_is_the_programs() -> None:
     ],
 )
 def test_removing_ros_args_leaves_the_programs_own(line: str, own: list[str]) -> None:
-    """For argparse and the like; it fails for nothing."""
+    """For argparse and the like; it never raises."""
     assert remove_ros_args(line.split()) == own
 
 
@@ -432,7 +432,7 @@ def test_quotes_keep_a_string_and_lists_have_one_type(text: str, value: object) 
     ],
 )
 def test_a_value_that_no_parameter_can_have_is_refused(text: str, says: str) -> None:
-    """The error says what stands there."""
+    """The error shows the value."""
     with pytest.raises(ParameterFileError, match=says):
         parse_value(text)
 
@@ -459,7 +459,7 @@ lidar_ns:
 
 @pytest.mark.parametrize("text", ["", "---\n", "# nothing\n", "a: {ros__parameters: {}}"])
 def test_an_empty_file_has_no_rules(text: str) -> None:
-    """A file may be a start."""
+    """A newly created file is empty."""
     assert parse_parameter_yaml(text) == ()
 
 
@@ -482,7 +482,7 @@ def test_an_empty_file_has_no_rules(text: str) -> None:
     ],
 )
 def test_a_malformed_file_is_refused_with_line_and_reason(text: str, line: int, says: str) -> None:
-    """What was given, where, and what would do."""
+    """What was given, where, and what fits."""
     with pytest.raises(ParameterFileError) as info:
         parse_parameter_yaml(text, "robot.yaml")
 

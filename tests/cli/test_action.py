@@ -89,7 +89,7 @@ async def test_json_prints_feedback_and_result(tool: Node, server: Node, screen:
     assert first["goal_id"] == last["goal_id"]
 
 
-async def test_a_rejected_goal_is_said(tool: Node, server: Node, screen: Any) -> None:
+async def test_a_rejected_goal_is_reported(tool: Node, server: Node, screen: Any) -> None:
     """ros2 returns 0; a script would take the goal for done."""
     status = await send_goal(
         tool, "/fibonacci", FIBONACCI, values="{order: 101}", output=screen.output

@@ -1,4 +1,4 @@
-"""The main program: help, wrong arguments, errors in one line, output without a reader."""
+"""The main program: help, wrong arguments, one-line errors, output without a reader."""
 
 from __future__ import annotations
 
@@ -153,7 +153,7 @@ def test_an_error_is_one_line_on_stderr(
     failing: Callable[[BaseException], None],
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """No traceback, nothing on stdout."""
+    """No traceback, and nothing on stdout."""
     failing(error)
 
     assert main(["interface", "packages"]) == status

@@ -77,7 +77,7 @@ def test_an_answer_that_may_be_incomplete_says_so(env: dict[str, str]) -> None:
     assert "this may be incomplete" in done.stderr
 
 
-async def test_what_takes_long_is_said_on_stderr(
+async def test_a_long_wait_is_reported_on_stderr(
     tool: Node, screen: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A second without output is long, and stdout is reserved for the answer."""

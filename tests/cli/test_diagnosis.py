@@ -153,7 +153,7 @@ async def test_an_unknown_name_is_an_error(tool: Node, talker: Node, screen: Any
 async def test_text_has_a_summary_and_an_arrow_for_each_remedy(
     tool: Node, talker: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
-    """For people."""
+    """Text is the form for people."""
     node_factory("listener").create_subscription(Int8, "/chatter", lambda msg: None)
 
     await doctor(tool, output=screen.output)

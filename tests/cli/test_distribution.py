@@ -32,7 +32,7 @@ def env() -> Iterator[dict[str, str]]:
                 for one in ("0/NN/%/%/robot", f"1/MP/{publisher}")
             ]
             yield {**os.environ, **isolated}
-            del tokens  # kept until here: a token that is garbage is withdrawn
+            del tokens  # kept until here: a token is withdrawn when it is collected
 
 
 def run(env: dict[str, str], *arguments: str, **variables: str) -> subprocess.CompletedProcess[str]:

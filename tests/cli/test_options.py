@@ -65,7 +65,7 @@ def test_all_options_make_a_profile() -> None:
     assert profile.liveliness_lease_duration.nanoseconds == 1_500_000_000
 
 
-def test_a_history_for_late_ones_holds_one_message_at_least() -> None:
+def test_a_history_for_late_subscriptions_holds_at_least_one_message() -> None:
     """As ros2 does it: system_default has no depth of its own."""
     profile = qos_from(
         "default",
@@ -86,7 +86,7 @@ def test_a_history_for_late_ones_holds_one_message_at_least() -> None:
         ("action", []),
     ],
 )
-async def test_the_shell_is_offered_what_is_there(
+async def test_the_shell_is_offered_existing_names(
     what: str, names: list[str], tool: Node, node_factory: Callable[..., Node]
 ) -> None:
     """Hidden names are not offered; they can still be typed."""

@@ -37,7 +37,7 @@ def test_what_json_has_no_number_for_is_a_word(number: float, word: str, screen:
     assert screen.records == [{"range": word, "ranges": [1.0, word], "nested": [{"a": word}]}]
 
 
-def test_nobody_waits_at_a_pipe(screen: Any) -> None:
+def test_a_pipe_gets_no_spinner(screen: Any) -> None:
     """A spinner is for terminals."""
     with screen.output.waiting("for something"):
         pass

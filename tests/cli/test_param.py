@@ -165,7 +165,7 @@ async def test_an_unknown_node_is_named(tool: Node, owner: Node, screen: Any) ->
         await get(tool, "param_nod", "name", timeout=0.001, output=screen.output)
 
 
-async def test_a_node_without_parameters_is_told(
+async def test_a_node_without_parameters_is_reported(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
     """The command does not wait forever."""

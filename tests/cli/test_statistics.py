@@ -33,7 +33,7 @@ def test_time_that_goes_backwards_resets() -> None:
     assert intervals.spread() is None
 
 
-def test_figures_are_given_once() -> None:
+def test_statistics_are_printed_once() -> None:
     """Without a new message there is nothing to report."""
     intervals = Intervals(10)
     intervals.arrive(0)
@@ -64,8 +64,8 @@ def test_the_bandwidth_is_exact_from_the_second_message_on(late_s: float) -> Non
     assert rate.bytes_per_s == 50_000
 
 
-def test_the_bandwidth_falls_when_nothing_comes_any_more() -> None:
-    """The time goes on as soon as the next message is overdue."""
+def test_the_bandwidth_falls_when_messages_stop() -> None:
+    """Time counts again as soon as the next message is overdue."""
     bandwidth = Bandwidth(100)
     for number in range(3):
         bandwidth.arrive(number * 20_000_000, 1_000)

@@ -229,7 +229,7 @@ async def test_raw_prints_the_bytes(running: Any, tool: Node, talker: Node, scre
     assert text == "b'\\x00\\x01\\x00\\x00\\x02\\x00\\x00\\x00a\\x00'\n---\n"
 
 
-async def test_a_topic_that_nobody_uses_is_an_error(tool: Node, talker: Node, screen: Any) -> None:
+async def test_a_topic_without_endpoints_is_an_error(tool: Node, talker: Node, screen: Any) -> None:
     """Without a type there is nothing to subscribe to; the error says how to give one."""
     talker.create_publisher(String, "/chatter", 1)
 
@@ -243,7 +243,7 @@ async def test_a_topic_that_nobody_uses_is_an_error(tool: Node, talker: Node, sc
 async def test_with_a_type_it_waits_for_the_topic(
     running: Any, tool: Node, talker: Node, screen: Any
 ) -> None:
-    """A terminal is often opened before the node is started."""
+    """Terminals are often opened before the node starts."""
     options = {"once": True, "output": screen.output}
     async with running(echo(tool, "/topic", "std_msgs/msg/String", **options)) as task:
         assert screen.errors == ("WARNING: topic [/topic] does not appear to be published yet\n")
@@ -254,7 +254,9 @@ async def test_with_a_type_it_waits_for_the_topic(
     assert screen.text == "data: late\n---\n"
 
 
-async def test_a_timeout_without_a_message_is_said(tool: Node, talker: Node, screen: Any) -> None:
+async def test_a_timeout_without_a_message_is_reported(
+    tool: Node, talker: Node, screen: Any
+) -> None:
     """Otherwise a script could not tell silence from success."""
     talker.create_publisher(String, "/topic", 10)
 
@@ -292,7 +294,7 @@ async def test_two_types_need_a_choice(
         await echo(tool, "/topic", output=screen.output)
 
 
-async def test_lost_messages_are_said(running: Any, screen: Any) -> None:
+async def test_lost_messages_are_reported(running: Any, screen: Any) -> None:
     """On stderr, as they are no data; the count is of all so far."""
     faulty = FaultyTransport(LocalTransport(), drop=0.5, seed=2)
     async with (

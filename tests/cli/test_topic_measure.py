@@ -26,7 +26,7 @@ async def talker(node_factory: Callable[..., Node], manual_clock: ManualClock) -
     made = node_factory("talker")
     publisher = made.create_publisher(String, "/chatter", 10)
     made.create_timer(0.2, lambda: publisher.publish(String(data="Hello 00000")))
-    await manual_clock.advance(0.05)  # so that no message comes just when figures are printed
+    await manual_clock.advance(0.05)  # so that no message arrives just when rates are printed
     return made
 
 
@@ -63,7 +63,7 @@ async def test_hz_is_right_at_ten_kilohertz(
     assert screen.records[0]["rate_hz"] == pytest.approx(10_000, rel=1e-6)
 
 
-async def test_hz_prints_nothing_while_nothing_comes(
+async def test_hz_prints_nothing_without_messages(
     running: Any, tool: Node, talker: Node, manual_clock: ManualClock, screen: Any
 ) -> None:
     """An outdated rate is not repeated."""
@@ -78,7 +78,7 @@ async def test_hz_prints_nothing_while_nothing_comes(
 async def test_hz_takes_the_window_into_account(
     running: Any, tool: Node, talker: Node, manual_clock: ManualClock, screen: Any
 ) -> None:
-    """The figures are of the newest messages."""
+    """The rate is that of the newest messages."""
     async with running(hz(tool, ["/chatter"], window=3, output=screen.output)):
         await manual_clock.advance(2.1)
 

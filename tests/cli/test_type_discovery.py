@@ -111,7 +111,7 @@ async def test_call_learns_a_service_type(
     assert screen.records == [{"text": "cba"}]
 
 
-async def test_a_type_that_nobody_describes_is_an_error_with_a_way_out(
+async def test_a_type_that_no_node_describes_is_an_error_with_a_way_out(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
     """Folder and option are named."""

@@ -190,7 +190,7 @@ def test_nothing_else_is_compared_with_or_added_to_a_time() -> None:
 
 
 def test_a_duration_is_stretched_by_numbers() -> None:
-    """Times infinity is for ever; whole factors go past what a float can hold."""
+    """Times infinity is infinite; whole factors may exceed what a float can hold."""
     assert Duration(seconds=2) * 0.5 == Duration(seconds=1)
     assert 3 * Duration(seconds=2) == Duration(seconds=6)
     assert Duration(nanoseconds=2**60 + 1) * 3 == Duration(nanoseconds=3 * 2**60 + 3)
@@ -322,7 +322,7 @@ def test_ros_time_is_set_with_a_time() -> None:
     ],
 )
 def test_a_threshold_must_make_sense(arguments: dict[str, Any], text: str) -> None:
-    """Directions are told by the sign, and one that nothing meets is a mistake."""
+    """The sign tells the direction, and a threshold that nothing can meet is a mistake."""
     with pytest.raises(ValueError, match=text):
         JumpThreshold(**arguments)
 
@@ -350,16 +350,16 @@ class Watch:
     [
         (1.0, -0.5, False, 1.75, False),
         (0.5, -1.0, False, 1.75, True),
-        (0.75, 0, False, 1.75, True),  # a threshold is met by a leap just as long
+        (0.75, 0, False, 1.75, True),  # a jump of exactly that length meets a threshold
         (1.0, -0.5, False, 0.25, True),
         (0.5, -1.0, False, 0.25, False),
         (0, -0.75, True, 0.25, True),
         (0, -0.1, True, 1.75, False),
-        (0.1, -0.1, True, 1.0, False),  # setting the same time is no leap
+        (0.1, -0.1, True, 1.0, False),  # setting the same time is no jump
         (0, 0, True, 1.75, False),
     ],
 )
-def test_a_leap_calls_those_whose_threshold_it_meets(
+def test_a_jump_calls_callbacks_whose_threshold_it_meets(
     forward: float, back: float, change: bool, to: float, called: bool
 ) -> None:
     """From second 1; the callback before sees the old time, the one after the distance."""
@@ -379,7 +379,7 @@ def test_a_leap_calls_those_whose_threshold_it_meets(
     ("forward", "back", "change", "called"),
     [(1, -1, False, False), (0, 0, True, True), (1, -1, True, True)],
 )
-def test_switching_the_source_calls_those_who_asked(
+def test_switching_the_source_calls_callbacks_that_asked_for_it(
     forward: float, back: float, change: bool, called: bool
 ) -> None:
     """Once for each real switch."""
@@ -391,7 +391,7 @@ def test_switching_the_source_calls_those_who_asked(
     assert [jump.clock_change for jump in watch.jumps] == (expected if called else [])
 
 
-def test_setting_a_clock_that_is_not_driven_is_no_leap() -> None:
+def test_setting_a_clock_that_is_not_driven_is_no_jump() -> None:
     """That time is not visible yet."""
     clock = ROSClock()
     watch = Watch(clock, 0.1, -0.1, change=True)
@@ -446,7 +446,7 @@ def test_a_jump_callback_must_be_one() -> None:
 async def test_sleeping_for_nothing_takes_one_turn(
     clock_type: ClockType, duration_sec: float
 ) -> None:
-    """Others get their turn, and no time passes."""
+    """Other callbacks run, and no time passes."""
     turns: list[int] = []
     asyncio.get_running_loop().call_soon(turns.append, 1)
     await Clock(clock_type=clock_type, time_base=ManualClock()).sleep(duration_sec)
@@ -464,7 +464,7 @@ def alarms(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> N
 @pytest.mark.parametrize("clock_type", REAL_TYPES)
 @pytest.mark.parametrize("duration_ns", [1, 300_000, 1_400_000, 1_600_000])
 async def test_a_sleep_is_never_too_short(clock_type: ClockType, duration_ns: int) -> None:
-    """Loops round waits, uvloop by half a millisecond, so a clock has to look again."""
+    """Loops round waits, uvloop by half a millisecond, so the clock checks the time again."""
     clock = Clock(clock_type=clock_type)
     began_ns = time.monotonic_ns()
     await clock.sleep(duration_ns / 1e9)
@@ -606,7 +606,7 @@ async def test_setting_the_system_clock_changes_no_sleep() -> None:
 
 @pytest.mark.usefixtures("alarms")
 async def test_a_machine_alarm_rings_once_and_not_too_early() -> None:
-    """Whatever the loop rounds."""
+    """However the loop rounds."""
     machine = MachineTime()
     rung: asyncio.Future[int] = asyncio.get_running_loop().create_future()
     when_ns = machine.steady_ns() + 1_400_000
@@ -630,7 +630,7 @@ async def test_an_alarm_in_the_past_rings_later_all_the_same(
 
 @pytest.mark.usefixtures("alarms")
 async def test_a_cancelled_alarm_does_not_ring() -> None:
-    """Also when its time has come already but the loop has not got to it."""
+    """Not even if it is due and the loop has not reached it yet."""
     machine = MachineTime()
     rung: list[int] = []
     alarm = machine.call_at(machine.steady_ns(), lambda: rung.append(1))
@@ -701,7 +701,7 @@ def test_no_file_is_left_by_a_loop_that_ends(
 
 @pytest.mark.skipif(sys.platform != "linux", reason="Linux has timerfd")
 def test_an_alarm_cancelled_after_its_loop_lets_go_of_the_file() -> None:
-    """What a program does after its loop was closed must not fail."""
+    """A program may still cancel alarms after its loop was closed."""
 
     async def main() -> Alarm:
         machine = MachineTime()
@@ -781,11 +781,11 @@ async def test_a_failing_alarm_does_not_silence_the_others() -> None:
     assert isinstance(reported[0]["exception"], ZeroDivisionError)
 
 
-# The agenda
+# The timer heap
 
 
 @given(st.lists(st.tuples(st.integers(0, 20), st.booleans())), st.integers(0, 20))
-def test_an_agenda_calls_what_is_due_in_order(entries: list[tuple[int, bool]], now: int) -> None:
+def test_a_timer_heap_calls_what_is_due_in_order(entries: list[tuple[int, bool]], now: int) -> None:
     """By time, then by arrival, without what was cancelled; the rest stays."""
     heap = TimerHeap()
     called: list[tuple[int, int]] = []
@@ -805,8 +805,8 @@ def test_an_agenda_calls_what_is_due_in_order(entries: list[tuple[int, bool]], n
     assert len(heap) == len(alive) - len(called)
 
 
-def test_an_agenda_forgets_cancelled_entries() -> None:
-    """A timer that is reset for ever must not fill the memory."""
+def test_a_timer_heap_forgets_cancelled_entries() -> None:
+    """A timer that is reset again and again must not fill the memory."""
     heap = TimerHeap()
     keep = heap.add(1, lambda: None)
     for _ in range(1000):
@@ -859,7 +859,7 @@ async def test_manual_time_does_not_go_back(move: Any) -> None:
 
 
 async def test_advance_walks_and_jump_leaps() -> None:
-    """Work that is done in steps sees each of them when walking, and only the end after a leap."""
+    """Callbacks see each step of `advance`, and only the end of a jump."""
     manual = ManualClock()
     clock = ROSClock(time_base=manual)
     seen: list[float] = []

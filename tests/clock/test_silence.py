@@ -32,7 +32,7 @@ def counting(found: list[int], *, again: bool) -> Callable[[int], bool]:
 
 
 async def test_it_counts_from_the_last_sign(clock: ManualClock) -> None:
-    """However often it rang meanwhile."""
+    """However often it has rung since."""
     found: list[int] = []
     alarm = SilenceAlarm(clock, 10**9, counting(found, again=True))
     alarm.start()

@@ -122,7 +122,7 @@ async def test_a_callback_may_call_a_service_of_its_own_node(node: Node) -> None
 
 
 async def test_a_handler_may_call_another_service(node: Node) -> None:
-    """Services build on services."""
+    """Services may be built on other services."""
     inner = node.create_client(AddTwoInts, "inner")
 
     async def outer(request: Request) -> Response:
@@ -497,7 +497,7 @@ async def test_with_one_of_two_servers_gone_the_other_still_answers(
 async def test_a_handler_that_destroys_its_server_does_not_answer(
     context: Context, node: Node
 ) -> None:
-    """There is no server any more that could."""
+    """The server that could answer is gone."""
     client = node.create_client(AddTwoInts, "/add")
     async with Node("server", context=context) as server:
 

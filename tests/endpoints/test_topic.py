@@ -52,7 +52,7 @@ def fill(publisher: Any, *texts: str) -> None:
 
 
 async def test_a_callback_gets_each_message_in_order(node: Node) -> None:
-    """The plainest promise of a topic."""
+    """The basic promise of a topic."""
     heard: list[str] = []
     node.create_subscription(String, "words", lambda msg: heard.append(msg.data))
     fill(node.create_publisher(String, "words", 10), "a", "b", "c")
@@ -330,7 +330,7 @@ async def test_a_late_transient_local_reader_gets_the_newest_once_and_in_order(
 
 
 async def test_a_late_volatile_reader_gets_nothing_old(node: Node) -> None:
-    """It did not ask for it."""
+    """It did not request history."""
     publisher = node.create_publisher(String, "map", kept(3))
     fill(publisher, "old")
     reader = node.create_subscription(String, "map")
@@ -386,7 +386,7 @@ async def test_wait_for_subscribers_is_woken_by_the_subscription(node: Node) -> 
 async def test_destroying_a_publisher_cancels_waits_for_its_subscribers(
     node: Node,
 ) -> None:
-    """They would wait for ever."""
+    """Otherwise they would wait for ever."""
     publisher = node.create_publisher(String, "words", 10)
     waiting = asyncio.get_running_loop().create_task(publisher.wait_for_subscribers(1))
     await settle()

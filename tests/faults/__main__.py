@@ -66,7 +66,7 @@ def row(case: Case, results: list[Result]) -> tuple[str, bool]:
 
 
 def main() -> None:
-    """Run the cases, and tell what came of them."""
+    """Run the cases, and print the results."""
     parser = argparse.ArgumentParser(description="Faults over real processes.")
     parser.add_argument("--times", type=int, default=1, help="how often each case runs (1)")
     parser.add_argument("--only", default="", help="a regular expression for names of cases")
@@ -91,7 +91,7 @@ def main() -> None:
     longest_first = sorted(itertools.chain(*rounds), key=lambda case: -case.lasts_s)
     try:
         asyncio.run(run_together(longest_first, options.jobs, take))
-    finally:  # what has run is told also when the rest is not waited for
+    finally:  # report the cases that have run, even if interrupted
         rows = [row(case, results[case.name]) for case in cases if results[case.name]]
         tell(rows, options.jobs, options.write)
     broken = sum(is_broken for _, is_broken in rows)

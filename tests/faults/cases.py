@@ -31,7 +31,7 @@ RETURNS_S = (5, 14, 33, 70)
 """And between the two: a peer of ROS 2 nodes is gone for itself, but not yet for them."""
 
 LEASE_S = 10.0
-"""After so long a process that is frozen counts as gone."""
+"""Time after which a frozen process counts as gone, in seconds."""
 
 ROUTER = Role("router", router="tcp/127.0.0.1:{AIONODE_ROUTER_PORT}")
 

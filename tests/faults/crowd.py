@@ -36,7 +36,7 @@ LIMIT_S: Final = 0.05
 """
 
 ANSWER_S: Final = 5.0
-"""After so long there is no answer."""
+"""Time after which a newcomer counts as unanswered, in seconds."""
 
 PERIOD_S: Final = 0.25
 PROCESSES: Final = 3
@@ -157,7 +157,7 @@ def routers(*ports: int) -> Iterator[list[int]]:
 
 
 def main() -> None:
-    """Run the crowd and both newcomers, and say what came of them."""
+    """Run the crowd and both newcomers, and print the results."""
     parser = argparse.ArgumentParser(description="Nodes come and go beside a router.")
     parser.add_argument("--nodes", type=int, default=300)
     parser.add_argument("--seconds", type=float, default=120.0)

@@ -48,7 +48,7 @@ READY_LIMIT_S = 30.0
 """How long all processes may take to hear each other at first, on a busy machine."""
 
 RECOVERY_LIMIT_S = 20.0
-"""After so long what does not work again counts as hung."""
+"""Time after which what does not work again counts as hung, in seconds."""
 
 BEFORE_S = 1.0
 """How long everything works before the fault."""

@@ -70,7 +70,7 @@ def text(sender: str, number: int, size: int) -> str:
 
 
 def told_by(endpoint: Any) -> int:
-    """Return how many messages a publisher or subscription counts as lost."""
+    """Return the number of messages that a publisher or subscription counts as lost."""
     return int(endpoint.stats.dropped) + int(getattr(endpoint.stats, "lost", 0))
 
 
@@ -156,7 +156,7 @@ class Reporter:
         self.report.gap_s = self.report.own_gap_s = 0.0
 
     async def go_on(self) -> None:
-        """Print reports without end."""
+        """Print reports until cancelled."""
         while True:
             self.tell()
             self.core_wait.largest_of_others()  # what was before this belongs to no later gap
@@ -175,7 +175,7 @@ class Process:
         self.publishes.set()
 
     async def run(self) -> None:
-        """Do everything, until the process is to end."""
+        """Play the role until SIGTERM."""
         os.set_blocking(sys.stdin.fileno(), False)
         asyncio.get_running_loop().add_reader(sys.stdin, self.obey)
         self.reporter.watch()
@@ -342,7 +342,7 @@ async def count(goal: Any) -> Fibonacci.Result:
 
 
 async def shout(node: Node) -> None:
-    """Log without end."""
+    """Log until cancelled."""
     while True:
         node.get_logger().warning("x" * 1000)
         await asyncio.sleep(0.001)

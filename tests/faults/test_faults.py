@@ -15,7 +15,7 @@ from tests.faults.harness import Case, Outcome, Skipped, run_together
 from tests.faults.roles import missing, note
 
 STANDS_S = 0.5
-"""For so long a loop may stand still where other tests run beside: what is tested takes seconds."""
+"""The longest stall of a loop beside other tests, in seconds; the defects took several."""
 
 ENDS_S = 6.0
 """A process takes so long to end there."""

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from tests.fuzz.targets import TARGETS, Target
 
 ALLOWED_BYTES = 4 << 20
-"""Memory that parsing may take in any case: modules that are imported, caches that fill."""
+"""Memory in bytes that parsing may always take, for imported modules and caches."""
 
 
 def damaged(target: Target) -> st.SearchStrategy[bytes]:
@@ -43,7 +43,7 @@ def damaged(target: Target) -> st.SearchStrategy[bytes]:
 
 @pytest.mark.parametrize("target", TARGETS.values(), ids=lambda target: target.name)
 def test_what_is_not_damaged_is_understood(target: Target) -> None:
-    """Or the inputs to begin from would be none."""
+    """Otherwise the seeds would be useless."""
     assert [target.run(seed) for seed in target.seeds()]
 
 
@@ -57,7 +57,7 @@ def test_damaged_input_is_read_or_refused(target: Target, data: Any) -> None:
 
 @pytest.mark.parametrize("target", TARGETS.values(), ids=lambda target: target.name)
 @given(data=st.data())
-@settings(deadline=None, max_examples=30)
+@settings(deadline=None, max_examples=settings().max_examples // 3)
 def test_damaged_input_takes_no_more_memory_than_its_size_allows(target: Target, data: Any) -> None:
     """A length that it claims is believed only as far as the input reaches."""
     given_bytes = data.draw(damaged(target))
@@ -82,6 +82,6 @@ def test_damaged_input_takes_no_more_memory_than_its_size_allows(target: Target,
         ("errors", b'{"type": "\\ud800", "text": "\\ud800"}'),
     ],
 )
-def test_what_was_found_stays_mended(name: str, data: bytes) -> None:
+def test_inputs_that_were_found_stay_fixed(name: str, data: bytes) -> None:
     """Each raised another error once, or took gigabytes."""
     TARGETS[name].run(data)

@@ -178,7 +178,7 @@ def test_a_file_that_is_not_utf_8_is_an_error(tmp_path: Path) -> None:
 
 
 def test_a_folder_that_is_not_there_is_an_error(tmp_path: Path) -> None:
-    """Rather than no interfaces."""
+    """An empty result would hide a mistyped path."""
     with pytest.raises(FileNotFoundError, match="no such folder"):
         load_interfaces(tmp_path / "nope")
 

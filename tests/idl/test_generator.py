@@ -118,7 +118,9 @@ def test_modules_in_a_package_import_each_other_from_there(packages: Path, out: 
     assert fields(odd)[7].type.nested is importlib.import_module("mine.other_msgs.msg").Point
 
 
-def test_generated_modules_pass_the_tools(packages: Path, out: Path) -> None:
+def test_generated_modules_pass_the_tools(
+    packages: Path, out: Path, pytestconfig: pytest.Config
+) -> None:
     """Formatted as ruff leaves it, and accepted by mypy --strict."""
     generate(packages, out)
     config = ("--config", str(ROOT / "pyproject.toml"))
@@ -133,6 +135,8 @@ def test_generated_modules_pass_the_tools(packages: Path, out: Path) -> None:
             "--strict",
             "--config-file",
             "",
+            "--cache-dir",
+            str(pytestconfig.cache.mkdir("mypy")),
             str(out / "odd_msgs"),
             str(out / "other_msgs"),
         ],
@@ -161,7 +165,7 @@ def test_the_files_written_are_returned(packages: Path, out: Path) -> None:
 
 
 def test_nothing_is_written_if_a_definition_is_wrong(packages: Path, out: Path) -> None:
-    """A half-written package would be found later, by someone else."""
+    """A half-written package would only be noticed later, by another user."""
     (packages / "other_msgs" / "msg" / "Bad.msg").write_text("nope x")
 
     with pytest.raises(IdlError):

@@ -26,7 +26,7 @@ from aionode.message import (
     int32,
     type_name,
 )
-from tests.support.random_messages import shipped_names
+from tests.support.strategies import shipped_types
 
 
 def parts(cls: type[Interface]) -> list[type[Message]]:
@@ -39,7 +39,7 @@ def parts(cls: type[Interface]) -> list[type[Message]]:
 
 def test_the_text_of_every_shipped_type_makes_it_again() -> None:
     """What `aionode interface show` prints can be built."""
-    for name in shipped_names():
+    for name in shipped_types():
         cls = get_interface(name)
         again = define(name, definition_text(cls))
 
@@ -69,7 +69,7 @@ def test_nested_text_shows_what_fields_consist_of() -> None:
 
 
 def test_a_class_written_by_hand_has_a_text() -> None:
-    """To show to a C++ developer, for example."""
+    """For example to show it to a C++ developer."""
 
     class Words(Message, typename="tutorial/msg/Words"):
         LEVEL: ClassVar[byte] = b"\x02"

@@ -12,7 +12,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from aionode.interfaces import get_message
 from aionode.message import FieldType, fields, type_name
-from tests.support.random_messages import shipped_names
+from tests.support.strategies import shipped_types
 
 OTHER: dict[str, set[str]] = {
     "ROS2_HUMBLE": {
@@ -74,7 +74,7 @@ def described(name: str) -> list[tuple[str, str]]:
 def test_the_shipped_types_are_those_of_ros_but_for_what_the_docs_say(distribution: str) -> None:
     """An independent source: other people's copy of ROS's definitions."""
     known = get_typestore(Stores[distribution]).fielddefs
-    names = [n for n in shipped_names() if "/msg/" in n and not n.startswith(ELSEWHERE)]
+    names = [n for n in shipped_types() if "/msg/" in n and not n.startswith(ELSEWHERE)]
     missing = {name for name in names if name not in known}
     differing = set()
     for name in set(names) - missing:

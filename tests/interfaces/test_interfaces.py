@@ -22,7 +22,7 @@ from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.rcl_interfaces.msg import Log
 from aionode.interfaces.std_msgs.msg import String
 from aionode.message import type_name
-from tests.support.random_messages import shipped_names
+from tests.support.strategies import shipped_types
 
 
 def test_an_interface_is_found_by_its_name() -> None:
@@ -75,7 +75,7 @@ def test_an_unknown_name_suggests_what_is_close(name: str, suggestions: tuple[st
 def test_all_packages_of_ros_are_there() -> None:
     """26 packages, 259 types."""
     assert len(shipped_packages()) == 26
-    assert len(shipped_names()) == 259
+    assert len(shipped_types()) == 259
     assert interface_names("std_srvs") == (
         "std_srvs/srv/Empty",
         "std_srvs/srv/SetBool",
@@ -95,7 +95,7 @@ def test_every_module_lists_its_types() -> None:
 
 def test_every_type_says_what_it_is_for() -> None:
     """The docstring is more than the name."""
-    for name in shipped_names():
+    for name in shipped_types():
         text = get_interface(name).__doc__
         assert text is not None
         assert len(text) > len(name.split("/")[2]) + 1, name

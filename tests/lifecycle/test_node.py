@@ -288,7 +288,7 @@ async def test_another_request_cancels_a_transition(node: Node, managed: Managed
 
 
 async def test_success_cannot_be_requested(node: Node, managed: Managed) -> None:
-    """A node is configured when its callback says so."""
+    """Only the callback decides whether the node is configured."""
     managed.outcomes["configure"] = asyncio.Event()
     async with asyncio.TaskGroup() as tasks:
         tasks.create_task(change(node, "configure"))
@@ -299,7 +299,7 @@ async def test_success_cannot_be_requested(node: Node, managed: Managed) -> None
 
 
 async def test_shutdown_cancels_what_is_under_way(node: Node, managed: Managed) -> None:
-    """Who wants a node to end need not wait for its camera."""
+    """A shutdown need not wait for a camera."""
     managed.outcomes["configure"] = asyncio.Event()
     async with asyncio.TaskGroup() as tasks:
         tasks.create_task(change(node, "configure"))
@@ -538,7 +538,7 @@ async def test_entities_are_enabled_again_when_deactivation_fails(managed: Manag
 
 
 class Slow(LifecycleNode):
-    """Awaits several times in each callback, and once more when something went wrong."""
+    """Awaits several times in each callback, `on_error` included."""
 
     failing = False
 
@@ -560,7 +560,7 @@ class Slow(LifecycleNode):
         return await self.work(state)
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(
     st.lists(
         st.tuples(

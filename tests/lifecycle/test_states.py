@@ -68,7 +68,7 @@ def test_a_transition_from_another_state_is_refused() -> None:
 
 
 def test_a_result_without_a_transition_is_refused() -> None:
-    """There is nothing that could have returned it."""
+    """No callback was running that could have returned it."""
     with pytest.raises(ValueError, match="no transition is in progress in unconfigured"):
         StateMachine().finish(SUCCESS)
 

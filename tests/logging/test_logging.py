@@ -227,7 +227,7 @@ def test_a_closed_stream_does_not_fail_the_caller(monkeypatch: pytest.MonkeyPatc
 
 
 def test_info_is_the_level_to_begin_with() -> None:
-    """Debug messages are for those who ask."""
+    """Debug messages have to be enabled."""
     assert logger().debug("m") is False
     assert logger().get_effective_level() is LoggingSeverity.INFO
 
@@ -265,7 +265,7 @@ def test_a_level_can_be_set_before_the_logger_exists() -> None:
 
 
 def test_clearing_forgets_all_levels() -> None:
-    """Back to the start."""
+    """Then all are as at the start."""
     log = logger()
     log.set_level(LoggingSeverity.WARN)
     logging.clear_config()
@@ -403,7 +403,7 @@ def test_each_logger_has_its_own_state() -> None:
         (lambda log, i: log.info("m", throttle_duration_sec=i + 1), "parameters cannot be changed"),
     ],
 )
-def test_a_place_in_the_code_must_not_change_its_mind(
+def test_a_place_in_the_code_must_not_change_its_options(
     change: Callable[[logging.RcutilsLogger, int], bool], says: str
 ) -> None:
     """Its state would be meaningless."""
@@ -630,7 +630,7 @@ def test_a_sink_that_logs_does_not_hear_itself() -> None:
 
 
 def test_a_sink_gets_nothing_below_the_level() -> None:
-    """Levels apply before."""
+    """Levels are applied first."""
     log = logger()
     events, _ = sink_on(log)
     log.debug("m")
@@ -651,7 +651,7 @@ def test_levels_and_console_can_be_configured(capsys: pytest.CaptureFixture[str]
 
 
 def test_no_file_is_written_unless_asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A robot's disk is not filled behind its owner's back."""
+    """A log must not fill a robot's disk unnoticed."""
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path))
     logging.clear_config()
     logger().info("m")

@@ -28,7 +28,7 @@ from aionode.message import (
     to_json,
     to_yaml,
 )
-from tests.support.random_messages import any_messages
+from tests.support.strategies import any_messages
 
 TWIST = """\
 linear:
@@ -185,7 +185,7 @@ def test_the_arrays_of_a_new_message_can_be_changed() -> None:
         ),
     ],
 )
-def test_a_misfit_names_its_path(cls: type[Message], text: str, error: str) -> None:
+def test_an_invalid_value_is_named_with_its_path(cls: type[Message], text: str, error: str) -> None:
     """From plain values, YAML and JSON alike."""
     data = yaml.safe_load(text)
     readers: list[tuple[Callable[..., Message], object]] = [
@@ -228,7 +228,11 @@ def test_texts_that_break_a_parser_are_message_errors(text: str) -> None:
         from_yaml(String, text) if ":" in text else from_json(String, text)
 
 
-@settings(max_examples=150, suppress_health_check=list(HealthCheck), deadline=None)
+@settings(
+    max_examples=settings().max_examples * 3 // 2,
+    suppress_health_check=list(HealthCheck),
+    deadline=None,
+)
 @given(any_messages())
 def test_every_message_survives_plain_values_json_and_yaml(message: Message) -> None:
     """For every type that is shipped."""

@@ -339,12 +339,12 @@ def test_an_array_needs_a_size_and_only_strings_have_a_bound() -> None:
 
 
 def test_a_size_may_be_a_literal_type() -> None:
-    """Some write it so for their type checker."""
+    """Some type checkers require it."""
     assert Array[int32, Literal[3]] == Array[int32, 3]
 
 
 def test_bytes_are_a_default_for_bytes() -> None:
-    """As short as it gets; the description has numbers, as the definition would."""
+    """The shortest form; the description has numbers, as the definition would."""
 
     class Blob(Message, typename="tutorial/msg/Blob"):
         data: Sequence[uint8] = b"ab"

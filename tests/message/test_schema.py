@@ -155,7 +155,7 @@ def test_the_schema_of_a_model_names_each_message_once() -> None:
 
 
 def test_a_message_needs_no_pydantic() -> None:
-    """Who has none never imports it."""
+    """It is not imported where it is not used."""
     code = (
         "import sys; from aionode.interfaces.std_msgs.msg import String; "
         "from aionode.message import json_schema; json_schema(String); "

@@ -43,7 +43,7 @@ from aionode.message import (
     snapshot,
     snapshotter,
 )
-from tests.support.random_messages import any_messages
+from tests.support.strategies import any_messages
 
 
 class Texts(Message, typename="tutorial/msg/Texts"):
@@ -226,8 +226,8 @@ def test_what_means_the_same_is_taken_in_one_form(message: Message, value: objec
     ],
     ids=lambda value: None if isinstance(value, str) else type(value).__name__,
 )
-def test_a_misfit_names_its_path_its_value_and_what_fits(message: Message, text: str) -> None:
-    """The one who reads the error can mend it without a debugger."""
+def test_an_invalid_value_is_named_with_its_path_and_what_fits(message: Message, text: str) -> None:
+    """The error suffices to fix the mistake without a debugger."""
     for validate in (snapshot, check):
         with pytest.raises(MessageError) as caught:
             validate(message)
@@ -410,7 +410,11 @@ def test_something_that_is_no_message_class_is_a_type_error() -> None:
         snapshotter(int)  # type: ignore[type-var] # the point of the test
 
 
-@settings(max_examples=150, suppress_health_check=list(HealthCheck), deadline=None)
+@settings(
+    max_examples=settings().max_examples * 3 // 2,
+    suppress_health_check=list(HealthCheck),
+    deadline=None,
+)
 @given(any_messages())
 def test_a_snapshot_of_any_message_equals_it(message: Message) -> None:
     """For every type that is shipped."""

@@ -46,7 +46,7 @@ class Kept:
         self.threads.append(threading.get_ident())
 
     def note_alive(self, gid: bytes) -> None:
-        """Keep who is alive."""
+        """Record which publishers are alive."""
         self.alive.append(gid)
 
     def reject(self, error: Exception) -> None:
@@ -138,7 +138,7 @@ async def test_messages_to_this_context_are_delivered_in_the_thread_that_publish
 
         assert [each.data for each in reader.messages] == ["here"]
         assert reader.threads == results[1:]
-        assert results[0] is None  # nobody else listens
+        assert results[0] is None  # there is no other subscription
 
 
 async def test_late_subscriptions_get_what_a_transient_local_publisher_has_kept(
@@ -232,7 +232,7 @@ async def test_a_failed_and_a_dropped_request_are_told_apart(context: Context) -
 
 
 async def test_a_cancelled_call_is_forgotten(context: Context) -> None:
-    """A late answer must not reach whoever has given up."""
+    """A late answer must not reach a caller that has given up."""
     async with context:
         node = BareNode(context, "bare")
         requests: list[Request] = []
@@ -248,7 +248,7 @@ async def test_a_cancelled_call_is_forgotten(context: Context) -> None:
 
 
 async def test_without_a_server_nothing_is_called(context: Context) -> None:
-    """There is no one who could answer; the program decides how long it waits."""
+    """No server could answer; the program decides how long to wait."""
     async with context:
         client = BareNode(context, "bare").create_client(AddTwoInts, "/add", TEN)
         answers = Answers()

@@ -388,7 +388,7 @@ SERVICES: dict[Any, str] = {
 }
 
 
-@hypothesis.settings(max_examples=150, deadline=None)
+@hypothesis.settings(max_examples=hypothesis.settings().max_examples * 3 // 2, deadline=None)
 @hypothesis.given(requests=st.lists(REQUESTS, min_size=1, max_size=5), undeclared=st.booleans())
 def test_no_request_of_a_peer_ends_a_node(requests: list[Any], *, undeclared: bool) -> None:
     """The built-in services answer any request of another program."""

@@ -121,14 +121,14 @@ def test_a_context_serves_one_loop_after_the_other() -> None:
 
 
 async def test_a_node_that_runs_cannot_be_run_again(node: Node) -> None:
-    """Two owners of one lifetime would both end it."""
+    """Both owners would end it."""
     await settle()
     with pytest.raises(RuntimeError, match="/node is already running"):
         await node.run()
 
 
 async def test_a_destroyed_node_cannot_run(context: Context) -> None:
-    """Its entities are gone."""
+    """It has no entities any more."""
     node = Node("node", context=context)
     node.destroy_node()
     with pytest.raises(EntityDestroyedError, match="cannot run: node /node is destroyed"):

@@ -146,7 +146,7 @@ def test_a_message_from_the_wire_becomes_pythons_types() -> None:
 
 
 def test_a_message_of_an_unknown_type_is_an_error() -> None:
-    """Peers may be broken."""
+    """Other programs may be faulty."""
     with pytest.raises(RuntimeError, match="unexpected parameter type 77"):
         parameter.parameter_value_to_python(msg.ParameterValue(type=77))
     with pytest.raises(ValueError, match="77"):
@@ -707,7 +707,7 @@ def test_a_rejection_when_declaring_is_an_error() -> None:
 
 @pytest.mark.parametrize("kind", ["pre", "on"])
 def test_a_callback_that_returns_nothing_is_a_type_error(kind: str) -> None:
-    """A forgotten return."""
+    """A ``return`` was forgotten."""
     parameters = store()
     parameters.declare_parameter("a", 1)
     getattr(parameters, f"add_{kind}_set_parameters_callback")(lambda _: None)
@@ -759,7 +759,7 @@ def test_a_change_is_one_event_with_new_changed_and_deleted() -> None:
 
 
 def test_a_failed_change_is_no_event() -> None:
-    """Nothing happened."""
+    """Nothing has changed."""
     parameters = store()
     parameters.declare_parameter("a", 1)
     events: list[ParameterEvent] = []

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 DOMAIN = os.environ["ROS_DOMAIN_ID"]
-PATIENCE_S = 5.0
+PATIENCE_S = 20.0
 GID = bytes(range(16))
 
 STATES = {
@@ -310,7 +310,7 @@ class Stage:
         return self.node
 
     def expect_calls(self, start: int, *names: str) -> None:
-        """Expect that these callbacks were called, each with the state of the start."""
+        """Expect that these callbacks were called, each with its start state."""
         calls = " ".join(f"{name}:{STATES[start]}" for name in names)
         assert self.tell(self.calls_key, calls), calls
 
@@ -329,7 +329,7 @@ RESULTS = {
     "NONE": "ERROR",  # something that is no result
     "LOSE": "ERROR",  # what it awaits is canceled
 }
-"""What a callback may do, and the result as which that counts."""
+"""What a callback may do, and the result that it counts as."""
 
 HANDLINGS = {"ERROR": list(RESULTS), "RAISE": ["SUCCESS", "FAILURE", "ERROR", "RAISE"]}
 """What `on_error` does after that; after all else it succeeds."""

@@ -39,7 +39,7 @@ class Overheard:
 
 @contextmanager
 def router_with_a_listener() -> Iterator[tuple[zenoh.Session, Overheard]]:
-    """A router of ROS, and who answers for every admin space behind it."""
+    """A router of ROS, and a session that answers for every admin space behind it."""
     overheard = Overheard()
     with ExitStack() as stack:
         router = ros_router()

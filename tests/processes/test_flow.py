@@ -12,7 +12,7 @@ import pytest
 from tests.processes.process import Process
 
 STANDS_MS = 1000.0
-"""For so long a loop may stand still where other tests run beside: what is tested takes seconds."""
+"""The longest stall of a loop beside other tests, in ms; the defects took seconds."""
 
 ALONE_MS = 50.0
 """The same on a machine that does nothing else."""
@@ -59,12 +59,12 @@ def count(process: Process) -> int:
 
 
 def sleep_s(seconds: float) -> None:
-    """Let other processes go on for so long."""
+    """Let other processes run for some time."""
     time.sleep(seconds)
 
 
 def freeze_reader(
-    freeze_s: float, *, role: str = "reader", messages: int = 30_000, limit_ms: float = STANDS_MS
+    freeze_s: float, *, role: str = "reader", messages: int = 15_000, limit_ms: float = STANDS_MS
 ) -> None:
     """Freeze the reader of a KEEP_ALL publisher: in the end it has everything, others never lag."""
     with members(
@@ -81,7 +81,7 @@ def freeze_reader(
         before = count(healthy)
         sleep_s(freeze_s)
         assert max(gap_ms(process) for process in watched) < limit_ms
-        assert count(healthy) - before > 50 * freeze_s  # of 200 in a second
+        assert count(healthy) - before > 10 * freeze_s  # of 200 in a second, on an idle machine
         assert count(keeper) < messages
         reader.send(signal.SIGCONT)
         keeper.expect(f"sent {messages} 0")
@@ -126,11 +126,11 @@ def test_a_publisher_ends_at_once_beside_a_frozen_reader_and_says_what_is_lost(r
 
 def test_a_reader_that_pauses_with_its_loop_free_has_everything() -> None:
     """Its network thread used to wait with it, and then the connection was lost."""
-    with members(("reader", "big", 30_000), ("keeper", "big", 30_000, 500)) as (reader, keeper):
+    with members(("reader", "big", 15_000), ("keeper", "big", 15_000, 500)) as (reader, keeper):
         keeper.expect("matched")
         reader.write("pause 2")
-        keeper.expect("sent 30000 0")
-        reader.expect("heard 30000")
+        keeper.expect("sent 15000 0")
+        reader.expect("heard 15000")
         assert gap_ms(reader) < STANDS_MS
         assert not [line for line in reader.rest_so_far() if line.startswith("wrong")]
 

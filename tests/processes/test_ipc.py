@@ -89,7 +89,7 @@ class Pings:
         self.next += 1
 
     async def until_linked(self) -> None:
-        """Go on until the link is used."""
+        """Send numbers until the link is used."""
         await self.there.wait_for_subscribers()
         while self.back.get_publisher_count() == 0:
             await self.node.graph.changed()
@@ -209,7 +209,7 @@ def in_mid_frame(link: Connection) -> bool:
 async def test_a_sender_that_is_killed_in_mid_frame_ends_its_stream_and_the_next_is_heard(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """What it has not sent to the end is nothing; what it has is whole."""
+    """An incomplete message is dropped; complete ones are delivered."""
     async with linked_node() as node:
         stream = Stream(node)
         closed = returns_of(monkeypatch, stream.node.context.transports[1].manager, "on_closed")

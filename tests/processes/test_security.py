@@ -88,8 +88,10 @@ def test_the_sockets_of_links_are_in_a_folder_of_the_user_alone(
         assert stat.S_IMODE((runtime / "aionode").stat().st_mode) == 0o700
 
 
-def test_who_asks_for_it_listens_on_every_interface(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Or the other tests would see nothing."""
+def test_subnet_listens_on_every_interface(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """This shows that the other tests could see it."""
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET")
     with member("one") as one:
         one.expect("open")
@@ -97,7 +99,7 @@ def test_who_asks_for_it_listens_on_every_interface(monkeypatch: pytest.MonkeyPa
         assert ("tcp", "0.0.0.0") in open_ports(one)  # noqa: S104  # what is looked for
 
 
-def test_who_is_off_listens_nowhere(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_off_listens_nowhere(monkeypatch: pytest.MonkeyPatch) -> None:
     """No other process finds it."""
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")
     with member("one") as one:

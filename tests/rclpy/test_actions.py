@@ -188,7 +188,7 @@ def test_a_goal_cannot_end_twice(node: Node, result_of: Callable[..., Any]) -> N
 def test_results_are_forgotten_after_their_time(
     node: Node, executor: SingleThreadedExecutor, result_of: Callable[..., Any]
 ) -> None:
-    """Who asks later learns that the goal is unknown."""
+    """Later requests are answered as for an unknown goal."""
     server = Server(node, result_timeout=0.01)
     handle = result_of(client_of(node).send_goal_async(Fibonacci.Goal(order=1)))
     server.may_end.set_result(None)

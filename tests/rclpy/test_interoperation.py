@@ -98,7 +98,7 @@ async def result_of(future: Any) -> Any:
 
 
 stop = threading.Event()
-"""Ends what waits to be cancelled, so that a test that fails ends."""
+"""Ends goals that wait for their cancellation, so that a failing test ends."""
 
 
 def work(goal_handle: Any) -> Any:

@@ -16,7 +16,7 @@ import pytest
 
 from aionode.rclpy._rosidl import interface_class
 from tests.support import rosidl_report
-from tests.support.random_messages import shipped_names
+from tests.support.strategies import shipped_types
 
 REAL = os.environ.get("AIONODE_REAL_RCLPY")
 
@@ -43,7 +43,7 @@ def real() -> dict[str, Any]:
     assert REAL is not None
     done = subprocess.run(
         [REAL, "-W", "ignore", str(program)],
-        input="\n".join(shipped_names()),
+        input="\n".join(shipped_types()),
         capture_output=True,
         text=True,
         check=False,
@@ -57,7 +57,7 @@ def real() -> dict[str, Any]:
 @pytest.mark.filterwarnings("ignore")
 def test_classes_are_those_of_ros(real: dict[str, Any]) -> None:
     """Names, types, constants, texts of errors, and what becomes of any value: all the same."""
-    names = [name for name in shipped_names() if any(key.startswith(name) for key in real)]
+    names = [name for name in shipped_types() if any(key.startswith(name) for key in real)]
     own = rosidl_report.report({name: interface_class(name) for name in names})
     own = json.loads(json.dumps(own, default=str))
 

@@ -135,7 +135,7 @@ def test_a_program_that_python_cannot_read_is_shown_as_usual(folder: Path) -> No
         (("--nothing",), "usage: python -m aionode.rclpy"),
     ],
 )
-def test_what_cannot_run_is_said_in_a_line(
+def test_what_cannot_run_is_reported_in_one_line(
     folder: Path, command: tuple[str, ...], problem: str
 ) -> None:
     """As Python does, with its exit status."""

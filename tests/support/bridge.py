@@ -137,7 +137,7 @@ class StandIn:
         self.announced.discard(token)
         chunks = token.split("/")
         if chunks[3:4] == ["MS"]:
-            # The last token of a key goes, and with it the DDS reader, whoever still subscribes.
+            # The DDS reader goes with the last token of a key, even if there are other subscribers.
             same = [one for one in self.announced if one.split("/")[3:5] == chunks[3:5]]
             if not [one for one in same if one.split("/")[1] == chunks[1]]:
                 self._cut.add(chunks[4].replace("§", "/"))
@@ -281,7 +281,7 @@ def add(request: bytes) -> bytes:
 
 @contextmanager
 def stand_in(namespace: str = "/", *, first: bool = True, joins_late: int = 0) -> Iterator[StandIn]:
-    """A stand-in on the port of routers, or beside one there, that also dials who is there."""
+    """Run a stand-in on the port of routers, or beside one there; it dials processes there, too."""
     listen = os.environ["AIONODE_ROUTER_PORT"] if first else "0"
     port = os.environ["AIONODE_MEETING_PORTS"].split(",")[0]
     config = zenoh.Config()

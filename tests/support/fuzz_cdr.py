@@ -1,4 +1,4 @@
-"""Damages encoded messages at random and decodes them, for as long as one likes.
+"""Damages encoded messages at random and decodes them, as many as requested.
 
 ``python -m tests.support.fuzz_cdr --cases 1000000 --seed 1``. There may be a message or a
 `DecodeError`, and the generated decoder has to agree with the plain one. A case that fails is

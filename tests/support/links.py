@@ -115,7 +115,7 @@ class Counting:
             self.next += 1
 
     async def go(self, count: int = 1) -> None:
-        """Publish and receive so many, and expect the very next ones."""
+        """Publish and receive `count` numbers; expect the next ones without a gap."""
         first = self.next
         self.publish(count)
         assert [(await self.subscription.receive()).data for _ in range(count)] == list(
@@ -123,7 +123,7 @@ class Counting:
         )
 
     async def until_linked(self, linked: int = 1) -> None:
-        """Go on until so many readers take the link only."""
+        """Publish and receive until `readers` readers use the link only."""
         await self.publisher.wait_for_subscribers()
         while writer_of(self.publisher).linked != linked:
             await self.go()

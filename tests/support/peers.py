@@ -114,7 +114,7 @@ class Collector:
         self._loop.call_soon_threadsafe(self._changed.set)
 
     async def have(self, count: int) -> list[Any]:
-        """Wait for so many items, and return them."""
+        """Wait for `count` items, and return them."""
         while len(self.items) < count:
             self._changed.clear()
             if len(self.items) < count:
@@ -148,7 +148,7 @@ def raw_session(listen: str = "tcp/127.0.0.1:0") -> Iterator[zenoh.Session]:
 
 
 async def known(session: zenoh.Session, tokens: str, count: int = 1) -> list[str]:
-    """Wait until a session sees so many tokens that match, and return those."""
+    """Wait until a session sees `count` tokens that match, and return those."""
     found = Collector()
     subscriber = session.liveliness().declare_subscriber(tokens, found, history=True)
     try:

@@ -63,7 +63,7 @@ class Sample:
         name: ROS name of its type.
         message: The message.
         data: As aionode has to encode it.
-        others: As other implementations encode it: with garbage as padding or at the end.
+        others: As other implementations encode it: with arbitrary bytes as padding or at the end.
     """
 
     name: str

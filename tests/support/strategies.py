@@ -25,13 +25,13 @@ from aionode.message import (
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["message_classes", "messages", "shipped_types", "values"]
+__all__ = ["any_messages", "message_classes", "messages", "shipped_types", "values"]
 
 HEAVIEST = 160
-"""Values of a message up to which it is drawn as a whole."""
+"""The most values that a message may have to be drawn as a whole."""
 
 MOST_ELEMENTS = 4
-"""Length of random sequences: each further element tells nothing new."""
+"""The longest random sequence: further elements would test nothing new."""
 
 INTEGERS = {
     name: (np.iinfo(dtype).min, np.iinfo(dtype).max)
@@ -74,6 +74,12 @@ def parts_of(cls: Any) -> Iterator[type[Message]]:
         yield from parts_of(cls.Impl.GetResultService)
     else:
         yield cls
+
+
+def any_messages(*, nan: bool = False) -> st.SearchStrategy[Any]:
+    """Return a strategy for messages of any class; see `messages`."""
+    classes = list(message_classes().values())
+    return st.sampled_from(classes).flatmap(lambda cls: messages(cls, nan=nan))
 
 
 @cache  # hypothesis takes longer to make a strategy than to draw from it

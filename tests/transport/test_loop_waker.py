@@ -104,7 +104,7 @@ async def test_other_callbacks_run_in_between(
     assert order.index("other") == loop_waker.SLICE_ITEMS
 
 
-async def test_a_busy_lane_lets_the_others_have_their_turn(woken: LoopWaker) -> None:
+async def test_a_busy_queue_lets_the_others_have_their_turn(woken: LoopWaker) -> None:
     """A flood on one topic does not hold up another."""
     order: list[str] = []
     busy = ThreadsafeQueue[None](woken, lambda _: order.append("busy"))
@@ -117,7 +117,7 @@ async def test_a_busy_lane_lets_the_others_have_their_turn(woken: LoopWaker) -> 
     assert order.index("calm") == loop_waker.SLICE_ITEMS
 
 
-async def test_a_full_lane_drops_its_oldest(woken: LoopWaker) -> None:
+async def test_a_full_queue_drops_its_oldest(woken: LoopWaker) -> None:
     """Nothing grows without limit while the loop is busy."""
     taken: list[int] = []
     queue = ThreadsafeQueue(woken, taken.append, limit=3)
@@ -170,7 +170,7 @@ async def drained(woken: LoopWaker) -> None:
         await checkpoint()
 
 
-async def test_a_lane_may_be_cleared_by_what_it_calls(woken: LoopWaker) -> None:
+async def test_a_queue_may_be_cleared_by_what_it_calls(woken: LoopWaker) -> None:
     """A callback may run from there, and destroy its subscription."""
     reported: list[object] = []
     taken: list[int] = []
@@ -193,7 +193,7 @@ async def test_a_lane_may_be_cleared_by_what_it_calls(woken: LoopWaker) -> None:
 async def test_callbacks_may_run_for_a_slice_of_time(
     woken: LoopWaker, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Reckoned once for all that one event brings, and over with it."""
+    """The slice is computed once for each event, and ends with it."""
     seen: list[int] = []
     lanes = [
         ThreadsafeQueue[int](woken, lambda _: seen.append(woken.inline_deadline_ns))

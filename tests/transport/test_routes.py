@@ -1,4 +1,4 @@
-"""Which way messages take, as statistics say it, and what contexts announce of their links."""
+"""The routes of messages as statistics show them, and what contexts announce of their links."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ async def test_a_subscription_of_another_context_is_reached_by_zenoh() -> None:
         }
 
 
-async def test_a_linked_subscription_is_reached_both_ways_while_a_stranger_listens() -> None:
+async def test_a_linked_subscription_is_reached_both_ways_beside_an_unannounced_peer() -> None:
     """And by the link alone otherwise."""
     async with two_nodes() as nodes:
         numbers = Counting(nodes)

@@ -40,7 +40,7 @@ def test_unpacking_undoes_packing(sequence: int, ns: int, gid: bytes, more: byte
 
 @given(st.binary(max_size=90))
 def test_any_bytes_unpack_or_are_none(data: bytes) -> None:
-    """Garbage from the network is no exception."""
+    """Malformed data from the network must not raise."""
     unpacked = attachment.unpack(data)
 
     assert unpacked is None or len(unpacked.gid) == attachment.GID_SIZE

@@ -228,7 +228,7 @@ async def test_a_browser_that_leaves_while_it_reads_ends_a_goal_in_a_block(ends:
 
 
 async def test_a_block_leaves_a_goal_alone_that_has_ended(ends: Ends) -> None:
-    """There is nothing to cancel."""
+    """Nothing is left to cancel."""
     ends.worker.may_end.set()
     async with await ends.client.send_goal(Fibonacci.Goal()) as goal:
         outcome = await goal.result()
@@ -237,7 +237,7 @@ async def test_a_block_leaves_a_goal_alone_that_has_ended(ends: Ends) -> None:
     assert not ends.client._cancel_requests
 
 
-async def test_a_request_goes_on_when_who_awaits_its_answer_is_cancelled(ends: Ends) -> None:
+async def test_a_request_goes_on_when_the_awaiter_of_its_answer_is_cancelled(ends: Ends) -> None:
     """In ``finally``, under a limit that has run out, nothing can be awaited."""
     sent = await ends.client.send_goal(Fibonacci.Goal())
     goal = await ends.worker.begun.get()
@@ -253,7 +253,7 @@ async def test_a_request_goes_on_when_who_awaits_its_answer_is_cancelled(ends: E
 
 
 class Doorkeeper:
-    """A `goal_callback` that thinks until the test says so."""
+    """A `goal_callback` that accepts when the test says so."""
 
     def __init__(self) -> None:
         self.asked = asyncio.Queue[int]()
@@ -266,10 +266,10 @@ class Doorkeeper:
         return GoalResponse.ACCEPT
 
 
-async def test_a_goal_that_is_cancelled_while_the_server_thinks_is_never_executed(
+async def test_a_goal_that_is_cancelled_before_the_server_decides_is_never_executed(
     ends: Ends, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The server refuses it then, as its client has gone."""
+    """The server rejects it, because its client has given up."""
     noted = returns_of(monkeypatch, ends.server, "_note_early_cancel")
     answered = returns_of(monkeypatch, ends.client, "_on_cancel_answered")
     door = Doorkeeper()
@@ -291,7 +291,7 @@ async def test_a_goal_that_is_cancelled_while_the_server_thinks_is_never_execute
 async def test_a_goal_that_is_cancelled_in_the_queue_of_the_server_is_never_executed(
     ends: Ends, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Behind another one about which the server thinks."""
+    """Behind another goal that the server is still deciding on."""
     noted = returns_of(monkeypatch, ends.server, "_note_early_cancel")
     answered = returns_of(monkeypatch, ends.client, "_on_cancel_answered")
     door = Doorkeeper()

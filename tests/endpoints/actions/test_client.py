@@ -132,7 +132,7 @@ async def test_a_goal_succeeds(ends: Ends) -> None:
 
 
 async def test_call_is_the_whole_in_one(ends: Ends) -> None:
-    """For who wants nothing but the result."""
+    """For callers that need only the result."""
     ends.worker.may_end.set()
 
     result = await ends.client.call(Fibonacci.Goal(order=2))
@@ -347,7 +347,7 @@ async def test_abort_takes_a_result_and_a_reason(ends: Ends) -> None:
 
 
 async def test_an_aborted_goal_without_a_reason_has_an_empty_text(ends: Ends) -> None:
-    """Nothing is made up."""
+    """None is invented."""
 
     async def execute(goal: Goal) -> Fibonacci.Result:
         goal.abort()
@@ -426,8 +426,8 @@ async def test_a_goal_that_has_ended_cannot_be_cancelled(ends: Ends) -> None:
     assert (await sent.cancel()).return_code == 3
 
 
-async def test_a_goal_that_was_cancelled_by_somebody_raises_in_call(ends: Ends) -> None:
-    """call() has no other way to tell; the result is there as far as the server got."""
+async def test_a_goal_that_another_client_cancelled_raises_in_call(ends: Ends) -> None:
+    """call() can report it in no other way; the error has the partial result."""
     other = PlainClient(ends.asking)
     calling = beside(ends.client.call(Fibonacci.Goal()))
     await ends.worker.begun.get()
@@ -456,7 +456,7 @@ async def wait_by_feedback(ends: Ends) -> None:
 
 
 @pytest.mark.parametrize("wait", [wait_by_result, wait_by_call, wait_by_feedback])
-async def test_cancelling_who_awaits_a_goal_cancels_the_goal(ends: Ends, wait: Any) -> None:
+async def test_cancelling_an_awaiter_cancels_the_goal(ends: Ends, wait: Any) -> None:
     """A robot does not drive on because its program was stopped; one request is enough."""
     waiting = beside(wait(ends))
     goal = await ends.worker.begun.get()
@@ -480,8 +480,8 @@ async def test_a_timeout_cancels_the_goal(ends: Ends) -> None:
     assert ends.requests == [goal]
 
 
-async def test_several_who_await_a_goal_send_one_request(ends: Ends) -> None:
-    """A request more would be answered with an error."""
+async def test_several_awaiters_of_a_goal_send_one_request(ends: Ends) -> None:
+    """A second request would be answered with an error."""
     sent, goal = await begin(ends)
     waiting = [beside(sent.result()) for _ in range(3)]
     await checkpoint()  # lets them begin
@@ -542,7 +542,7 @@ async def test_cancelling_after_the_end_sends_nothing(ends: Ends) -> None:
 
 
 async def test_a_server_that_keeps_silent_does_not_keep_a_cancelled_task(ends: Ends) -> None:
-    """A task that is cancelled has no time; the request does not need it."""
+    """A cancelled task must end at once; the request does not depend on it."""
     never = asyncio.Event()
 
     async def decide(_goal: Goal) -> CancelResponse:
@@ -608,7 +608,7 @@ async def test_a_destroyed_server_loses_its_goals_at_once(ends: Ends) -> None:
 
 
 async def test_a_stopping_node_loses_its_goals_at_once(ends: Ends) -> None:
-    """The same, when the whole node goes."""
+    """The same as when only the server is destroyed."""
     sent, _ = await begin(ends)
 
     ends.serving.destroy_node()
@@ -678,8 +678,8 @@ async def test_a_destroyed_client_cancels_its_waits_and_what_they_wait_for(ends:
         await ends.client.wait_for_server()
 
 
-async def test_a_goal_that_nobody_awaits_outlives_its_client(ends: Ends) -> None:
-    """Sent and left alone on purpose: it goes on."""
+async def test_a_goal_that_no_task_awaits_outlives_its_client(ends: Ends) -> None:
+    """It was left to run on purpose."""
     sent, goal = await begin(ends)
 
     ends.client.destroy()

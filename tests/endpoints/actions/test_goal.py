@@ -1,4 +1,4 @@
-"""The states of a goal, row by row, and whom a cancel request means."""
+"""The states of a goal, row by row, and which goals a cancel request selects."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ WORDS = [
 ONE, TWO, THREE = (bytes([number]) * 16 for number in (1, 2, 3))
 
 
-# Moves
+# Transitions
 
 
 @pytest.mark.parametrize(("before", "event", "after"), LEGAL)
@@ -144,8 +144,8 @@ def test_a_request_means_these_goals(goal_id: bytes, stamp_ns: int, meant: list[
     assert candidates(GOALS, GoalKey(goal_id, stamp_ns)) == (CancelCode.NONE, meant)
 
 
-def test_a_request_for_a_goal_that_nobody_knows_says_so() -> None:
-    """Its client may have mixed up servers."""
+def test_a_request_for_an_unknown_goal_says_so() -> None:
+    """The client may have asked the wrong server."""
     assert candidates([], GoalKey(ONE, 0)) == (CancelCode.UNKNOWN_GOAL_ID, [])
 
 

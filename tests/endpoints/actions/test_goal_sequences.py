@@ -32,7 +32,7 @@ STEPS = st.one_of(
 
 
 async def send(robot: Node, client: Node, steps: list[tuple[str, int, Any]]) -> None:
-    """Send all that, with so many turns of the loop in between, and see that the node lives."""
+    """Send the steps, some iterations of the loop apart, and check that the node still runs."""
     hidden = "go/_action"
     goals = client.create_client(Impl.SendGoalService, f"{hidden}/send_goal")
     cancels = client.create_client(Impl.CancelGoalService, f"{hidden}/cancel_goal")
@@ -56,7 +56,7 @@ async def send(robot: Node, client: Node, steps: list[tuple[str, int, Any]]) -> 
 
 
 async def execute(goal: Goal) -> Fibonacci.Result:
-    """End after some turns in one of the ways that there are."""
+    """End in one of the possible ways after some iterations of the loop."""
     for _ in range(goal.request.order):
         await checkpoint()
     if goal.request.order == 2:
@@ -89,7 +89,7 @@ def run(steps: list[tuple[str, int, Any]], *, concurrent: bool | int) -> None:
     asyncio.run(main())
 
 
-@hypothesis.settings(max_examples=150, deadline=None)
+@hypothesis.settings(max_examples=hypothesis.settings().max_examples * 3 // 2, deadline=None)
 @hypothesis.given(
     steps=st.lists(STEPS, min_size=1, max_size=12), concurrent=st.sampled_from([True, False, 2])
 )

@@ -136,7 +136,7 @@ async def test_a_failing_goal_callback_tells_the_client(serve: Serve, client: Pl
 async def test_an_action_server_survives_a_failing_goal_callback(
     node: Node, serve: Serve, worker: Worker, client: PlainClient
 ) -> None:
-    """One bad goal is its client's trouble: the next one is decided on as ever."""
+    """A bad goal is an error of its client; the next goal is decided on as usual."""
 
     def decide(goal: Fibonacci.Goal) -> GoalResponse:
         if goal.order < 0:
@@ -168,7 +168,7 @@ async def test_an_id_that_is_known_already_is_rejected(
 async def test_an_id_is_rejected_that_came_while_its_twin_was_decided_on(
     node: Node, serve: Serve, client: PlainClient
 ) -> None:
-    """Two requests in one moment are no way round the rule."""
+    """Simultaneous requests must not evade the rule."""
     server = serve()
     decisions: list[Fibonacci.Goal] = []
 
@@ -428,7 +428,7 @@ async def test_an_end_is_final(serve: Serve, client: PlainClient) -> None:
     assert (caught[0].status, caught[0].event) == ("SUCCEEDED", "ABORT")
 
 
-async def test_a_goal_cannot_be_canceled_that_nobody_asked_to_cancel(
+async def test_a_goal_cannot_be_canceled_without_a_request(
     serve: Serve, client: PlainClient
 ) -> None:
     """canceled() without a request would surprise the client."""
@@ -527,7 +527,7 @@ async def test_an_offloaded_callback_sees_that_it_is_to_stop(
 async def test_an_accepted_request_cancels_the_callback(
     serve: Serve, worker: Worker, client: PlainClient
 ) -> None:
-    """Letting CancelledError through is enough to end as CANCELED."""
+    """If it lets CancelledError propagate, its goal ends as CANCELED."""
     serve()
     await client.send()
     goal = await worker.begun.get()
@@ -541,7 +541,7 @@ async def test_an_accepted_request_cancels_the_callback(
 async def test_a_cancelled_callback_decides_how_its_goal_ends(
     serve: Serve, client: PlainClient, ending: str, status: int
 ) -> None:
-    """It may clean up, and it may have been as good as done."""
+    """It may clean up, or may have been almost done."""
     begun = asyncio.Event()
 
     async def execute(goal: Goal) -> Fibonacci.Result:
@@ -566,7 +566,7 @@ async def test_a_cancelled_callback_decides_how_its_goal_ends(
 async def test_a_shielded_callback_finishes_its_work(
     serve: Serve, worker: Worker, client: PlainClient
 ) -> None:
-    """What must not be torn apart is shielded, and the goal may succeed in spite of the request."""
+    """Shielded work is not interrupted, and the goal may succeed in spite of the request."""
     begun, may_end = asyncio.Event(), asyncio.Event()
 
     async def work() -> list[int]:
@@ -825,7 +825,7 @@ async def test_results_are_kept_ten_seconds_by_default(
     assert len(server._goals) == 0
 
 
-async def test_without_a_timeout_only_those_get_a_result_who_asked_before(
+async def test_without_a_timeout_only_earlier_requests_get_a_result(
     serve: Serve, worker: Worker, client: PlainClient
 ) -> None:
     """0 keeps nothing, as in rcl."""
@@ -918,10 +918,10 @@ async def test_the_status_topic_tells_each_change_of_all_goals(
     assert client.statuses[-1] == {1: 2, 2: 5}
 
 
-async def test_who_comes_late_gets_the_newest_status(
+async def test_late_subscriptions_get_the_newest_status(
     node: Node, serve: Serve, worker: Worker, client: PlainClient
 ) -> None:
-    """A tool that is started now sees what goes on now."""
+    """A tool that starts now sees the goals of now."""
     serve()
     await client.send()
     await worker.begun.get()

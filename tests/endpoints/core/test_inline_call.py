@@ -203,7 +203,7 @@ async def test_coroutine_functions_queue(node: Node) -> None:
 
 
 async def test_before_the_node_runs_messages_queue(context: Context) -> None:
-    """No callback runs before its node does."""
+    """No callback runs before its node runs."""
     heard: list[int] = []
     node = Node("node", context=context)
     subscription = listen(node, lambda msg: heard.append(msg.data))

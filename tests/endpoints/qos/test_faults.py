@@ -81,10 +81,10 @@ async def test_lost_messages_miss_the_deadline_of_the_subscription_alone(
     assert subscription.stats.lost == 2
 
 
-async def test_what_is_found_missing_is_told(
+async def test_missing_messages_are_reported(
     node: Node, network: FaultyTransport, clock: ManualClock
 ) -> None:
-    """With the next message that arrives."""
+    """When the next message arrives."""
     subscription = node.create_subscription(Int32, "n")
     publisher = node.create_publisher(Int32, "n", 10)
     events = subscription.events

@@ -119,7 +119,7 @@ async def test_expired_messages_make_room(pair: Pair) -> None:
 
 
 async def test_a_message_of_a_publisher_that_has_gone_expires_too(pair: Pair) -> None:
-    """It was sent with its lifespan."""
+    """The lifespan comes with the message."""
     publisher, subscription = await pair.joined(LIMITED, 10)
     publisher.publish(Int32(data=1))
     await until_queued(subscription)

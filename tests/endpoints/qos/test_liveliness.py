@@ -30,7 +30,7 @@ AUTOMATIC = MANUAL.replace(liveliness=LivelinessPolicy.AUTOMATIC)
 
 
 async def until_asserted(pair: Pair, subscription: Subscription[Int32]) -> None:
-    """Wait until a subscription has got an assertion of the last 0.4 s: that takes real time."""
+    """Wait for an assertion that is at most 0.4 s old, in real time."""
     liveliness = subscription._monitor._liveliness
     assert liveliness is not None
     (lease,) = liveliness._leases.values()
@@ -118,7 +118,7 @@ async def test_a_process_that_hangs_is_not_alive(pair: Pair) -> None:
 
 
 async def test_a_publisher_that_goes_is_not_counted_any_more(pair: Pair) -> None:
-    """Alive or not."""
+    """Neither as alive nor as not alive."""
     publisher, subscription = await pair.joined(AUTOMATIC, AUTOMATIC)
     changed = subscription.events
     assert await next_of(changed, QoSLivelinessChangedInfo) == ALIVE
@@ -161,7 +161,7 @@ async def test_without_a_lease_a_publisher_lives_while_it_is_there(pair: Pair) -
 
 
 async def test_a_destroyed_publisher_asserts_nothing(pair: Pair) -> None:
-    """As it publishes nothing."""
+    """Nor does it publish anything."""
     publisher = pair.talker.create_publisher(Int32, "n", MANUAL)
     publisher.destroy()
     with pytest.raises(EntityDestroyedError, match="assert liveliness"):

@@ -42,7 +42,7 @@ STEPS = st.lists(
 
 
 @given(STEPS, st.booleans())
-@settings(max_examples=60, deadline=None)
+@settings(deadline=None)
 def test_the_counts_are_those_of_the_publishers(
     steps: list[tuple[str, EndpointInfo, float]], limited: bool
 ) -> None:

@@ -65,14 +65,14 @@ class Numbers:
         )
 
     async def numbers(self, count: int) -> list[int]:
-        """Wait for so many, and return all."""
+        """Wait for `count` numbers, and return all."""
         async with asyncio.timeout(10):
             samples = await self._collector.have(count)
         return [cdr.decode(Int32, sample.payload.to_bytes()).data for sample in samples]
 
 
-class Stranger:
-    """A ROS 2 node that says no more than rmw_zenoh does: tokens, and samples with attachments."""
+class RosNode:
+    """A ROS 2 node as rmw_zenoh shows it: tokens, and samples with attachments."""
 
     def __init__(self, session: zenoh.Session, clock: ManualClock) -> None:
         self._session = session
@@ -108,7 +108,7 @@ class Stranger:
         self._token.undeclare()
 
     def publish(self, number: int, *, age_s: float = 0, skip: int = 0) -> None:
-        """Send a sample that was stamped so long ago, after so many that are lost."""
+        """Send a sample with a stamp in the past, after samples that are lost."""
         self._sequence += 1 + skip
         stamp_ns = self._clock.system_ns() - round(age_s * 1e9)
         self._session.put(
@@ -135,22 +135,22 @@ async def node(clock: ManualClock, monkeypatch: pytest.MonkeyPatch) -> AsyncIter
 
 
 @pytest.fixture
-async def stranger(node: Node, clock: ManualClock) -> AsyncIterator[Stranger]:
+async def ros_node(node: Node, clock: ManualClock) -> AsyncIterator[RosNode]:
     """A ROS 2 node."""
     with raw_session() as session:
-        yield Stranger(session, clock)
+        yield RosNode(session, clock)
 
 
 async def test_a_deadline_is_kept_by_the_samples_that_come(
-    node: Node, stranger: Stranger, clock: ManualClock
+    node: Node, ros_node: RosNode, clock: ManualClock
 ) -> None:
     """Nothing else is needed of the publisher."""
     subscription = node.create_subscription(Int32, "n", None, QoSProfile(depth=10, deadline=SECOND))
-    stranger.announce(EndpointKind.PUBLISHER, PLAIN)
+    ros_node.announce(EndpointKind.PUBLISHER, PLAIN)
     events = subscription.events
     await next_of(events, MatchedInfo)
     for number in range(3):
-        stranger.publish(number)
+        ros_node.publish(number)
         assert (await subscription.receive()).data == number
         await clock.advance(0.7)
     assert waiting(events, QoSRequestedDeadlineMissedInfo) == []
@@ -159,11 +159,11 @@ async def test_a_deadline_is_kept_by_the_samples_that_come(
 
 
 async def test_a_publisher_keeps_its_deadline_towards_ros_2(
-    node: Node, stranger: Stranger, clock: ManualClock
+    node: Node, ros_node: RosNode, clock: ManualClock
 ) -> None:
     """It is the publisher's own business."""
     publisher = node.create_publisher(Int32, "n", QoSProfile(depth=10, deadline=SECOND))
-    stranger.announce(EndpointKind.SUBSCRIPTION, PLAIN)
+    ros_node.announce(EndpointKind.SUBSCRIPTION, PLAIN)
     assert await next_of(publisher.events, MatchedInfo) == MatchedInfo(1, 1, 1, 1)
     publisher.publish(Int32())
     await clock.advance(1)
@@ -181,14 +181,14 @@ async def test_a_publisher_keeps_its_deadline_towards_ros_2(
     ids=["publisher", "subscription"],
 )
 async def test_an_old_sample_is_not_delivered(
-    node: Node, stranger: Stranger, offered: QoSProfile, requested: QoSProfile
+    node: Node, ros_node: RosNode, offered: QoSProfile, requested: QoSProfile
 ) -> None:
     """Its stamp says how old it is, and the token of its publisher how old it may be."""
     subscription = node.create_subscription(Int32, "n", None, requested)
-    stranger.announce(EndpointKind.PUBLISHER, offered)
+    ros_node.announce(EndpointKind.PUBLISHER, offered)
     await next_of(subscription.events, MatchedInfo)
-    stranger.publish(1, age_s=1.5)
-    stranger.publish(2, age_s=0.5)
+    ros_node.publish(1, age_s=1.5)
+    ros_node.publish(2, age_s=0.5)
     assert (await subscription.receive()).data == 2
     assert subscription.stats.expired == 1
 
@@ -198,16 +198,16 @@ KEPT = QoSProfile(depth=5, durability=DurabilityPolicy.TRANSIENT_LOCAL, lifespan
 
 @pytest.mark.parametrize("reliability", [ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT])
 async def test_a_late_subscriber_gets_no_history_that_has_expired(
-    node: Node, stranger: Stranger, clock: ManualClock, reliability: ReliabilityPolicy
+    node: Node, ros_node: RosNode, clock: ManualClock, reliability: ReliabilityPolicy
 ) -> None:
     """Zenoh keeps messages by number, so it is made to forget them when all are too old."""
     publisher = node.create_publisher(Int32, "n", KEPT.replace(reliability=reliability))
     for number in range(3):
         publisher.publish(Int32(data=number))
-    early = stranger.subscribe_late()
+    early = ros_node.subscribe_late()
     assert await early.numbers(3) == [0, 1, 2]
     await clock.advance(1)
-    late = stranger.subscribe_late()
+    late = ros_node.subscribe_late()
     for number in range(3, 6):
         publisher.publish(Int32(data=number))
         assert await early.numbers(number + 1) == list(range(number + 1))
@@ -215,7 +215,7 @@ async def test_a_late_subscriber_gets_no_history_that_has_expired(
 
 
 async def test_what_waits_for_a_session_expires(
-    node: Node, stranger: Stranger, clock: ManualClock
+    node: Node, ros_node: RosNode, clock: ManualClock
 ) -> None:
     """A node may publish long before it runs."""
     context = Context(clock=clock)
@@ -225,51 +225,51 @@ async def test_what_waits_for_a_session_expires(
     await clock.advance(0.6)
     publisher.publish(Int32(data=2))
     await clock.advance(0.6)
-    stranger.announce(EndpointKind.SUBSCRIPTION, KEPT)
+    ros_node.announce(EndpointKind.SUBSCRIPTION, KEPT)
     async with talker:
         await publisher.wait_for_subscribers()
-        assert await stranger.subscribe_late().numbers(1) == [2]
+        assert await ros_node.subscribe_late().numbers(1) == [2]
 
 
-async def test_automatic_liveliness_is_that_of_the_token(node: Node, stranger: Stranger) -> None:
+async def test_automatic_liveliness_is_that_of_the_token(node: Node, ros_node: RosNode) -> None:
     """Zenoh withdraws it when the process ends or is not heard any more."""
     profile = QoSProfile(depth=10, liveliness_lease_duration=SECOND)
     subscription = node.create_subscription(Int32, "n", None, profile)
-    stranger.announce(EndpointKind.PUBLISHER, profile)
+    ros_node.announce(EndpointKind.PUBLISHER, profile)
     assert await next_of(subscription.events, QoSLivelinessChangedInfo) == (
         QoSLivelinessChangedInfo(1, 0, 1, 0)
     )
-    stranger.withdraw()
+    ros_node.withdraw()
     assert await next_of(subscription.events, QoSLivelinessChangedInfo) == (
         QoSLivelinessChangedInfo(0, 0, -1, 0)
     )
 
 
 async def test_automatic_liveliness_without_assertions_has_no_lease(
-    node: Node, stranger: Stranger, clock: ManualClock
+    node: Node, ros_node: RosNode, clock: ManualClock
 ) -> None:
     """rmw_zenoh sends none, so their absence means nothing."""
     profile = QoSProfile(depth=10, liveliness_lease_duration=SECOND)
     subscription = node.create_subscription(Int32, "n", None, profile)
-    stranger.announce(EndpointKind.PUBLISHER, profile)
+    ros_node.announce(EndpointKind.PUBLISHER, profile)
     await next_of(subscription.events, QoSLivelinessChangedInfo)
-    stranger.publish(1)
+    ros_node.publish(1)
     await subscription.receive()
     await clock.advance(5)
     assert waiting(subscription.events, QoSLivelinessChangedInfo) == []
 
 
 async def test_a_malformed_assertion_is_counted_and_renews_nothing(
-    node: Node, stranger: Stranger
+    node: Node, ros_node: RosNode
 ) -> None:
     """Any process may put anything on any key."""
     profile = QoSProfile(depth=10, liveliness_lease_duration=SECOND)
     subscription = node.create_subscription(Int32, "n", None, profile)
-    stranger.announce(EndpointKind.PUBLISHER, profile)
+    ros_node.announce(EndpointKind.PUBLISHER, profile)
     await next_of(subscription.events, QoSLivelinessChangedInfo)
     malformed = transport_of(node).zenoh.malformed  # type: ignore[attr-defined]  # is Zenoh's
     while not malformed.total():
-        stranger.put(f"@aionode/{DOMAIN_ID}/{'a' * 32}/alive", b"no gid")
+        ros_node.put(f"@aionode/{DOMAIN_ID}/{'a' * 32}/alive", b"no gid")
         await checkpoint()
     liveliness = subscription._monitor._liveliness
     assert liveliness is not None
@@ -277,7 +277,7 @@ async def test_a_malformed_assertion_is_counted_and_renews_nothing(
 
 
 async def test_manual_liveliness_is_that_of_the_samples(
-    node: Node, stranger: Stranger, clock: ManualClock
+    node: Node, ros_node: RosNode, clock: ManualClock
 ) -> None:
     """They are all that can be seen: rmw_zenoh keeps `assert_liveliness` to itself."""
     profile = QoSProfile(
@@ -286,11 +286,11 @@ async def test_manual_liveliness_is_that_of_the_samples(
         liveliness_lease_duration=SECOND,
     )
     subscription = node.create_subscription(Int32, "n", None, profile)
-    stranger.announce(EndpointKind.PUBLISHER, profile)
+    ros_node.announce(EndpointKind.PUBLISHER, profile)
     events = subscription.events
     await next_of(events, MatchedInfo)
     for number in range(3):
-        stranger.publish(number)
+        ros_node.publish(number)
         await subscription.receive()
         await clock.advance(0.7)
     assert waiting(events, QoSLivelinessChangedInfo) == [QoSLivelinessChangedInfo(1, 0, 1, 0)]
@@ -298,22 +298,22 @@ async def test_manual_liveliness_is_that_of_the_samples(
     assert waiting(events, QoSLivelinessChangedInfo) == [QoSLivelinessChangedInfo(0, 1, -1, 1)]
 
 
-async def test_missing_numbers_are_lost_messages(node: Node, stranger: Stranger) -> None:
+async def test_missing_numbers_are_lost_messages(node: Node, ros_node: RosNode) -> None:
     """The sequence numbers of the attachments tell."""
     subscription = node.create_subscription(
         Int32, "n", None, QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
     )
-    stranger.announce(EndpointKind.PUBLISHER, PLAIN)
+    ros_node.announce(EndpointKind.PUBLISHER, PLAIN)
     await next_of(subscription.events, MatchedInfo)
-    stranger.publish(1)
-    stranger.publish(2, skip=3)
+    ros_node.publish(1)
+    ros_node.publish(2, skip=3)
     assert await next_of(subscription.events, QoSMessageLostInfo) == QoSMessageLostInfo(3, 3)
 
 
-async def test_what_does_not_fit_is_an_event(node: Node, stranger: Stranger) -> None:
+async def test_what_does_not_fit_is_an_event(node: Node, ros_node: RosNode) -> None:
     """The QoS is in its token, although rmw_zenoh delivers all the same."""
     subscription = node.create_subscription(Int32, "n")
-    stranger.announce(
+    ros_node.announce(
         EndpointKind.PUBLISHER, QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
     )
     assert await next_of(subscription.events, QoSRequestedIncompatibleQoSInfo) == (
@@ -322,8 +322,8 @@ async def test_what_does_not_fit_is_an_event(node: Node, stranger: Stranger) -> 
     assert await next_of(subscription.events, MatchedInfo) == MatchedInfo(1, 1, 1, 1)
 
 
-async def test_another_type_is_an_event(node: Node, stranger: Stranger) -> None:
+async def test_another_type_is_an_event(node: Node, ros_node: RosNode) -> None:
     """Its key is another, so nothing is heard."""
     publisher = node.create_publisher(Int32, "n", 10)
-    stranger.announce(EndpointKind.SUBSCRIPTION, PLAIN, String)
+    ros_node.announce(EndpointKind.SUBSCRIPTION, PLAIN, String)
     assert await next_of(publisher.events, IncompatibleTypeInfo) == IncompatibleTypeInfo(1, 1)

@@ -59,7 +59,7 @@ async def test_a_slow_loop_turns_at_once_and_skips_what_it_missed() -> None:
 
 
 async def test_several_tasks_share_each_turn() -> None:
-    """None takes it away from another."""
+    """No task takes a turn away from another."""
     manual, clock, rate = make()
     turns: list[int] = []
 
@@ -115,7 +115,7 @@ async def test_a_cancelled_sleep_takes_no_turn_away() -> None:
 
 
 async def test_a_rate_on_ros_time_follows_the_clock() -> None:
-    """Also when that is set back."""
+    """Even if it is set back."""
     _, clock, _ = make()
     clock.set_ros_time_override(Time(seconds=50))
     clock.set_ros_time_active(True)

@@ -28,7 +28,7 @@ class Silent:
     """A logger for callbacks that are not reported."""
 
     def warning(self, text: str) -> None:
-        """Fail: nothing here is slow."""
+        """Fail: no callback here is slow."""
         raise AssertionError(text)
 
 
@@ -152,7 +152,7 @@ async def test_cancel_stops_and_reset_begins_a_new_grid() -> None:
 
 
 async def test_a_timer_may_cancel_and_destroy_itself() -> None:
-    """In its own callback, where else would one know."""
+    """Its own callback often knows when it is no longer needed."""
     bench = Bench()
 
     def once() -> None:

@@ -242,7 +242,7 @@ STEPS: list[Callable[[Stream], None]] = [
 
 
 @given(st.lists(st.sampled_from(STEPS), max_size=80))
-@settings(max_examples=600)
+@settings(max_examples=settings().max_examples * 6)
 def test_each_message_comes_once_and_in_order_whatever_the_routes_do(
     steps: list[Callable[[Stream], None]],
 ) -> None:
@@ -285,7 +285,7 @@ def test_what_is_held_comes_out_when_zenoh_stays_silent() -> None:
     assert got == [6]
 
 
-def test_no_more_than_so_many_are_held() -> None:
+def test_the_number_of_held_messages_is_bounded() -> None:
     """Memory has a bound, whatever Zenoh does."""
     got: list[int] = []
     handover = HandedOver(got)
@@ -379,7 +379,7 @@ def test_copies_that_zenoh_brings_after_a_publisher_has_gone_are_dropped() -> No
     assert not handover.reader.remote_publishers
 
 
-def test_a_gone_publisher_whose_messages_zenoh_has_lost_is_waited_for_only_so_long() -> None:
+def test_the_wait_for_messages_of_a_gone_publisher_that_zenoh_has_lost_is_limited() -> None:
     """What the link has brought is delivered then."""
     got: list[int] = []
     handover = HandedOver(got)

@@ -226,7 +226,7 @@ async def test_the_end_is_seen_where_something_is_left_to_read_and_nothing_to_wr
 @pytest.mark.parametrize(
     "garbage", [b"no frame at all" * 10, b"\xff" * 40, b"\x00"], ids=["text", "length", "cut"]
 )
-async def test_garbage_ends_the_link_and_not_the_stream(
+async def test_malformed_data_ends_the_link_and_not_the_stream(
     garbage: bytes, caplog: pytest.LogCaptureFixture
 ) -> None:
     """Both ends go on over Zenoh, and a warning says why."""
@@ -544,20 +544,20 @@ async def test_a_receiver_without_descriptors_goes_on_over_zenoh_and_loses_nothi
     assert "too many files are open" in caplog.text
 
 
-# What stays
+# What is left behind
 
 
 def descriptors() -> int:
-    """Return how many are open."""
+    """Return how many descriptors are open."""
     return len(list(Path("/proc/self/fd").iterdir()))
 
 
 def sockets(folder: Path) -> int:
-    """Return how many lie there."""
+    """Return how many sockets are in the folder."""
     return len(list(folder.iterdir()))
 
 
-async def test_nothing_stays_behind(folder: Path) -> None:
+async def test_nothing_is_left_behind(folder: Path) -> None:
     """No descriptor and no socket.
 
     Zenoh closes its shared memory in a thread of its own, a moment after the session.

@@ -1,4 +1,4 @@
-"""What one process can make another one keep has bounds, and what failed once is tried again."""
+"""Bounds on what another process can make this one keep, and retries of what has failed."""
 
 from __future__ import annotations
 
@@ -127,10 +127,10 @@ async def test_a_long_frame_in_place_of_the_hello_is_refused(folder: Path) -> No
 # After it
 
 
-async def test_frames_without_an_end_take_so_much_memory_and_no_more(
+async def test_the_memory_for_incomplete_frames_is_bounded(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of all links together; the largest ends, and the others go on."""
+    """The bound is for all links together; the largest one ends, and the others go on."""
     monkeypatch.setattr(manager, "MAX_HELD", 10 << 20)
     loop = asyncio.get_running_loop()
     async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:

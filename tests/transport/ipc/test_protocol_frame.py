@@ -1,4 +1,4 @@
-"""Frames on a stream come out as they went in, and garbage is noticed."""
+"""Frames are received as they were sent, and malformed data is detected."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def pieces_of(stream: bytes, cuts: list[int]) -> list[bytes]:
 
 
 @given(FRAMES, st.lists(st.integers(0, 10_000), max_size=12))
-@settings(max_examples=200)
+@settings(max_examples=settings().max_examples * 2)
 def test_frames_come_out_as_they_went_in_however_the_stream_is_cut(
     frames: list[Frame], cuts: list[int]
 ) -> None:
@@ -64,8 +64,8 @@ def test_what_is_cut_off_stays_missing(one: Frame, data: st.DataObject) -> None:
 
 
 @given(st.binary(max_size=400), st.lists(st.integers(0, 400), max_size=4))
-@settings(max_examples=200)
-def test_garbage_is_an_error_or_waits_for_more(stream: bytes, cuts: list[int]) -> None:
+@settings(max_examples=settings().max_examples * 2)
+def test_malformed_data_is_an_error_or_incomplete(stream: bytes, cuts: list[int]) -> None:
     """Nothing else may come out of it, whatever the other end sends."""
     parser = FrameParser()
     try:

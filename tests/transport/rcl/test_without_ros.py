@@ -44,7 +44,7 @@ def problem() -> str:
 
 
 def test_without_rclpy_the_error_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    """In one line."""
+    """The error is one line."""
     monkeypatch.setattr(importlib.metadata, "version", absent)
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     assert re.search(r"rclpy is not installed in this Python; .* pip install", problem())

@@ -29,7 +29,7 @@ from tests.support.peers import (
 
 @pytest.fixture(autouse=True)
 def without_links(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As between hosts."""
+    """Links are off, as between hosts."""
     monkeypatch.setenv("AIONODE_LINK", "off")
 
 
@@ -137,7 +137,7 @@ async def test_a_slow_stream_is_acknowledged_seldom(qos: QoSProfile) -> None:
         assert all(each is not None and each.kind is not SubmessageKind.DATA for each in kinds)
 
 
-async def test_garbage_instead_of_acknowledgements_is_left_out() -> None:
+async def test_malformed_acknowledgements_are_ignored() -> None:
     """Any process may put any data on a key."""
     async with (
         two_contexts() as (first, second),

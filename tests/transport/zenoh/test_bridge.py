@@ -135,7 +135,7 @@ async def test_a_keep_all_subscription_hears_a_dds_node(node: Node, bridge: Stan
 
 
 async def test_a_second_subscription_can_end_without_the_first(node: Node, bridge: StandIn) -> None:
-    """A bridge ends the route with a token of the same key, whoever else listens."""
+    """A bridge ends the route with one token of a key, even if there are other subscriptions."""
     first = node.create_subscription(String, "/chatter", None, 10)
     second = node.create_subscription(String, "/chatter", None, 5)
     publish = bridge.publisher("/chatter")

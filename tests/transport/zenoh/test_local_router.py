@@ -1,4 +1,4 @@
-"""The router of this machine towards static peers: who opens it, and who takes its place."""
+"""The router of this machine to static peers: which process opens it, and which replaces it."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from aionode.transport.zenoh._session_state import SessionState
 from aionode.transport.zenoh._transport import ZenohTransport
 from tests.support.peers import ros_router
 
-LIMIT_S = 5.0
+LIMIT_S = 15.0
 FAR = "tcp/192.0.2.1:7447"
 """An address for documentation: nothing answers there."""
 
 
 @pytest.fixture(autouse=True)
 def soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Do not wait for what is not there."""
+    """Do not wait for peers that do not exist."""
     monkeypatch.setattr(local_router, "LINKED_S", 0.0)
 
 

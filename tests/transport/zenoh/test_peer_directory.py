@@ -1,4 +1,4 @@
-"""Who is on the network and announces nothing, and post between contexts."""
+"""Unannounced peers on the network, and retransmissions between contexts."""
 
 from __future__ import annotations
 
@@ -24,29 +24,29 @@ PATIENCE_S = 20.0
 
 
 class Heard:
-    """Lets a test wait until a context has been told whether there are strangers."""
+    """Lets a test wait until a context was told whether there are unannounced peers."""
 
     def __init__(self, transport: ZenohTransport) -> None:
         self.transport = transport
         self.peer_directory = peer_directory = transport.peer_directory
         self.told: list[bool] = []
         self._changed = asyncio.Event()
-        peer_directory.on_unannounced_peers = self._on_strangers
+        peer_directory.on_unannounced_peers = self._on_unannounced_peers
 
-    def _on_strangers(self, has_unannounced_peers: bool) -> None:
+    def _on_unannounced_peers(self, has_unannounced_peers: bool) -> None:
         assert has_unannounced_peers == self.peer_directory.has_unannounced_peers
         self.told.append(has_unannounced_peers)
         self._changed.set()
 
     async def until(self, has_unannounced_peers: bool) -> None:
-        """Wait until there are strangers, or none."""
+        """Wait until there are unannounced peers, or none."""
         async with asyncio.timeout(PATIENCE_S):
             while self.peer_directory.has_unannounced_peers != has_unannounced_peers:
                 self._changed.clear()
                 await self._changed.wait()
 
     async def past(self) -> None:
-        """Wait until there were strangers, and are none now; both may have been told before."""
+        """Wait until there were unannounced peers and are none now; both may be over already."""
         async with asyncio.timeout(PATIENCE_S):
             while not self.told or self.peer_directory.has_unannounced_peers:
                 self._changed.clear()
@@ -117,17 +117,17 @@ def announce_node(session: zenoh.Session, domain_id: int) -> zenoh.LivelinessTok
 
 
 async def until_nodes(transport: ZenohTransport, count: int) -> None:
-    """Wait until so many nodes of the domain are in the graph."""
+    """Wait until `count` nodes of the domain are in the graph."""
     graph = transport._state.graph
     assert graph is not None
     await graph.until(lambda: len(graph.nodes()) == count)
 
 
 def ignore(_: object) -> None:
-    """Take what was subscribed to."""
+    """Ignore a message."""
 
 
-async def test_a_plain_session_is_a_stranger_while_it_is_connected(heard: Heard) -> None:
+async def test_a_plain_session_is_an_unannounced_peer_while_it_is_connected(heard: Heard) -> None:
     """It may subscribe to anything without a sign."""
     assert not heard.peer_directory.has_unannounced_peers
 
@@ -138,7 +138,7 @@ async def test_a_plain_session_is_a_stranger_while_it_is_connected(heard: Heard)
     assert heard.told == [True, False]
 
 
-async def test_strangers_are_told_with_the_connection(
+async def test_unannounced_peers_are_reported_with_the_connection(
     heard: Heard, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Not in a later turn of the loop, in which something may be published."""
@@ -161,7 +161,7 @@ async def test_strangers_are_told_with_the_connection(
     assert seen[0]
 
 
-async def test_a_ros_node_of_another_domain_is_no_stranger(heard: Heard) -> None:
+async def test_a_ros_node_of_another_domain_is_no_unannounced_peer(heard: Heard) -> None:
     """All of its subscriptions are announced, in its own domain."""
     with raw_session() as session:
         await heard.until(True)
@@ -187,7 +187,7 @@ async def test_a_ros_context_stays_known_after_its_last_node(heard: Heard) -> No
 
 
 @pytest.mark.parametrize("domain_id", [DOMAIN_ID, DOMAIN_ID + 1])
-async def test_a_context_is_no_stranger(
+async def test_a_context_is_no_unannounced_peer(
     heard: Heard, domain_id: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of any domain, and before it has a node."""
@@ -198,7 +198,7 @@ async def test_a_context_is_no_stranger(
         await heard.until(False)
 
 
-async def test_a_router_is_a_stranger(heard: Heard) -> None:
+async def test_a_router_is_an_unannounced_peer(heard: Heard) -> None:
     """The sessions behind it are not visible, even if all visible ones are known."""
     async with context("b2"):
         async with router():
@@ -221,7 +221,7 @@ async def test_our_own_router_answers_no_question_of_its_admin_space() -> None:
     assert replies == []
 
 
-async def test_a_client_of_one_context_is_a_stranger_to_all(heard: Heard) -> None:
+async def test_a_client_of_one_context_is_an_unannounced_peer_to_all(heard: Heard) -> None:
     """Zenoh brings it what the others publish, and only that context sees it."""
     async with context("b2") as second:
         other = Heard(second)
@@ -234,7 +234,7 @@ async def test_a_client_of_one_context_is_a_stranger_to_all(heard: Heard) -> Non
         await other.until(False)
 
 
-async def test_post_arrives_in_order_at_the_one_it_is_for() -> None:
+async def test_retransmissions_arrive_in_order_at_their_recipient() -> None:
     """All of it, however fast it is sent."""
     count = 3000
     async with context("a1") as first, context("b2") as second, context("c3") as third:
@@ -249,8 +249,8 @@ async def test_post_arrives_in_order_at_the_one_it_is_for() -> None:
     assert not stray.items
 
 
-async def test_post_without_a_connection_is_given_up() -> None:
-    """As the context that it is for is not there either."""
+async def test_retransmissions_without_a_connection_are_given_up() -> None:
+    """Without one, their recipient is gone as well."""
     async with context("a1") as transport:
         pass
     transport.peer_directory.retransmit("b2", b"late")
@@ -258,8 +258,8 @@ async def test_post_without_a_connection_is_given_up() -> None:
     assert not transport._state.peer_senders.send_threads()
 
 
-async def test_nothing_is_declared_without_a_beacon() -> None:
-    """Who wants no links pays nothing for them."""
+async def test_nothing_is_declared_without_an_advertisement() -> None:
+    """A context without links pays nothing for them."""
     async with context("a1", linked=False) as transport:
         peer_directory = transport.peer_directory
         told = Heard(transport)
@@ -296,7 +296,7 @@ async def test_closing_leaves_nothing_behind() -> None:
 
 
 async def test_it_opens_again() -> None:
-    """With what is there then."""
+    """With the peers of that time."""
     transport = ZenohTransport("a1", network_from(os.environ))
     heard = Heard(transport)
     for _ in range(2):

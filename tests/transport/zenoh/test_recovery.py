@@ -1,4 +1,4 @@
-"""Who was introduced once is connected again, whatever has ended the connection."""
+"""Participants that were introduced once are connected again, whatever ended the connection."""
 
 from __future__ import annotations
 
@@ -6,12 +6,13 @@ import asyncio
 import os
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager, closing, suppress
+from typing import Any
 
 import pytest
 import zenoh  # noqa: TID251  # plays the other participants, without aionode
 
 from aionode._concurrency import checkpoint
-from aionode.graph import Graph
+from aionode.graph import Graph, NodeInfo
 from aionode.transport._zenoh_config import network_from
 from aionode.transport.zenoh import _recovery as recovery
 from aionode.transport.zenoh._recovery import (
@@ -33,7 +34,7 @@ from tests.support.peers import (
 
 pytestmark = pytest.mark.one_loop
 
-LIMIT_S = 5.0
+LIMIT_S = 15.0
 
 
 @pytest.fixture(autouse=True)
@@ -116,6 +117,26 @@ def lose(transport: ZenohTransport, zid: str) -> None:
     recovery.cut(ways)
 
 
+async def until_lost(transport: ZenohTransport, zid: str, name: str) -> None:
+    """End all connections to another session, and wait until its node has left the graph.
+
+    The node may be back by then: on a busy machine the loop sees both changes at once.
+    """
+    graph: Any = transport._state.graph
+    left = asyncio.Event()
+    remove_node = graph.remove_node
+
+    def on_remove(node: NodeInfo) -> None:
+        remove_node(node)
+        if node.name == name:
+            left.set()
+
+    graph.remove_node = on_remove
+    lose(transport, zid)
+    async with asyncio.timeout(LIMIT_S):
+        await left.wait()
+
+
 @pytest.mark.parametrize("participant", ["a1", 32 * "f"])
 async def test_a_ros_node_is_seen_again_after_its_connection_was_lost(participant: str) -> None:
     """Its router has introduced it once, and does not do so again by itself.
@@ -124,8 +145,7 @@ async def test_a_ros_node_is_seen_again_after_its_connection_was_lost(participan
     """
     async with robot("theirs") as (theirs,), context(participant) as ours:
         await until_seen(ours, "theirs")
-        lose(ours, str(theirs.zid()))
-        await until_seen(ours)
+        await until_lost(ours, str(theirs.zid()), "theirs")
 
         await until_seen(ours, "theirs")
         assert ways_between(ours, str(theirs.zid()))
@@ -135,8 +155,7 @@ async def test_a_ros_node_that_was_lost_hears_us_again() -> None:
     """Both directions use the same connection."""
     async with robot("theirs") as (theirs,), context("a1") as ours:
         await until_seen(ours, "theirs")
-        lose(ours, str(theirs.zid()))
-        await until_seen(ours)
+        await until_lost(ours, str(theirs.zid()), "theirs")
         await until_seen(ours, "theirs")
         got = Collector()
         theirs.declare_subscriber(f"{DOMAIN_ID}/said", got)
@@ -155,8 +174,7 @@ async def test_processes_without_a_meeting_port_find_each_other_again() -> None:
         *_, one, two = [await stack.enter_async_context(context(name)) for name in names]
         for each in (one, two):
             await until_seen(each, *(set(names) - {each._state.participant}))
-        lose(one, "e5")
-        await until_seen(one, "a1", "b2", "c3")
+        await until_lost(one, "e5", "e5")
 
         await until_seen(one, "a1", "b2", "c3", "e5")
         await until_seen(two, "a1", "b2", "c3", "d4")
@@ -180,7 +198,7 @@ async def test_one_that_ended_is_looked_for_and_nothing_is_cut(
         await until_seen(ours, "one", "two")
         await asyncio.to_thread(one.close)
         await until_seen(ours, "two")
-        looks.items.clear()  # of the start
+        looks.items.clear()  # those made while the sessions were opened
         async with asyncio.timeout(2 * LIMIT_S):
             while set() not in looks.items:
                 await looks.have(len(looks.items) + 1)
@@ -209,7 +227,7 @@ async def test_one_whose_connection_was_lost_is_missing_though_a_router_brings_i
     assert missing == {"c3"}
 
 
-async def test_a_look_makes_no_stranger() -> None:
+async def test_a_look_makes_no_unannounced_peer() -> None:
     """Else everything would go both ways for as long as it takes."""
     async with context("a1") as first, context("b2") as second:
         told: list[bool] = []
@@ -269,7 +287,9 @@ async def test_a_connection_that_takes_long_to_be_made_is_not_given_up() -> None
         token.undeclare()
 
 
-async def test_who_cannot_be_reached_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_an_unreachable_participant_is_given_up(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """A program on a host that only the router reaches would be looked for for ever."""
     cuts = Collector()
     monkeypatch.setattr(recovery, "cut", cuts)
@@ -315,7 +335,7 @@ async def test_the_graph_is_compared_with_the_tokens_that_are_there() -> None:
         assert second.network.domain_id == DOMAIN_ID
 
 
-async def test_nothing_is_watched_where_nobody_is_dialled(
+async def test_nothing_is_watched_where_no_process_is_dialled(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Then no session could introduce others."""
@@ -358,7 +378,7 @@ async def test_a_participant_that_is_connected_and_declares_nothing_is_connected
 ) -> None:
     """Zenoh took its new connection for another link of the one that is lost."""
     monkeypatch.setattr(recovery, "DECLARED_S", 0.05)
-    async with asyncio.timeout(4 * LIMIT_S), context("a1") as first, context("b2"):
+    async with asyncio.timeout(3 * LIMIT_S), context("a1") as first, context("b2"):
         acknowledgements = first._state.acknowledgements
         while "b2" not in acknowledgements.present:
             await checkpoint()

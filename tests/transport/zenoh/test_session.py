@@ -31,7 +31,7 @@ pytestmark = pytest.mark.one_loop
 
 
 def test_only_ports_that_accept_a_connection_answer() -> None:
-    """Who listens is dialled, and a free port is taken."""
+    """Listening processes are dialled, and a free port is taken."""
     with closing(socket.create_server(("127.0.0.1", 0))) as server:
         taken = server.getsockname()[1]
         (free,) = free_ports(1)
@@ -77,7 +77,7 @@ def sayings(caplog: pytest.LogCaptureFixture) -> list[tuple[int, str]]:
     ]
 
 
-def test_who_answers_as_zenoh_does_is_told_from_others() -> None:
+def test_a_port_that_speaks_zenoh_is_told_from_others() -> None:
     """A port that accepts connections may belong to any program."""
     silent, router_port = free_ports(1)[0], int(os.environ["AIONODE_ROUTER_PORT"])
     with ExitStack() as stack:
@@ -90,7 +90,7 @@ def test_who_answers_as_zenoh_does_is_told_from_others() -> None:
 
 async def both_seen(node: Node) -> None:
     """Wait until a node sees both of a test."""
-    async with asyncio.timeout(5):
+    async with asyncio.timeout(20):
         await node.graph.until(lambda: {"one", "two"} == {n.name for n in node.graph.nodes()})
 
 
@@ -244,7 +244,7 @@ async def test_work_in_a_thread_returns_its_result_and_leaves_no_thread() -> Non
     assert not set(threading.enumerate()) - before
 
 
-async def test_a_result_that_nobody_waits_for_is_given_up() -> None:
+async def test_a_result_without_a_waiter_is_given_up() -> None:
     """A session that opens after its context was cancelled is closed."""
     gate, late = threading.Event(), threading.Event()
     results: list[int] = []

@@ -135,7 +135,7 @@ async def test_the_graph_holds_the_ids_that_go_with_samples() -> None:
         assert [e.gid for e in first.graph.endpoints(name="/n") if e.node.name == "a"] == [gid]
 
 
-# Who hears what, and how often
+# What is received, and how often
 
 
 @pytest.mark.parametrize("qos", [QoSProfile(depth=10), kept(10)], ids=["volatile", "kept"])
@@ -210,7 +210,7 @@ async def test_a_late_volatile_reader_gets_nothing_old() -> None:
         assert await first_numbers(late, 1) == [2]
 
 
-async def test_a_message_is_encoded_only_when_somebody_remote_listens() -> None:
+async def test_a_message_is_encoded_only_for_remote_subscriptions() -> None:
     """Within a process no bytes are made."""
     async with quiet_node("a") as node:
         publisher = node.create_publisher(Int32, "n", 10)
@@ -320,10 +320,10 @@ async def test_a_topic_without_bytes_has_one_key() -> None:
     assert "backends" not in token
 
 
-# Strange things from the network
+# Malformed data from the network
 
 
-async def test_garbage_is_counted_logged_once_and_stops_nothing(
+async def test_malformed_data_is_counted_logged_once_and_stops_nothing(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     """Any process may put any data on a key."""
@@ -416,7 +416,7 @@ async def test_many_other_domains_make_one_line(
     assert all(level == logging.DEBUG for level, _ in before)
 
 
-async def test_other_domains_are_a_warning_to_one_that_hears_nobody(
+async def test_other_domains_are_a_warning_in_a_context_that_hears_no_other(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     """Then the domain is likely to be a mistake."""

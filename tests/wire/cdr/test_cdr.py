@@ -179,7 +179,7 @@ def test_an_unusual_message_has_pieces_too() -> None:
     assert b"".join(pieces) == cdr.encode(Mixed(numbers=numbers, real=0.5))
 
 
-def test_pieces_of_a_misfit_are_refused_as_its_bytes_are() -> None:
+def test_pieces_of_an_invalid_message_are_refused_as_its_bytes_are() -> None:
     """The reason is the same."""
     misfit: Any = "five"
 
@@ -320,7 +320,7 @@ ODD = st.one_of(
 
 
 @given(message=messages(Mixed), field=st.sampled_from(list(FALLBACK_ERRORS)), odd=ODD)
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=settings().max_examples * 3, deadline=None)
 def test_encode_and_check_agree_on_what_fits(message: Mixed, field: str, odd: Any) -> None:
     """A message that may be published to this process may be sent to others, and no other."""
     setattr(message, field, odd)
@@ -333,7 +333,7 @@ def test_encode_and_check_agree_on_what_fits(message: Mixed, field: str, odd: An
         check(cdr.decode(Mixed, cdr.encode(message)))
 
 
-def test_a_misfit_inside_a_sequence_is_named_with_its_index() -> None:
+def test_an_invalid_value_inside_a_sequence_is_named_with_its_index() -> None:
     """So that it can be found among thousands."""
     message = PoseArray()
     message.poses = [Point()]  # type: ignore[list-item] # that is what is tested

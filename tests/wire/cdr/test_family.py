@@ -47,7 +47,7 @@ FAMILY = cdr.MessageFamily(class_of, constructor, adopt, prefix="_")
 
 @pytest.mark.parametrize("order", ["little", "big"])
 def test_objects_of_the_family_are_made(order: str) -> None:
-    """Nested ones too, and by the careful decoder of unusual data as well."""
+    """Nested ones too, and by the fallback decoder as well."""
     data = cdr.encode(LaserScan(ranges=[1.0], angle_min=0.5))
     if order == "big":
         data = b"\0\0\0\0" + bytes(60)

@@ -1,4 +1,4 @@
-"""Encoding and decoding against rosbags, which was written by others."""
+"""Encoding and decoding against rosbags, an independent implementation."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ NO_FIELDS: Fielddefs = [("structure_needs_at_least_one_member", (Nodetype.BASE, 
 
 
 def has_wide_strings(cls: type[Message]) -> bool:
-    """Tell whether a class has what rosbags does not know."""
+    """Return whether a class has wide strings, which rosbags does not know."""
     return any(
         kind.kind == "wstring" or (kind.nested is not None and has_wide_strings(kind.nested))
         for kind in (field.type for field in fields(cls))

@@ -36,7 +36,7 @@ def test_a_message_of_ros_is_decoded() -> None:
         assert decode_slowly(cls, memoryview(sample.data)) == sample.message, sample.name
 
 
-def test_garbage_in_padding_and_at_the_end_is_not_looked_at() -> None:
+def test_bytes_in_padding_and_at_the_end_are_ignored() -> None:
     """Fast-CDR does not clear the padding, and sends up to eight bytes too many."""
     others = [(sample, data) for sample in all_samples() for data in sample.others]
 
