@@ -25,7 +25,7 @@ from aionode.qos import QoSProfile
 from aionode.wire import cdr
 from tests.support.bridge import LATCHED, StandIn, stand_in, string, until
 from tests.support.peers import KEEP_ALL, kept, quiet_node
-from tests.support.random_messages import messages
+from tests.support.strategies import messages
 
 MOMENT = Duration(nanoseconds=1_000_000)
 PROFILES = {
