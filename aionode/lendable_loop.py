@@ -4,13 +4,19 @@ To hand work to a loop in another thread takes two wake-ups: of that thread, and
 interpreter, of the one that holds it. While the loop sleeps, nothing that belongs to it is used, so
 another thread may as well do the work itself. `LendableLoop.borrow` is how it asks; whatever
 belongs to the thread of the loop belongs to the borrower until `LendableLoop.give_back`.
+
+A thread that waits for what the loop will read can go further, and wait for the loop's descriptors
+itself: `LendableLoop.readers`.
 """
 
 from __future__ import annotations
 
 import asyncio
+import os
+import select
 import selectors
 from contextlib import suppress
+from functools import partial
 from threading import Lock
 from typing import TYPE_CHECKING, Any, Protocol, TypeVarTuple
 
@@ -18,7 +24,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from contextvars import Context
 
-__all__ = ["LendableLoop"]
+__all__ = ["LendableLoop", "Readers"]
+
+LONGEST_END_S = 1.0
+"""How long closing a loop waits for the thread that waits in place of it."""
 
 Ts = TypeVarTuple("Ts")
 
@@ -35,6 +44,10 @@ class LendableLoop(asyncio.SelectorEventLoop):
 
     Work for a borrower is short, and of the kind that a callback of the loop does. For the
     borrower this is the running loop meanwhile, also if its thread runs one of its own.
+
+    Attributes:
+        readers: The descriptors of `add_reader`, to wait for in place of the loop; None where the
+            system has no epoll.
     """
 
     def __init__(self) -> None:
@@ -44,7 +57,11 @@ class LendableLoop(asyncio.SelectorEventLoop):
         self._is_lent = False
         self._has_news = False
         self._loop_of_borrower: asyncio.AbstractEventLoop | None = None
+        self.readers: Readers | None = None
         super().__init__(_LendingSelector(self._owned))
+        if hasattr(select, "epoll"):
+            self.readers = Readers(self)
+            super().add_reader(self.readers.fileno(), self.readers._look)
 
     def borrow(self) -> bool:
         """Take the loop if it sleeps and no other thread has it. Never waits.
@@ -92,13 +109,148 @@ class LendableLoop(asyncio.SelectorEventLoop):
 
     def add_reader(self, fd: int | HasFileno, callback: Callable[[*Ts], Any], *args: *Ts) -> None:
         """Watch a descriptor, as in any loop."""
+        if self.readers is not None:
+            self.readers._add(_number_of(fd), partial(callback, *args))
+            return
         self._has_news = self._is_lent
         super().add_reader(fd, callback, *args)
+
+    def remove_reader(self, fd: int | HasFileno) -> bool:
+        """Watch a descriptor no longer, as in any loop."""
+        if self.readers is not None:
+            return self.readers._remove(_number_of(fd))
+        return super().remove_reader(fd)
 
     def add_writer(self, fd: int | HasFileno, callback: Callable[[*Ts], Any], *args: *Ts) -> None:
         """Watch a descriptor, as in any loop."""
         self._has_news = self._is_lent
         super().add_writer(fd, callback, *args)
+
+    def close(self) -> None:
+        """Close the loop; a thread that waits for its descriptors no longer does."""
+        if self.readers is not None and not self.is_closed():
+            super().remove_reader(self.readers.fileno())
+            self.readers._close()
+        super().close()
+
+
+class Readers:
+    """The descriptors that a loop reads, and the wait for them.
+
+    One thread at a time may wait in place of the loop: `begin`, then `wait` and `call` again and
+    again, at last `end`. What becomes readable wakes that thread only; the loop goes on with its
+    timers, and with everything else that wakes it. Before and after, the loop reads as any other.
+    """
+
+    # The loop waits for `_gate`, in which `_epoll` is switched off while another thread waits.
+
+    def __init__(self, loop: LendableLoop) -> None:
+        self._loop = loop
+        self._callbacks: dict[int, Callable[[], Any]] = {}
+        self._epoll = select.epoll()
+        self._gate = select.epoll()
+        self._gate.register(self._epoll.fileno(), select.EPOLLIN)
+        self._waiting = Lock()
+        self._closing = False
+        self._event = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
+        self._add(self._event, self._take_event)
+
+    def fileno(self) -> int:
+        """Return the descriptor that the loop waits for."""
+        return self._gate.fileno()
+
+    def begin(self) -> bool:
+        """Wait for the descriptors in place of the loop from now on, until `end`.
+
+        Returns:
+            Whether the caller may: no other thread does, and the loop is not being closed.
+        """
+        if not self._waiting.acquire(blocking=False):
+            return False
+        if self._closing:
+            self._waiting.release()
+            return False
+        self._gate.modify(self._epoll.fileno(), 0)
+        return True
+
+    def wait(self, timeout_s: float | None) -> list[int]:
+        """Wait until something is readable, or `rouse` is called; with whole milliseconds.
+
+        Returns:
+            What `call` takes; empty if the time has passed.
+        """
+        return [fd for fd, _ in self._epoll.poll(timeout_s)]
+
+    def call(self, readable: list[int]) -> bool:
+        """Borrow the loop and call the callbacks of these descriptors.
+
+        Returns:
+            False if the loop is not to be had, or is being closed: end the wait, and the loop does
+            what is left.
+        """
+        if not readable:
+            return not self._closing
+        if not self._loop.borrow():
+            return False
+        try:
+            self._call(readable)
+        finally:
+            self._loop.give_back()
+        return not self._closing
+
+    def end(self) -> None:
+        """Let the loop wait for its descriptors itself."""
+        self._gate.modify(self._epoll.fileno(), select.EPOLLIN)
+        self._waiting.release()
+
+    def rouse(self) -> None:
+        """End the wait of the thread that waits; any thread or handler of a signal may call this."""
+        with suppress(OSError):  # closed meanwhile
+            os.eventfd_write(self._event, 1)
+
+    def _take_event(self) -> None:
+        with suppress(BlockingIOError):
+            os.eventfd_read(self._event)
+
+    def _look(self) -> None:
+        """Read what is readable; in the thread of the loop."""
+        self._call(self.wait(0))
+
+    def _call(self, readable: list[int]) -> None:
+        for fd in readable:
+            callback = self._callbacks.get(fd)
+            if callback is None:  # the callback of another one has removed it
+                continue
+            try:
+                callback()
+            except Exception as error:  # noqa: BLE001  # as in any loop
+                self._loop.call_exception_handler(
+                    {"message": f"Exception in callback {callback}", "exception": error}
+                )
+
+    def _add(self, fd: int, callback: Callable[[], Any]) -> None:
+        with suppress(FileExistsError):  # then it has another callback from now on
+            self._epoll.register(fd, select.EPOLLIN)
+        self._callbacks[fd] = callback
+
+    def _remove(self, fd: int) -> bool:
+        if self._callbacks.pop(fd, None) is None:
+            return False
+        with suppress(OSError):  # it was closed before
+            self._epoll.unregister(fd)
+        return True
+
+    def _close(self) -> None:
+        self._closing = True
+        self.rouse()
+        if self._waiting.acquire(timeout=LONGEST_END_S):
+            self._epoll.close()
+            self._gate.close()
+            os.close(self._event)
+
+
+def _number_of(fd: int | HasFileno) -> int:
+    return fd if isinstance(fd, int) else fd.fileno()
 
 
 def _look() -> None:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import asyncio
+import queue
+import socket
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import pytest
 
-from aionode.lendable_loop import LendableLoop
+from aionode.lendable_loop import LendableLoop, Readers
 
 PATIENCE_S = 10.0
 
@@ -26,7 +28,8 @@ def running_loop(*, debug: bool = False) -> Iterator[LendableLoop]:
     try:
         yield loop
     finally:
-        loop.call_soon_threadsafe(loop.stop)
+        if not loop.is_closed():
+            loop.call_soon_threadsafe(loop.stop)
         thread.join()
         loop.close()
 
@@ -137,3 +140,143 @@ def test_giving_back_a_loop_that_was_closed_meanwhile_has_no_effect() -> None:
     loop.close()
 
     assert not loop.borrow()
+
+
+# In place of the loop
+
+
+@pytest.fixture
+def pair() -> Iterator[tuple[socket.socket, socket.socket]]:
+    """Return two sockets that are connected."""
+    here, there = socket.socketpair()
+    with here, there:
+        yield here, there
+
+
+def readers_of(loop: LendableLoop) -> Readers:
+    """Return the descriptors of a loop, or skip the test."""
+    if loop.readers is None:
+        pytest.skip("this system has no epoll")
+    return loop.readers
+
+
+def watch(loop: LendableLoop, sock: socket.socket) -> queue.Queue[int]:
+    """Read a socket in a loop; each time the queue gets the thread that does it."""
+    read: queue.Queue[int] = queue.Queue()
+
+    def take() -> None:
+        sock.recv(100)
+        read.put(threading.get_ident())
+
+    borrow(loop)
+    loop.add_reader(sock.fileno(), take)
+    loop.give_back()
+    return read
+
+
+def test_the_thread_that_waits_in_place_of_the_loop_reads(
+    pair: tuple[socket.socket, socket.socket],
+) -> None:
+    """And the loop does so before and afterwards."""
+    here, there = pair
+    with running_loop() as loop:
+        readers, read = readers_of(loop), watch(loop, here)
+        there.send(b"before")
+        assert read.get(timeout=PATIENCE_S) != threading.get_ident()
+
+        assert readers.begin()
+        there.send(b"meanwhile")
+        while read.empty():
+            assert readers.call(readers.wait(PATIENCE_S))
+        readers.end()
+        assert read.get() == threading.get_ident()
+
+        there.send(b"afterwards")
+        assert read.get(timeout=PATIENCE_S) != threading.get_ident()
+
+
+def test_one_thread_waits_in_place_of_the_loop() -> None:
+    """Another one waits in its own way."""
+    with running_loop() as loop:
+        readers = readers_of(loop)
+
+        assert readers.begin()
+        assert not readers.begin()
+        readers.end()
+        assert readers.begin()
+        readers.end()
+
+
+@pytest.mark.parametrize("way", ["rouse", "close"])
+def test_what_ends_the_wait_in_place_of_the_loop(way: str) -> None:
+    """Another thread has something for the one that waits, or the loop has ended."""
+    with running_loop() as loop:
+        readers = readers_of(loop)
+        waits, ended = threading.Event(), threading.Event()
+
+        def wait() -> None:
+            readers.begin()
+            waits.set()
+            readers.call(readers.wait(PATIENCE_S))
+            readers.end()
+            ended.set()
+
+        waiter = threading.Thread(target=wait)
+        waiter.start()
+        waits.wait(PATIENCE_S)
+        if way == "rouse":
+            readers.rouse()
+        else:
+            loop.call_soon_threadsafe(loop.stop)
+            while loop.is_running():
+                threading.Event().wait(0.001)
+            loop.close()
+        assert ended.wait(PATIENCE_S)
+        waiter.join()
+        assert readers.begin() is (way == "rouse")
+        if way == "rouse":
+            readers.end()
+
+
+def test_a_reader_that_was_removed_is_not_called(
+    pair: tuple[socket.socket, socket.socket],
+) -> None:
+    """Whoever waits."""
+    here, there = pair
+    with running_loop() as loop:
+        readers, read = readers_of(loop), watch(loop, here)
+        borrow(loop)
+        assert loop.remove_reader(here)
+        assert not loop.remove_reader(here)
+        loop.give_back()
+        there.send(b"unread")
+
+        assert readers.begin()
+        assert readers.wait(0.01) == []
+        readers.end()
+        assert read.empty()
+
+
+def test_an_exception_of_a_reader_goes_to_the_handler_of_the_loop(
+    pair: tuple[socket.socket, socket.socket],
+) -> None:
+    """As in any loop: the thread that happens to wait has nothing to do with it."""
+    here, there = pair
+    handled: list[object] = []
+    with running_loop() as loop:
+        readers = readers_of(loop)
+
+        def fail() -> None:
+            here.recv(100)
+            raise LookupError
+
+        borrow(loop)
+        loop.set_exception_handler(lambda _, context: handled.append(context["exception"]))
+        loop.add_reader(here, fail)
+        loop.give_back()
+        assert readers.begin()
+        there.send(b"x")
+        assert readers.call(readers.wait(PATIENCE_S))
+        readers.end()
+
+    assert [type(each) for each in handled] == [LookupError]

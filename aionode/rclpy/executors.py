@@ -111,6 +111,7 @@ class Executor:
             raise RuntimeError("Context must be initialized a GuardCondition can be created")
         self._context.handle.refuse_if_over("guard_condition")
         self._context.handle.signal.add(self._wakeup)
+        self._io = self._context.handle.io
         self._context.on_shutdown(self.wake)
 
     @property
@@ -392,7 +393,8 @@ class Executor:
         try:
             # A handle of a waitable may have become ready before it was watched.
             if wait_set is None or not wait_set.may_be_ready():
-                self._wakeup.wait(max(0, min(waits)) / 1e9 if waits else None)
+                timeout_sec = max(0, min(waits)) / 1e9 if waits else None
+                self._io.wait(self._wakeup, timeout_sec)
         finally:
             if wait_set is not None:
                 wait_set.unwatch(self._wakeup)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Protocol, Self
 from aionode.rclpy._impl.errors import InvalidHandle
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from types import TracebackType
 
 __all__ = ["Destroyable", "Signal", "Wakeup"]
@@ -20,20 +21,27 @@ class Wakeup:
     """Wakes one thread; a wake-up that comes before the wait is kept.
 
     A single C call on each side, which a signal handler may interrupt anywhere.
+
+    Attributes:
+        rouse: Wakes the thread if it waits for something else meanwhile.
     """
 
-    __slots__ = ("_lock",)
+    __slots__ = ("_lock", "rouse")
 
     def __init__(self) -> None:
+        self.rouse: Callable[[], None] | None = None
         self._lock = allocate_lock()
         self._lock.acquire()
 
     def wake(self) -> None:
         """Wake the thread that waits, or the next one that will."""
-        try:  # noqa: SIM105  # a context manager costs more than the whole rest
+        try:
             self._lock.release()
         except RuntimeError:  # it is awake already
-            pass
+            return
+        rouse = self.rouse
+        if rouse is not None:
+            rouse()
 
     def wait(self, timeout_sec: float | None) -> bool:
         """Wait for a wake-up; return whether one came within the limit. None waits for ever."""

@@ -5,14 +5,19 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future
+from contextlib import contextmanager
 from threading import Event, Lock, Thread, current_thread, get_ident, local, main_thread
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode import Context
+from aionode.clock import MachineTime
 from aionode.lendable_loop import LendableLoop
 from aionode.rclpy._impl.errors import InvalidHandle
+
+if TYPE_CHECKING:
+    from aionode.rclpy._impl.destroyable import Wakeup
 
 __all__ = ["IoThread", "postpone"]
 
@@ -24,10 +29,17 @@ MOST_WAITING = 1000
 SLICE = 100
 """How many of them it takes in one turn of its loop."""
 
+PRECISE_S = 0.002
+"""The end of a wait, in seconds, for which no descriptors are watched: that has whole
+milliseconds only.
+"""
+
 STOP_S = 3.0
 """How long the end of the process waits for the thread."""
 
 logger = logging.getLogger("aionode.rclpy")
+
+steady_ns = MachineTime().steady_ns
 
 
 class Borrowing(local):
@@ -53,6 +65,18 @@ def postpone(action: Callable[[], object]) -> bool:
     if borrowing.active:
         postponed.append(action)
     return borrowing.active
+
+
+@contextmanager
+def undisturbed() -> Iterator[None]:
+    """Have handlers of signals in this thread wait until the end."""
+    borrowing.active = True
+    try:
+        yield
+    finally:
+        borrowing.active = False
+        while postponed and current_thread() is main_thread():
+            postponed.pop(0)()
 
 
 class IoThread:
@@ -131,8 +155,7 @@ class IoThread:
         In this thread and at once if the context's thread sleeps, and in the latter soon if not.
         """
         loop = self._loop
-        borrowing.active = True
-        try:
+        with undisturbed():
             if self._work or loop is None or not loop.borrow():
                 self.post(action)
                 return
@@ -142,10 +165,39 @@ class IoThread:
                 logger.exception("in the input and output of a context")
             finally:
                 loop.give_back()
-        finally:
-            borrowing.active = False
-            while postponed and current_thread() is main_thread():
-                postponed.pop(0)()
+
+    def wait(self, wakeup: Wakeup, timeout_sec: float | None) -> bool:
+        """Wait for a wake-up, and meanwhile read what comes in, so that no other thread has to.
+
+        Args:
+            wakeup: What is waited for.
+            timeout_sec: The longest time in seconds; None for ever.
+
+        Returns:
+            Whether a wake-up has come.
+        """
+        readers = None if self._loop is None else self._loop.readers
+        ends_ns = None if timeout_sec is None else steady_ns() + timeout_sec * 1e9
+        left_s = timeout_sec
+        if readers is not None and (left_s is None or left_s > PRECISE_S) and readers.begin():
+            try:
+                while left_s is None or left_s > PRECISE_S:
+                    wakeup.rouse = readers.rouse
+                    if wakeup.wait(0):
+                        return True
+                    readable = readers.wait(None if left_s is None else left_s - PRECISE_S)
+                    wakeup.rouse = None
+                    with undisturbed():
+                        may_go_on = readers.call(readable)
+                    if wakeup.wait(0):
+                        return True
+                    if not may_go_on:
+                        break
+                    left_s = None if ends_ns is None else (ends_ns - steady_ns()) / 1e9
+            finally:
+                wakeup.rouse = None
+                readers.end()
+        return wakeup.wait(None if ends_ns is None else (ends_ns - steady_ns()) / 1e9)
 
     def pace(self) -> None:
         """Wait while more is posted than the thread has done; for those who post much."""
