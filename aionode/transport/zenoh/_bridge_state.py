@@ -128,8 +128,8 @@ class BridgeState(SessionState):
             self._warned_of.add(namespace)
             logger.warning(
                 "/%s is not announced to any zenoh-bridge-ros2dds, nor is what else begins with "
-                "/%s: the bridge whose namespace that is takes it for its own, and may end. Give "
-                "that bridge a namespace that no other name begins with",
+                "/%s but goes on without a slash: the bridge whose namespace that is takes it for "
+                "its own, and may end. Give that bridge a namespace that no other name begins with",
                 key,
                 namespace,
             )
