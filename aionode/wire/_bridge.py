@@ -12,7 +12,8 @@ action has one for all of its services and topics.
 
 A bridge trusts these tokens: a kind of fewer than three bytes in the last place, or a name with an
 empty part, ends its main task, and with it the robot's connection. So `bridge_token` is the only
-function that makes one, and it refuses what a bridge does not survive.
+function that makes one, and it refuses what a bridge does not survive. What only a bridge with a
+certain namespace does not survive, `takes_for_its_own` tells.
 """
 
 from __future__ import annotations
@@ -45,6 +46,7 @@ __all__ = [
     "parse_bridge_token",
     "parse_node",
     "parse_request_id",
+    "takes_for_its_own",
     "token_of",
 ]
 
@@ -137,6 +139,15 @@ def namespace_prefix(namespace: str) -> str:
     """Return what the keys of a bridge begin with, such as ``bot1/``; empty for the root."""
     prefix = namespace.strip("/")
     return f"{prefix}/" if NAME.match(prefix) else ""
+
+
+def takes_for_its_own(prefix: str, key: str) -> bool:
+    """Return whether a bridge takes `key` for one of its namespace though it is none.
+
+    It compares without the slash, and so takes ``bot10/chatter`` for a part of ``bot1``. It cuts
+    off that and one character more, and does not survive it if no name is left after that.
+    """
+    return bool(prefix) and key.startswith(prefix[:-1]) and not key.startswith(prefix)
 
 
 def bridge_token(

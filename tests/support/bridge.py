@@ -50,8 +50,14 @@ def string(text: str) -> bytes:
     return HEADER + struct.pack("<I", len(data)) + data
 
 
-def cause_of_death(token: str) -> str | None:
-    """Return why a bridge does not survive a token below ``@/<zid>/@ros2_lv``, if so."""
+def cause_of_death(token: str, namespace: str = "/") -> str | None:
+    """Return why a bridge does not survive a token below ``@/<zid>/@ros2_lv``, if so.
+
+    Args:
+        token: The token.
+        namespace: That of the bridge. The plugin (`key_expr_to_ros2_name`) cuts it off a key that
+            begins with its letters, and later one character more for the slash.
+    """
     rest = token.split("/", 3)[3:]
     if not rest:
         return None
@@ -65,6 +71,9 @@ def cause_of_death(token: str) -> str | None:
             return f"an empty part in {chunk}"
     if len(chunks) < 3:
         return "no type"
+    own, key = namespace.strip("/"), chunks[1].replace("§", "/")
+    if own and key.startswith(own) and (key[len(own) + 1 :] or "/")[0] == "/":
+        return f"no name left of {key}"
     return None
 
 
@@ -130,7 +139,7 @@ class StandIn:
         if sample.kind == zenoh.SampleKind.PUT:
             self.announced.add(token)
             self.seen.add(token)
-            cause = cause_of_death(token)
+            cause = cause_of_death(token, self._prefix)
             if cause is not None:
                 self.deaths.append(f"{token}: {cause}")
             return

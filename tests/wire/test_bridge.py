@@ -19,6 +19,7 @@ from aionode.wire._bridge import (
     parse_bridge_token,
     parse_node,
     parse_request_id,
+    takes_for_its_own,
     token_of,
 )
 from tests.support.bridge import cause_of_death
@@ -66,6 +67,19 @@ def test_no_token_is_of_a_form_that_ends_a_bridge(
         assert token.count("@") == 2
         if kind[0] == "M":
             assert token.split("/")[6].startswith(":")  # without a key
+
+
+@given(
+    st.sampled_from(["bot1", "bot1/arm", "b"]),
+    st.sampled_from(["bot1", "bot10", "bot12/a", "bot1/a", "b", "bot1/arm/x", "bot1/armx/y", "c"]),
+)
+def test_every_key_that_ends_a_bridge_with_a_namespace_is_known(namespace: str, key: str) -> None:
+    """What is announced for one robot is read by the bridges of all others."""
+    token = bridge_token(ZID, "SS", f"/{key}", "p/srv/Add")
+    if cause_of_death(token, f"/{namespace}") is not None:
+        assert takes_for_its_own(namespace_prefix(namespace), key)
+    if key.startswith(f"{namespace}/"):
+        assert not takes_for_its_own(namespace_prefix(namespace), key)
 
 
 @given(st.text())

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import logging
 from typing import TYPE_CHECKING, Any
 
 from aionode.transport.zenoh._acknowledgements import Acknowledgements
 from aionode.transport.zenoh._session_state import Declaration, EndpointNames, SessionState
-from aionode.wire._bridge import bridge_key, token_of
+from aionode.wire._bridge import bridge_key, takes_for_its_own, token_of
 
 if TYPE_CHECKING:
     import zenoh
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from aionode.transport.zenoh._bridge_stubs import Stub
 
 __all__ = ["BridgeDeclaration", "BridgeState"]
+
+logger = logging.getLogger("aionode.transport.zenoh")
 
 
 class SharedToken:
@@ -79,6 +82,7 @@ class BridgeState(SessionState):
         self.stubs: dict[Stub[Any], None] = {}
         self._served: set[str] = set()  # all prefixes that there were; what is declared stays
         self._tokens: dict[str, SharedToken] = {}
+        self._warned_of: set[str] = set()
 
     def connect(self, session: zenoh.Session, graph: Graph) -> None:
         """Make all endpoints: this is the first bridge."""
@@ -109,8 +113,26 @@ class BridgeState(SessionState):
         return shared
 
     def serves(self, key: str) -> bool:
-        """Return whether messages on `key` pass a bridge."""
-        return any(key.startswith(prefix) for prefix in self._served)
+        """Return whether messages on `key` pass a bridge, and all bridges survive its token."""
+        if not any(key.startswith(prefix) for prefix in self._served):
+            return False
+        for prefix in self._served:
+            if takes_for_its_own(prefix, key):
+                self._warn_of_namespace(prefix.rstrip("/"), key)
+                return False
+        return True
+
+    def _warn_of_namespace(self, namespace: str, key: str) -> None:
+        """Log once for each namespace why names like `key` do not pass any bridge."""
+        if namespace not in self._warned_of:
+            self._warned_of.add(namespace)
+            logger.warning(
+                "/%s is not announced to any zenoh-bridge-ros2dds, nor is what else begins with "
+                "/%s but goes on without a slash: the bridge whose namespace that is takes it for "
+                "its own, and may end. Give that bridge a namespace that no other name begins with",
+                key,
+                namespace,
+            )
 
     def add_bridge(self, zid: str, prefix: str) -> None:
         """Note a bridge, and declare what passes it. The state is connected."""
@@ -120,7 +142,7 @@ class BridgeState(SessionState):
             self.declare_all()
 
     def declare_all(self) -> None:
-        """Declare what is not declared yet."""
+        """Declare what is not declared yet, and withdraw what a new bridge does not survive."""
         session = self.session
         if session is not None:
             for declaration in list(self._declarations):
@@ -159,6 +181,8 @@ class BridgeDeclaration(Declaration):
         return self.state
 
     def declare(self, session: zenoh.Session) -> None:
-        """Declare it, if a bridge serves its key; twice is the same as once."""
-        if not self._declared and self.bridges.serves(bridge_key(self.endpoint.name)):
+        """Declare it if a bridge serves its key, else withdraw it; twice is the same as once."""
+        if not self.bridges.serves(bridge_key(self.endpoint.name)):
+            self.undeclare()
+        elif not self._declared:
             super().declare(session)

@@ -499,6 +499,7 @@ async def test_a_bridge_that_has_just_started_is_asked_again_for_its_namespace(n
         subscription = node.create_subscription(String, "/bot1/chatter", None, 100)
         node.create_subscription(String, "/chatter", None, 10)
         await publish_until_heard(bridge.publisher("/chatter"), subscription)
+        await until(lambda: any("bot1§chatter" in one for one in list(bridge.seen)))
 
         assert {one.split("/")[4] for one in bridge.seen if len(one.split("/")) > 4} == {
             "bot1§chatter"
@@ -520,6 +521,35 @@ async def test_two_robots_with_namespaces_are_told_apart(node: Node) -> None:
         assert await texts(first, 1) == ["1"]
         assert await texts(second, 1) == ["2"]
         assert one.deaths == two.deaths == []
+
+
+async def test_no_bridge_gets_a_name_that_one_of_another_namespace_takes_for_its_own(
+    node: Node, caplog: pytest.LogCaptureFixture
+) -> None:
+    """A bridge compares names with its namespace without the slash, and does not survive that."""
+    with stand_in() as root, stand_in("/bot1", first=False) as one:
+        await node.graph.until(lambda: sum(found.bridged for found in node.graph.nodes()) == 2)
+        with caplog.at_level(logging.WARNING):
+            for topic in ("/bot10/chatter", "/bot1", "/bot12", "/bot1/chatter", "/last"):
+                node.create_publisher(String, topic, 10)
+        await until(lambda: any("/MP/last/" in found for found in list(one.announced)))
+
+        assert root.deaths == one.deaths == []
+        assert any("/MP/bot1§chatter/" in found for found in one.announced)
+    assert sum("but goes on without a slash" in found.getMessage() for found in caplog.records) == 1
+
+
+async def test_what_a_new_bridge_takes_for_its_own_is_withdrawn(node: Node) -> None:
+    """It may have ended of it by then, but starts again."""
+    with stand_in() as root:
+        node.create_publisher(String, "/bot10/chatter", 10)
+        await until(lambda: any("/MP/bot10§chatter/" in found for found in list(root.announced)))
+        with stand_in("/bot1", first=False):
+            await until(lambda: not any("bot10" in found for found in list(root.announced)))
+        with stand_in("/bot1", first=False) as again:
+            await node.graph.until(lambda: sum(found.bridged for found in node.graph.nodes()) == 2)
+
+            assert again.deaths == []
 
 
 async def test_a_bridge_that_comes_back_finds_everything_announced(node: Node) -> None:
