@@ -3,7 +3,8 @@
 The same message (String, 16 bytes) goes to an echo in another process and back. All processes run
 all the time, and are measured in turns of a fraction of a second, so that whatever else the machine
 does falls on all of them. With ``--stress``, messages go in both directions as fast as they are
-read: nothing may be lost, and the loop must not stall.
+read: nothing may be lost, and the loop must not stall. Both take a minute and a half:
+``python benchmarks/rcl.py --seconds 60``, ``python benchmarks/rcl.py --stress --seconds 60``.
 Needs an rclpy: ``pip install 'aionode[ros]'``, or a ROS 2 that is sourced.
 """
 
