@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 DOMAIN = os.environ["ROS_DOMAIN_ID"]
-PATIENCE_S = 20.0
+PATIENCE_S = 100.0
 GID = bytes(range(16))
 
 STATES = {

@@ -146,7 +146,7 @@ async def output_of_peer(*arguments: str) -> str:
 
 
 @pytest.mark.one_loop
-@pytest.mark.timeout(60)
+@pytest.mark.timeout(120)
 async def test_a_program_of_another_kind_manages_nodes() -> None:
     """Every transition, error and refusal, with states, events and what is available."""
     async with (
@@ -158,7 +158,7 @@ async def test_a_program_of_another_kind_manages_nodes() -> None:
         stage.replaced.set()
 
 
-@pytest.mark.timeout(60)
+@pytest.mark.timeout(120)
 async def test_no_transition_is_lost_or_stuck_while_topics_flow() -> None:
     """Hundreds of requests from another process, between the messages of a busy topic."""
     heard = 0
