@@ -71,7 +71,7 @@ CALLING = (
 
 LARGE_CALLING = (
     Role("server", serve="/add"),
-    Role("client", call="/add", size=8_000_000, publish=(Publish("/b", depth=100),)),
+    Role("client", call="/add", size=6_500_000, publish=(Publish("/b", depth=100),)),
     Role("beside", hear=(Hear("/b", depth=100),)),
 )
 """One request takes more than all buffers on the way hold."""
