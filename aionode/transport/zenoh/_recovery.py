@@ -122,6 +122,8 @@ class Recovery:
         # Participants whose connection was lost and not made anew. A router may forward what they
         # send meanwhile, but not always what this session sends.
         self._lost: set[str] = set()
+        # Those that were missing in the last look; used by its thread only.
+        self._suspected: set[str] = set()
         # How often the connection was cut for each missing participant.
         self._attempts: dict[str, int] = {}
         # How often the connection to each participant was cut that declared nothing.
@@ -222,7 +224,11 @@ class Recovery:
         self, session: zenoh.Session, connection: Connection, lost: set[str]
     ) -> set[str]:
         """Cut what has to be made anew, and return the participants for which that was done."""
-        missing = self._missing(session, connection, lost)
+        found = self._missing(session, connection, lost)
+        # Where many start at once, connecting takes seconds, and a cut makes it take longer: one
+        # that was never connected has to be missing in two looks in a row.
+        missing = found & (lost | self._suspected | {self._state.participant})
+        self._suspected = found
         if missing:
             threading.Event().wait(SURE_S)
             missing &= self._missing(session, connection, lost)
