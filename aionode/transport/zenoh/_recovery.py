@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from aionode.transport._zenoh_config import Network
     from aionode.transport.zenoh._session_state import SessionState
 
-__all__ = ["Recovery", "graph_at_introducer", "is_look"]
+__all__ = ["Recovery", "is_look", "nodes_at_introducer"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
@@ -72,6 +72,9 @@ SURE_S: Final = 0.3
 
 ANSWER_S: Final = 1.0
 """How long the query for tokens may take; it takes a millisecond."""
+
+NODES_S: Final = 3.0
+"""The same where an answer is waited for; that of a busy machine with 300 nodes takes a second."""
 
 ATTEMPTS: Final = 4
 """How often the connection is cut for one participant; some are visible, but not reachable."""
@@ -282,8 +285,8 @@ def seen_at(network: Network, connection: Connection, *keys: str) -> set[str]:
         return tokens(look, *keys)
 
 
-def graph_at_introducer(session: zenoh.Session, network: Network) -> set[str] | None:
-    """Return all tokens of the graph that an introducer sees, if there is one.
+def nodes_at_introducer(session: zenoh.Session, network: Network) -> set[str] | None:
+    """Return the tokens of all nodes that an introducer sees, if there is one.
 
     None if it does not answer, or not completely.
     """
@@ -292,8 +295,8 @@ def graph_at_introducer(session: zenoh.Session, network: Network) -> set[str] | 
         if connection is None:
             return set()
         with closing(look_at(network, connection)) as look:
-            keys = f"{ROS_PREFIX}/{network.domain_id}/**"
-            replies = [reply.ok for reply in look.liveliness().get(keys, timeout=ANSWER_S)]
+            keys = f"{ROS_PREFIX}/{network.domain_id}/*/*/*/NN/**"
+            replies = [reply.ok for reply in look.liveliness().get(keys, timeout=NODES_S)]
     except (zenoh.ZError, ConfigurationError):
         return None
     found = {str(token.key_expr) for token in replies if token is not None}

@@ -14,7 +14,7 @@ from aionode.transport.zenoh._graph_watcher import NodeDeclaration, Watcher
 from aionode.transport.zenoh._local_router import LocalRouter
 from aionode.transport.zenoh._peer_directory import ZenohPeerDirectory
 from aionode.transport.zenoh._publisher import ZenohWriter
-from aionode.transport.zenoh._recovery import Recovery, graph_at_introducer
+from aionode.transport.zenoh._recovery import Recovery, nodes_at_introducer
 from aionode.transport.zenoh._router_matching import RouterMatching
 from aionode.transport.zenoh._services import ZenohRequester, ZenohServer
 from aionode.transport.zenoh._session import (
@@ -51,6 +51,9 @@ KNOWN_S = 0.3
 """How long `open` waits for the graph of connected peers; it takes a millisecond."""
 
 
+LOOK_AGAIN_S = 0.2
+"""How often it is looked which of the nodes that are waited for still exist."""
+
 NAMED_NS = 10_000_000_000
 """How long, in nanoseconds, a peer that others name is waited for while tokens of more arrive."""
 
@@ -79,7 +82,7 @@ class ZenohTransport(Transport):
         self.peer_directory = ZenohPeerDirectory(self._state, self._router_matching)
         # Done when the tokens of all connected peers are in the graph.
         self._answered: asyncio.Future[None] | None = None
-        self._missing = 0  # how many peers that accept connections were not connected in time
+        self._expected = 0  # how many peers accept connections, and so should be connected
         self._recovery = Recovery(self._state, network, self._watcher.check)
         self._local_router = LocalRouter(self._state, network)
         self._socket_options: SocketOptions | None = None
@@ -125,9 +128,8 @@ class ZenohTransport(Transport):
             self._recovery.start(session)
             self._local_router.start(session)
             await links.wait_until_connected(expected)
-            # Configured peers may be absent, so they are not counted as missing.
-            hoped_for = bool(self.network.near_peers or self.network.config_file)
-            self._missing = expected - hoped_for - len(session.info.transports())
+            # Configured peers may be absent, so they are not expected.
+            self._expected = expected - bool(self.network.near_peers or self.network.config_file)
             answered = self._ask(session)
             with suppress(TimeoutError):
                 async with asyncio.timeout(KNOWN_S):
@@ -146,16 +148,16 @@ class ZenohTransport(Transport):
             return False
         # Peers that a router, or another peer, has named may not be connected yet: nothing but what
         # that sees tells of them.
-        missing = await self._missing_tokens(session, quiet_s)
+        missing = await self._missing_nodes(session, quiet_s)
         if not missing:
-            return missing is not None and self._missing <= 0
+            return missing is not None and self._is_connected(session)
         quiet_ns = int(quiet_s * 1e9)
         ends_ns = perf_ns() + NAMED_NS
         while missing:
             with suppress(TimeoutError):
-                async with asyncio.timeout(quiet_s):
+                async with asyncio.timeout(LOOK_AGAIN_S):
                     await graph.until(partial(known_all, self._watcher, missing))
-            left = await self._missing_tokens(session, quiet_s)
+            left = await self._missing_nodes(session, quiet_s)
             if left is None:
                 return False
             left &= missing  # not what has come meanwhile
@@ -164,13 +166,17 @@ class ZenohTransport(Transport):
                 return False
             missing = left
         self._ask(session)  # the tokens of these peers are complete after that
-        return await self._has_answers(quiet_s) and self._missing <= 0
+        return await self._has_answers(quiet_s) and self._is_connected(session)
 
-    async def _missing_tokens(self, session: zenoh.Session, quiet_s: float) -> set[str] | None:
-        """Return the tokens that an introducer sees and the graph has not; None without answer."""
+    def _is_connected(self, session: zenoh.Session) -> bool:
+        """Return whether all peers that accept connections have been connected."""
+        return len(session.info.transports()) >= self._expected
+
+    async def _missing_nodes(self, session: zenoh.Session, quiet_s: float) -> set[str] | None:
+        """Return the nodes that an introducer sees and the graph has not; None without answer."""
         ends_ns = perf_ns() + int(quiet_s * 1e9)
         while True:
-            look = partial(graph_at_introducer, session, self.network)
+            look = partial(nodes_at_introducer, session, self.network)
             seen = await run_in_own_thread(look)
             if seen is not None:
                 return set(filterfalse(self._watcher.knows, seen))
