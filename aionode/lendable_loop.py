@@ -204,7 +204,7 @@ class Readers:
         self._waiting.release()
 
     def rouse(self) -> None:
-        """End the wait of the thread that waits; from any thread, or a handler of a signal."""
+        """End the wait of the thread that waits; any thread or signal handler may call this."""
         with suppress(OSError):  # closed meanwhile
             os.eventfd_write(self._event, 1)
 

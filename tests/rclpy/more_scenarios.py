@@ -62,7 +62,7 @@ def qos_events_of_profiles_that_do_not_fit(trace: Trace) -> None:
     )
     until(lambda: offered and requested, lambda: spin(node))
     for name, (event,) in (("offered", offered), ("requested", requested)):
-        trace(name, event.total_count, event.total_count_change, int(event.last_policy_kind))
+        trace(name, event.total_count, event.total_count_change, str(event.last_policy_kind))
 
 
 @scene

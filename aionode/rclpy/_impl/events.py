@@ -79,6 +79,24 @@ class EventHandle(Destroyable):
             self._io.post(self._watch.stop)
 
 
+class rmw_qos_policy_kind_t(IntEnum):  # noqa: N801  # rmw's name, which its text shows
+    """The kinds of policies, as events name them."""
+
+    RMW_QOS_POLICY_INVALID = 1
+    RMW_QOS_POLICY_DURABILITY = 2
+    RMW_QOS_POLICY_DEADLINE = 4
+    RMW_QOS_POLICY_LIVELINESS = 8
+    RMW_QOS_POLICY_RELIABILITY = 16
+    RMW_QOS_POLICY_HISTORY = 32
+    RMW_QOS_POLICY_LIFESPAN = 64
+    RMW_QOS_POLICY_DEPTH = 128
+    RMW_QOS_POLICY_LIVELINESS_LEASE_DURATION = 256
+    RMW_QOS_POLICY_AVOID_ROS_NAMESPACE_CONVENTIONS = 512
+
+    def __str__(self) -> str:
+        return f"{type(self).__name__}.{self.name}"
+
+
 class Watch:
     """Counts one kind of event; lives in the thread of the context."""
 
@@ -159,11 +177,14 @@ class MismatchWatch(Watch):
     def start(self) -> None:
         """Begin to watch."""
         self._seen: set[EndpointInfo] = set()
+        unreported = self.graph.unreported
+        unreported[self.endpoint] = {*unreported.get(self.endpoint, ()), *self.aspects}
         self.io.watch_graph(self.look)
         self.look()
 
     def stop(self) -> None:
         """Watch no longer."""
+        self.graph.unreported.pop(self.endpoint, None)
         self.io.unwatch_graph(self.look)
 
     def look(self) -> None:
@@ -190,6 +211,11 @@ class IncompatibleQoSWatch(MismatchWatch):
     def note(self, policy: QoSPolicyKind) -> None:
         """Count one."""
         self.count(total_count=1, last_policy_kind=policy)
+
+    def take(self) -> Any:
+        """Return the status, with the kind of policy as ROS 2 prints it."""
+        status = super().take()
+        return replace(status, last_policy_kind=rmw_qos_policy_kind_t(status.last_policy_kind))
 
 
 class IncompatibleTypeWatch(MismatchWatch):
