@@ -67,7 +67,7 @@ class Silent(Writer, Requester):
     bounded = False
     servers = 1
 
-    def write(self, msg: Any, sample_info: Any) -> None:
+    def write(self, msg: Any, sequence: int, source_ns: int) -> None:
         """Send nothing."""
 
     def send(self, request: Any, sample_info: Any, reply_to: Any) -> Any:
@@ -94,7 +94,6 @@ class Introducer(Transport):
         self.advertisement: str | None = None
         self.on_advertisement: Callable[[str, bool], None] = lambda _, __: None
         self.content_filters = ContentFilters()
-        self.has_unannounced_peers = False
         self.on_unannounced_peers: Callable[[bool], None] = lambda _: None
         self.on_retransmit: Callable[[bytes], None] = lambda _: None
 
@@ -103,6 +102,13 @@ class Introducer(Transport):
 
     def announce_link(self, participant: str, on: bool) -> None:
         """Tell no tools."""
+
+    def may_be_heard(self, publisher: EndpointInfo, changed: Callable[[], None]) -> bool:
+        """Return whether there may be others, which announce nothing."""
+        return False
+
+    def forget(self, publisher: EndpointInfo, changed: Callable[[], None]) -> None:
+        """Remember nothing."""
 
     async def open(self, graph: Graph) -> None:
         """Introduce the context to those that are there, and them to it."""
