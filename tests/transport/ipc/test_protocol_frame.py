@@ -82,7 +82,7 @@ def test_messages_that_nothing_hears_are_left_out() -> None:
     """They were sent before the publisher's process knew that the subscription was destroyed."""
     data = packed(Frame(Kind.DATA, 1, 2, bytes(16), b"one"))
     parser = FrameParser()
-    assert parser.take_messages(data + data[:50], {}, 0) == data[:50]
+    assert parser.take_messages(data + data[:-1], {}, 0) == data[:-1]
 
 
 @given(ONE, st.data())
