@@ -124,7 +124,7 @@ class BarePublisher(BareEndpoint):
         sample_info = SampleInfo(self.endpoint.gid, self.published, source_ns)
         for writer in self._here:
             if writer.active:
-                writer.write(msg, sample_info)
+                writer.write(msg, self.published, source_ns)
         return sample_info if any(writer.active for writer in self._elsewhere) else None
 
     def publish_elsewhere(self, msg: Any, sample_info: SampleInfo) -> None:
@@ -135,7 +135,7 @@ class BarePublisher(BareEndpoint):
         """
         for writer in self._elsewhere:
             if writer.active:
-                writer.write(msg, sample_info)
+                writer.write(msg, sample_info.sequence, sample_info.source_ns)
 
     def assert_liveliness(self) -> None:
         """Tell the matched subscriptions that the publisher is alive, without a message."""

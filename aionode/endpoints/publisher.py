@@ -13,7 +13,6 @@ from aionode.errors import EntityDestroyedError, MessageError, QueueFullError
 from aionode.graph import EndpointKind
 from aionode.message import Message, checker
 from aionode.qos import KEEP_ALL_DEPTH
-from aionode.transport.base import SampleInfo
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -116,19 +115,19 @@ class Publisher(Entity, Generic[MsgT]):
             if writer.bounded and not writer.has_room():
                 raise QueueFullError(self.topic_name, KEEP_ALL_DEPTH)
         stats = self.stats
-        sample_info = SampleInfo(self._endpoint.gid, stats.published + 1, self._now_ns())
+        sequence, source_ns = stats.published + 1, self._now_ns()
         used = False
         try:
             for writer in self._writers:
                 if writer.active:
-                    writer.write(msg, sample_info)
+                    writer.write(msg, sequence, source_ns)
                     used = True
             if not used:
                 self._check(msg)
         except MessageError as error:
             error.add_note(f"published by {self._subject}")
             raise
-        stats.published += 1
+        stats.published = sequence
 
     def _fitting(self, msg: Any) -> Any:
         """Return `msg`, decoded if it is bytes; TypeError if it is of an unrelated class."""

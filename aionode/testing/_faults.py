@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import MachineTime
@@ -116,7 +117,7 @@ class _FaultyWriter(Writer):
     def __init__(self, faults: FaultyTransport, inner: Writer) -> None:
         self._faults = faults
         self._inner = inner
-        self._held: list[tuple[Any, SampleInfo]] = []  # to be sent after the next message
+        self._held: list[tuple[Any, int, int]] = []  # to be sent after the next message
 
     @property
     def active(self) -> bool:  # type: ignore[override]  # an attribute there, read-only here
@@ -155,22 +156,19 @@ class _FaultyWriter(Writer):
         """Return the route of the inner writer."""
         return self._inner.route_of(reader)
 
-    def write(self, msg: Any, sample_info: SampleInfo) -> None:
+    def write(self, msg: Any, sequence: int, source_ns: int) -> None:
         """Send `msg`, drop it, hold it back, or send it twice."""
         faults = self._faults
         msg = snapshot(msg)  # the caller may change it before it is sent
-        sample_info = SampleInfo(
-            sample_info.gid, sample_info.sequence, sample_info.source_ns, remote=True
-        )
         released, self._held = self._held, []
         if faults._strikes(faults.reorder):
-            self._held.append((msg, sample_info))
+            self._held.append((msg, sequence, source_ns))
         elif not faults._strikes(faults.drop):
             copies = 2 if faults._strikes(faults.duplicate) else 1
             for _ in range(copies):
-                faults._later(lambda: self._inner.write(msg, sample_info))
-        for held_msg, held_info in released:
-            faults._later(lambda m=held_msg, i=held_info: self._inner.write(m, i))  # type: ignore[misc]  # mypy cannot infer defaults of a lambda
+                faults._later(partial(self._inner.write, msg, sequence, source_ns))
+        for held in released:
+            faults._later(partial(self._inner.write, *held))
 
     def close(self) -> None:
         """Close the inner writer; held messages are lost."""

@@ -48,14 +48,12 @@ class SampleInfo(msgspec.Struct, frozen=True, gc=False):
         gid: The 16 bytes that identify the sending endpoint; for a request, its client.
         sequence: The sender's number of the message, from 1 and rising by 1.
         source_ns: When it was sent, in nanoseconds since 1970 by the sender's clock; 0 if unknown.
-        remote: Whether it came from another context.
         arrived_ns: When it arrived, in nanoseconds since 1970, if it was held back since; else 0.
     """
 
     gid: bytes
     sequence: int
     source_ns: int
-    remote: bool = False
     arrived_ns: int = 0
 
 
@@ -77,15 +75,31 @@ class Reader(Protocol):
     raw: bool
     """Whether `deliver` wants the message as CDR bytes."""
 
-    def deliver(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
+    def deliver(
+        self,
+        msg: Any,
+        gid: bytes,
+        sequence: int,
+        source_ns: int,
+        inline_deadline_ns: int = 0,
+        arrived_ns: int = 0,
+    ) -> None:
         """Take one message, which must not be changed from now on. Never raises, never waits.
+
+        What is known of it comes as plain arguments, and not as a `SampleInfo`, which most
+        subscriptions have no use for.
 
         Args:
             msg: The message.
-            sample_info: Where it comes from.
+            gid: The 16 bytes that identify its publisher.
+            sequence: The publisher's number of it, from 1 and rising by 1.
+            source_ns: When it was published, in nanoseconds since 1970 by the publisher's clock; 0
+                if unknown.
             inline_deadline_ns: Until which `perf_ns` a callback may run at once, within this call.
                 A transport sets it once for each event of the loop, so that the loop has its turn.
                 0 means that none may: the caller is itself in a callback or in `publish`.
+            arrived_ns: When it arrived, in nanoseconds since 1970, if it was held back since; else
+                0.
         """
 
     def note_alive(self, gid: bytes) -> None:
@@ -135,10 +149,15 @@ class Writer(Registration):
         """Call `callback` when it is no longer dormant, if it is."""
 
     @abstractmethod
-    def write(self, msg: Any, sample_info: SampleInfo) -> None:
+    def write(self, msg: Any, sequence: int, source_ns: int) -> None:
         """Send `msg` to every reader matched through this transport; never blocks.
 
         The caller may change `msg` afterwards.
+
+        Args:
+            msg: The message.
+            sequence: The publisher's number of it, from 1 and rising by 1.
+            source_ns: When it was published, in nanoseconds since 1970.
 
         Raises:
             MessageError: a value does not fit its field; nothing was sent.

@@ -7,6 +7,7 @@ of DDS; endpoints that do not match do not hear each other.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from aionode.errors import ServiceError
@@ -15,12 +16,13 @@ from aionode.qos import DurabilityPolicy, depth_of, keeps_all
 from aionode.transport.base import Registration, Request, Requester, SampleInfo, Transport, Writer
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from aionode.graph import EndpointInfo, Graph, NodeInfo
     from aionode.transport.base import Call, Reader, ReplyTo, Serve
 
 __all__ = ["LocalTransport"]
+
+Deliver = Callable[[Any, bytes, int, int], None]
+"""Takes a message, its publisher's gid, its number and its time, as `Reader.deliver` does."""
 
 
 class LocalTransport(Transport):
@@ -131,16 +133,16 @@ class LocalReader(Registration):
         self._topic = topic
         self.bounded = keeps_all(endpoint.qos)
 
-    def delivery_from(self, msg_type: type[Any]) -> Callable[[Any, SampleInfo], None]:
+    def delivery_from(self, msg_type: type[Any]) -> Deliver:
         """Return what takes messages of `msg_type` to the reader, in the form that it wants."""
         deliver = self.reader.deliver
         if self.reader.raw:
             from aionode.wire import cdr  # nodes without raw readers need no codec
 
             encode = cdr.encoder(msg_type)
-            return lambda msg, sample_info: deliver(encode(msg), sample_info)
+            return lambda msg, *rest: deliver(encode(msg), *rest)
         if self.msg_type is not msg_type:
-            return lambda msg, sample_info: deliver(_in_class(msg, self.msg_type), sample_info)
+            return lambda msg, *rest: deliver(_in_class(msg, self.msg_type), *rest)
         return deliver
 
     def close(self) -> None:
@@ -158,9 +160,11 @@ class LocalWriter(Writer):
         self._msg_type = msg_type
         self._topic = topic
         self._snapshot = snapshotter(msg_type)
-        self._matched: dict[LocalReader, Callable[[Any, SampleInfo], None]] = {}
-        self._deliveries: tuple[Callable[[Any, SampleInfo], None], ...] = ()
-        self._history: deque[tuple[Any, SampleInfo]] | None = None
+        self._gid = endpoint.gid
+        self._matched: dict[LocalReader, Deliver] = {}
+        self._deliveries: tuple[Deliver, ...] = ()
+        # What late readers get: each message, its number, and its time.
+        self._history: deque[tuple[Any, int, int]] | None = None
         qos = endpoint.qos
         if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL:
             self._history = deque(maxlen=depth_of(qos))
@@ -174,8 +178,8 @@ class LocalWriter(Writer):
         deliver = reader.delivery_from(self._msg_type)
         wanted = reader.endpoint.qos
         if self._history and wanted.durability is DurabilityPolicy.TRANSIENT_LOCAL:
-            for msg, sample_info in list(self._history)[-depth_of(wanted) :]:
-                deliver(msg, sample_info)
+            for msg, sequence, source_ns in list(self._history)[-depth_of(wanted) :]:
+                deliver(msg, self._gid, sequence, source_ns)
         self._matched[reader] = deliver
         # Not `_update`, which looks at all: many may meet many.
         self._deliveries += (deliver,)
@@ -192,13 +196,13 @@ class LocalWriter(Writer):
         self.active = bool(self._deliveries) or self._history is not None
         self.bounded = self.bounded and any(reader.bounded for reader in self._matched)
 
-    def write(self, msg: Any, sample_info: SampleInfo) -> None:
+    def write(self, msg: Any, sequence: int, source_ns: int) -> None:
         """Give one snapshot of `msg` to all."""
         snapshot = self._snapshot(msg)
         if self._history is not None:
-            self._history.append((snapshot, sample_info))
+            self._history.append((snapshot, sequence, source_ns))
         for deliver in self._deliveries:
-            deliver(snapshot, sample_info)
+            deliver(snapshot, self._gid, sequence, source_ns)
 
     def has_room(self) -> bool:
         """Whether every reliable KEEP_ALL reader can take one more message."""

@@ -15,13 +15,14 @@ from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
 from aionode.message import serialized
 from aionode.qos import KEEP_ALL_DEPTH, DurabilityPolicy, HistoryPolicy, QoSProfile
+from aionode.transport.base import SampleInfo
 from aionode.wire import cdr
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.graph import EndpointInfo
-    from aionode.transport.base import Request, SampleInfo
+    from aionode.transport.base import Request
 
 TEN = QoSProfile(depth=10)
 
@@ -39,10 +40,18 @@ class Kept:
         self.alive: list[bytes] = []
         self.limit = limit
 
-    def deliver(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
+    def deliver(
+        self,
+        msg: Any,
+        gid: bytes,
+        sequence: int,
+        source_ns: int,
+        inline_deadline_ns: int = 0,
+        arrived_ns: int = 0,
+    ) -> None:
         """Take a message."""
         self.messages.append(msg)
-        self.infos.append(sample_info)
+        self.infos.append(SampleInfo(gid, sequence, source_ns))
         self.threads.append(threading.get_ident())
 
     def note_alive(self, gid: bytes) -> None:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from aionode._concurrency import SLICE_NS, checkpoint, run_in_thread
 from aionode.clock import perf_ns
+from aionode.endpoints.stats import NOTED_CALLS
 from aionode.errors import CallbackCancelledError, CallbackSignatureError, brief
 
 if TYPE_CHECKING:
@@ -64,59 +65,61 @@ class CallbackRunner:
 
     Args:
         callback: A function or coroutine function.
-        context: The entity, for errors and reports.
+        entity: The entity.
+        callbacks: How its node runs callbacks.
         stats: Where counts and durations go.
         on_error: What to do with an exception: see `fail`.
         offload: Whether a sync callback runs in a thread.
-        budget_ns: How long a callback may block the loop before that is reported.
-        logger: The node's logger.
-        waiting: The callbacks of the node that have started and are suspended; shared with it.
 
     Raises:
         TypeError: `on_error` is neither a string nor a function.
         ValueError: `on_error` is an unknown string, or a coroutine function is to be offloaded.
 
     Attributes:
+        subject: The entity and its callback, such as ``subscription of /chatter (callback
+            on_text)``.
         is_sync: Whether a call is expected to finish at once, in the loop's own thread.
+        budget_ns: How long a callback may block the loop before that is reported.
+        waiting: The callbacks of the node that have started and are suspended; shared with it.
     """
 
     def __init__(
         self,
         callback: Callable[..., Any],
-        context: CallbackContext,
+        entity: Entity,
+        callbacks: Callbacks,
         stats: CallbackStats,
         *,
         on_error: OnError = "raise",
         offload: bool = False,
-        budget_ns: int,
-        logger: RcutilsLogger,
-        waiting: set[object] | None = None,
     ) -> None:
+        name = getattr(callback, "__qualname__", repr(callback))
+        self.subject = f"{entity._subject} (callback {name})"
         if isinstance(on_error, str):
             if on_error not in ("raise", "log"):
                 raise ValueError(
-                    f"{context.subject}: on_error={brief(on_error)} is unknown; "
+                    f"{self.subject}: on_error={brief(on_error)} is unknown; "
                     'use "raise", "log" or a function (exception, context)'
                 )
         elif not callable(on_error):
             raise TypeError(
-                f"{context.subject}: on_error is {brief(on_error)}; "
+                f"{self.subject}: on_error is {brief(on_error)}; "
                 'use "raise", "log" or a function (exception, context)'
             )
         if offload and inspect.iscoroutinefunction(callback):
             raise ValueError(
-                f"{context.subject}: offload=True runs a sync callback in a thread, and this one "
+                f"{self.subject}: offload=True runs a sync callback in a thread, and this one "
                 "is a coroutine function; use `await asyncio.to_thread(...)` inside it"
             )
         self.callback = callback
         self.stats = stats
-        self._context = context
+        self._entity = entity
+        self._callbacks = callbacks
         self._on_error = on_error
         self._offload = offload
         self.is_sync = not offload and not _is_async(callback)
-        self.budget_ns = budget_ns
-        self._logger = logger
-        self.waiting: set[object] = set() if waiting is None else waiting
+        self.budget_ns = callbacks.budget_ns
+        self.waiting = callbacks.waiting
         self._last_report_ns = -REPORT_INTERVAL_NS
 
     def run(self, *args: Any) -> Coroutine[Any, Any, None] | None:
@@ -132,34 +135,78 @@ class CallbackRunner:
             return None
         return self._finish(entered) if is_unfinished(entered) else None
 
-    def receive(self, entered_ns: int, *args: Any) -> Coroutine[Any, Any, None] | None:
-        """Do `run` for what was due at `entered_ns`; count it, and record its wait.
+    def receive(self, entered_ns: int, item: Any) -> Coroutine[Any, Any, None] | None:
+        """Do `run` for an item that was queued at `entered_ns`; count it, and record its wait.
 
         Raises:
             Exception: what the callback raised, if `on_error` is ``"raise"``.
         """
+        if self._offload:
+            return self.receive_args(entered_ns, item)
+        # `receive_args` written out, without a tuple of arguments.
         stats = self.stats
         stats.received += 1
         began_ns = perf_ns()
+        try:
+            outcome = self.callback(item)
+        except Exception as error:  # noqa: BLE001  # the policy decides, see `fail`
+            return self.conclude(began_ns - entered_ns, perf_ns() - began_ns, None, error)
+        took_ns = perf_ns() - began_ns
+        if outcome is not None or took_ns > self.budget_ns:
+            return self.conclude(began_ns - entered_ns, took_ns, outcome)
+        stats._waited_ns.append(began_ns - entered_ns)
+        took = stats._took_ns
+        took.append(took_ns)
+        if len(took) >= NOTED_CALLS:
+            stats._record_noted()
+        return None
+
+    def receive_args(self, entered_ns: int, *args: Any) -> Coroutine[Any, Any, None] | None:
+        """Do `receive` for a callback that takes none or several arguments.
+
+        Raises:
+            Exception: what the callback raised, if `on_error` is ``"raise"``.
+        """
+        self.stats.received += 1
+        began_ns = perf_ns()
+        waited_ns = began_ns - entered_ns
         if self._offload:
-            stats.queue_wait.record(began_ns - entered_ns)
+            self.stats.queue_wait.record(waited_ns)
             return self._finish(_Offloaded(self, args))
-        # `run` written out, with one record for wait and duration: 2.2 µs instead of 5.1 µs for a
-        # message with an empty callback (the best of 9 times 200 000 calls of each in turn).
         try:
             outcome = self.callback(*args)
         except Exception as error:  # noqa: BLE001  # the policy decides, see `fail`
-            stats.queue_wait.record(began_ns - entered_ns)
-            self._record_sync(perf_ns() - began_ns)
-            self.fail(error)
-            return None
-        if outcome is not None and isinstance(outcome, Awaitable):
-            stats.queue_wait.record(began_ns - entered_ns)
-            return self._finish(_Measured(self, outcome))
+            return self.conclude(waited_ns, perf_ns() - began_ns, None, error)
         took_ns = perf_ns() - began_ns
-        stats._record_call(began_ns - entered_ns, took_ns)
-        if took_ns > self.budget_ns:
-            self.report_blocking(took_ns)
+        if outcome is not None or took_ns > self.budget_ns:
+            return self.conclude(waited_ns, took_ns, outcome)
+        self.stats._record_call(waited_ns, took_ns)
+        return None
+
+    def conclude(
+        self, waited_ns: int, took_ns: int, outcome: Any, error: BaseException | None = None
+    ) -> Coroutine[Any, Any, None] | None:
+        """Record a call of the callback, handle its error, and return what is left to await.
+
+        Args:
+            waited_ns: How long its item was queued.
+            took_ns: How long the call took.
+            outcome: What the callback returned.
+            error: What it raised.
+
+        Raises:
+            BaseException: `error`, if it is no `Exception` or `on_error` is ``"raise"``.
+        """
+        stats = self.stats
+        if outcome is not None and isinstance(outcome, Awaitable):
+            stats.queue_wait.record(waited_ns)
+            return self._finish(_Measured(self, outcome))
+        stats._waited_ns.append(waited_ns)
+        self._record_sync(took_ns)
+        if isinstance(error, Exception):
+            self.fail(error)
+        elif error is not None:
+            raise error
         return None
 
     async def _finish(self, outcome: Any) -> None:
@@ -204,7 +251,7 @@ class CallbackRunner:
                 raise
             # This task was not cancelled: without an error it would end silently, and with it
             # its entity.
-            raise CallbackCancelledError(self._context.subject) from error
+            raise CallbackCancelledError(self.subject) from error
 
     async def call(self, *args: Any) -> Any:
         """Run the callback and return its result; see `enter` and `outcome` for the errors."""
@@ -218,18 +265,14 @@ class CallbackRunner:
         """
         self.stats.errors += 1
         if self._on_error == "raise":
-            error.add_note(f"in {self._context.subject} of node {self._context.node}")
+            error.add_note(f"in {self.subject} of node {self._callbacks.node}")
             raise error
         if self._on_error == "log":
             trace = "".join(traceback.format_exception(error))
-            self._logger.error(f"{self._context.subject} failed:\n{trace}")
+            self._callbacks.logger.error(f"{self.subject} failed:\n{trace}")
         else:
-            self._on_error(error, self._context)
-
-    @property
-    def subject(self) -> str:
-        """The entity and its callback, such as ``subscription of /chatter (callback on_text)``."""
-        return self._context.subject
+            context = CallbackContext(self._callbacks.node, self.subject, self._entity)
+            self._on_error(error, context)
 
     def _record_sync(self, took_ns: int) -> None:
         self.stats._record_took(took_ns)
@@ -242,8 +285,8 @@ class CallbackRunner:
         if now_ns - self._last_report_ns < REPORT_INTERVAL_NS:
             return
         self._last_report_ns = now_ns
-        self._logger.warning(
-            f"{self._context.subject} blocked the event loop for {took_ns / 1e6:.1f} ms "
+        self._callbacks.logger.warning(
+            f"{self.subject} blocked the event loop for {took_ns / 1e6:.1f} ms "
             f"(budget {self.budget_ns / 1e6:g} ms): nothing else could run. Move the work off the "
             "loop: offload=True runs a sync callback in a thread, a coroutine can await "
             "asyncio.to_thread(...)"
@@ -282,18 +325,7 @@ class Callbacks:
             TypeError: `on_error` is neither a string nor a function.
             ValueError: `on_error` is an unknown string, or a coroutine function is to be offloaded.
         """
-        name = getattr(callback, "__qualname__", repr(callback))
-        subject = f"{entity._subject} (callback {name})"
-        return CallbackRunner(
-            callback,
-            CallbackContext(self.node, subject, entity),
-            stats,
-            on_error=on_error,
-            offload=offload,
-            budget_ns=self.budget_ns,
-            logger=self.logger,
-            waiting=self.waiting,
-        )
+        return CallbackRunner(callback, entity, self, stats, on_error=on_error, offload=offload)
 
 
 class _Measured:
@@ -383,14 +415,14 @@ def is_unfinished(entered: object) -> bool:
 # Queues
 
 
-async def consume(
+def consume(
     message_queue: MessageQueue[T],
     handle: Callable[[int, T], Coroutine[Any, Any, None] | None],
     concurrent: bool | int,  # an int is a number of callbacks, not a truth value
     *,
     inline: bool = False,
-) -> None:
-    """Hand everything that arrives in `message_queue` to `handle`, until cancelled.
+) -> Coroutine[Any, Any, None]:
+    """Return what hands everything that arrives in `message_queue` to `handle`, until cancelled.
 
     `handle` runs what can run at once and returns what is left to await, if anything. With
     `concurrent` that runs beside the next items in a TaskGroup, any number at once or at most the
@@ -398,54 +430,32 @@ async def consume(
     bypass the queue while it is empty, see `MessageQueue`; not for coroutine functions.
     """
     if concurrent is False:
-        await _consume_in_order(message_queue, handle, inline=inline)
-    else:
-        limit = None if concurrent is True else concurrent
-        async with asyncio.TaskGroup() as tasks:
-            await _consume_concurrently(message_queue, handle, tasks, limit)
-
-
-async def _consume_in_order(
-    message_queue: MessageQueue[T],
-    handle: Callable[[int, T], Coroutine[Any, Any, None] | None],
-    *,
-    inline: bool,
-) -> None:
-    while True:
-        await (message_queue.wait_inline(handle) if inline else message_queue.wait())
-        queue = message_queue.items  # `len(message_queue)` is one more call for each item
-        turn_ends_ns = perf_ns() + SLICE_NS
-        while queue:
-            rest = handle(*message_queue.pop())
-            if rest is not None:
-                await rest
-            if perf_ns() >= turn_ends_ns:
-                await checkpoint()
-                turn_ends_ns = perf_ns() + SLICE_NS
+        return message_queue.consume(handle, inline=inline)
+    return _consume_concurrently(message_queue, handle, None if concurrent is True else concurrent)
 
 
 async def _consume_concurrently(
     message_queue: MessageQueue[T],
     handle: Callable[[int, T], Coroutine[Any, Any, None] | None],
-    tasks: asyncio.TaskGroup,
     limit: int | None,
 ) -> None:
     running: set[asyncio.Task[None]] = set()
     turn_ends_ns = 0
-    while True:
-        while limit is not None and len(running) >= limit:
-            await asyncio.wait(running, return_when=asyncio.FIRST_COMPLETED)
-        await message_queue.wait()
-        if not message_queue:
-            continue
-        rest = handle(*message_queue.pop())
-        if rest is not None:
-            task = tasks.create_task(rest)
-            running.add(task)
-            task.add_done_callback(running.discard)
-        if perf_ns() >= turn_ends_ns:
-            await checkpoint()
-            turn_ends_ns = perf_ns() + SLICE_NS
+    async with asyncio.TaskGroup() as tasks:
+        while True:
+            while limit is not None and len(running) >= limit:
+                await asyncio.wait(running, return_when=asyncio.FIRST_COMPLETED)
+            await message_queue.wait()
+            if not message_queue:
+                continue
+            rest = handle(*message_queue.pop())
+            if rest is not None:
+                task = tasks.create_task(rest)
+                running.add(task)
+                task.add_done_callback(running.discard)
+            if perf_ns() >= turn_ends_ns:
+                await checkpoint()
+                turn_ends_ns = perf_ns() + SLICE_NS
 
 
 # Arguments

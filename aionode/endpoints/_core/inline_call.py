@@ -52,14 +52,27 @@ class InlineCall:
         try:
             await event
         except asyncio.CancelledError:
-            if self._rest is not None:
-                self._rest.close()
-                self._rest = None
+            self.abandon()
             if self._error is None:
                 raise
+        rest = self.take_rest()
+        if rest is not None:
+            await rest
+
+    def abandon(self) -> None:
+        """Await nothing of what `run` left: the task was cancelled."""
+        if self._rest is not None:
+            self._rest.close()
+            self._rest = None
+
+    def take_rest(self) -> Coroutine[object, object, None] | None:
+        """Return what `run` left to await, if anything.
+
+        Raises:
+            BaseException: what a callback raised.
+        """
         if self._error is not None:
             error, self._error = self._error, None
             raise error
-        if self._rest is not None:
-            rest, self._rest = self._rest, None
-            await rest
+        rest, self._rest = self._rest, None
+        return rest

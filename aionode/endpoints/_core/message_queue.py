@@ -6,6 +6,7 @@ import asyncio
 from collections import deque
 from typing import TYPE_CHECKING, Generic, TypeVar
 
+from aionode._concurrency import SLICE_NS, checkpoint
 from aionode.clock import perf_ns
 from aionode.endpoints._core.inline_call import InlineCall
 
@@ -25,12 +26,12 @@ class MessageQueue(InlineCall, Generic[T]):
     With KEEP_LAST a full queue drops its oldest item, with KEEP_ALL it refuses the newest; both are
     counted in `stats.dropped`. Putting never waits and needs no running loop.
 
-    Items may also bypass it: while its consumer waits in `wait_inline`, `take_inline` handles an
-    item within the event that brought it. Waking the consumer instead takes one more iteration of
-    the loop and a step of a task, which is much of the cost of a message. The order stays: once an
-    item is queued or the consumer has been woken, nothing bypasses the queue, and the consumer
-    finishes what an inline callback left before it takes the next item. This is part of the queue,
-    and not an object of its own, because there is a queue for each subscription.
+    Items may also bypass it: while `consume` waits, `take_inline` handles an item within the event
+    that brought it. Waking the consumer instead takes one more iteration of the loop and a
+    step of a task, which is much of the cost of a message. The order stays: once an item is queued
+    or the consumer has been woken, nothing bypasses the queue, and the consumer finishes what an
+    inline callback left before it takes the next item. This is part of the queue, and not an object
+    of its own, because there is a queue for each subscription.
 
     Attributes:
         depth: How many items it holds at most.
@@ -60,8 +61,8 @@ class MessageQueue(InlineCall, Generic[T]):
         # Those that wait for an item and for room; emptied when they are woken.
         self._readers: list[asyncio.Future[None]] = []
         self._writers: list[asyncio.Future[None]] = []
-        # What the consumer waits for in `wait_inline`, and what handles items meanwhile. The waiter
-        # is None while the consumer does not wait, and during an inline callback.
+        # What `consume` waits for, and what handles items meanwhile. The waiter is None while the
+        # consumer does not wait, and during an inline callback.
         self._inline_waiter: asyncio.Future[None] | None = None
         self._handle: Callable[[int, T], Coroutine[object, object, None] | None] | None = None
 
@@ -78,7 +79,7 @@ class MessageQueue(InlineCall, Generic[T]):
             queue.popleft()
         queue.append((perf_ns(), item))
         if self._readers:
-            _wake(self._readers)
+            self.wake_readers()
 
     def pop(self) -> tuple[int, T]:
         """Take the oldest item, with the `perf_ns` of its arrival; IndexError when empty."""
@@ -126,39 +127,78 @@ class MessageQueue(InlineCall, Generic[T]):
         self.items.clear()
         return unread
 
+    def wake_readers(self) -> None:
+        """Wake what waits for an item."""
+        for waiter in self._readers:
+            if not waiter.done():
+                waiter.set_result(None)
+        self._readers.clear()
+
     def wake_writers(self) -> None:
         """Wake what waits for room: some items were dropped."""
         _wake(self._writers)
 
     def wake(self) -> None:
         """Wake all readers and writers: the entity is being destroyed."""
-        _wake(self._readers)
+        self.wake_readers()
         _wake(self._writers)
 
-    # Past the queue
+    # Its consumer
 
-    async def wait_inline(
-        self, handle: Callable[[int, T], Coroutine[object, object, None] | None]
+    async def consume(
+        self,
+        handle: Callable[[int, T], Coroutine[object, object, None] | None],
+        *,
+        inline: bool = False,
     ) -> None:
-        """Do `wait` for the consumer, and let `take_inline` call `handle` meanwhile.
+        """Hand each item to `handle`, one after the other, until cancelled.
+
+        Args:
+            handle: Runs what can run at once, and returns what is left to await, if anything.
+            inline: Whether `take_inline` may call it.
 
         Raises:
-            BaseException: what a callback raised.
+            BaseException: what `handle` raised.
         """
-        if not self.items:
+        if inline:
             self.prepare()
             self._handle = handle
-            await self.after(self._until_woken())
+        while True:
+            if not self.items:
+                rest = await self._wait_for_rest(inline=inline)
+                if rest is not None:
+                    await rest
+            turn_ends_ns = perf_ns() + SLICE_NS
+            while self.items:
+                entered_ns, item = self.items.popleft()  # `pop` is one more call for each item
+                if self._writers:
+                    _wake(self._writers)
+                rest = handle(entered_ns, item)
+                if rest is not None:
+                    await rest
+                if perf_ns() >= turn_ends_ns:
+                    await checkpoint()
+                    turn_ends_ns = perf_ns() + SLICE_NS
 
-    async def _until_woken(self) -> None:
-        waiter = self._inline_waiter = asyncio.get_running_loop().create_future()
+    async def _wait_for_rest(self, *, inline: bool) -> Coroutine[object, object, None] | None:
+        """Wait for an item; return what an inline call has left to await, or raise its error."""
+        waiter = asyncio.get_running_loop().create_future()
         self._readers.append(waiter)
+        if inline:
+            self._inline_waiter = waiter
         try:
             await waiter
+        except asyncio.CancelledError:
+            self.abandon()
+            if self._error is None:
+                raise
         finally:
             self._inline_waiter = None
             if waiter in self._readers:
                 self._readers.remove(waiter)
+        return self.take_rest()
+
+    # Past the queue
 
     def take_inline(self, item: T, inline_deadline_ns: int) -> bool:
         """Handle `item` now, if that is possible before `inline_deadline_ns`; else return False."""

@@ -21,9 +21,7 @@ if TYPE_CHECKING:
     from aionode.clock import TimeBase
     from aionode.clock._time_base import Alarm
     from aionode.endpoints._core.graph_entry import GraphEntry
-    from aionode.endpoints._qos.event_hub import EventHandler
     from aionode.endpoints.events import EventStream
-    from aionode.transport.base import SampleInfo
 
 __all__ = ["PublisherMonitor", "SignOfLife"]
 
@@ -51,7 +49,7 @@ class SignOfLife(Writer):
         self._check = check
         self._note = note
 
-    def write(self, msg: Any, sample_info: SampleInfo) -> None:  # noqa: ARG002  # as every writer
+    def write(self, msg: Any, sequence: int, source_ns: int) -> None:  # noqa: ARG002  # as every writer
         """Record a message."""
         if not any(writer.active for writer in self._writers):
             self._check(msg)
@@ -61,7 +59,7 @@ class SignOfLife(Writer):
         """There is nothing to withdraw."""
 
 
-class PublisherMonitor:
+class PublisherMonitor(EventHub):
     """Watches one publisher, and tells of its events.
 
     Args:
@@ -80,7 +78,6 @@ class PublisherMonitor:
         "_alarms",
         "_graph_entry",
         "_heartbeat",
-        "_hub",
         "_lease_alarm",
         "_lease_ns",
         "_lost",
@@ -97,10 +94,10 @@ class PublisherMonitor:
         time_base: TimeBase,
         event_callbacks: PublisherEventCallbacks | None,
     ) -> None:
+        super().__init__(graph_entry, event_callbacks, PublisherEventCallbacks)
         self._graph_entry = graph_entry
         self._time_base = time_base
         self.writers: Sequence[Writer] = ()
-        self._hub = EventHub(graph_entry, event_callbacks, PublisherEventCallbacks)
         self._missed = 0
         self._lost = 0
         qos = graph_entry.endpoint.qos
@@ -118,13 +115,8 @@ class PublisherMonitor:
             self._lease_alarm = SilenceAlarm(time_base, self._lease_ns, self._on_lease_over)
             self._alarms.append(self._lease_alarm)
         self._watches_matches = False
-        if self._hub.has_listeners:
+        if self.has_listeners:
             self._watch_matches()
-
-    @property
-    def handler(self) -> EventHandler | None:
-        """What calls the event callbacks; None without any."""
-        return self._hub.handler
 
     @property
     def needs_signs(self) -> bool:
@@ -139,7 +131,7 @@ class PublisherMonitor:
     def events(self) -> EventStream[Any]:
         """Return the stream of all events."""
         self._watch_matches()
-        return self._hub.stream()
+        return self.stream()
 
     def start(self) -> None:
         """Begin to watch: the node runs now."""
@@ -161,12 +153,12 @@ class PublisherMonitor:
             alarm.stop()
         if self._heartbeat is not None:
             self._heartbeat.cancel()
-        self._hub.close()
+        super().close()
 
     def _watch_matches(self) -> None:
         if not self._watches_matches:
             self._watches_matches = True
-            self._graph_entry.watch(Matching(self._graph_entry.endpoint, self._hub.emit).note)
+            self._graph_entry.watch(Matching(self._graph_entry.endpoint, self.emit).note)
 
     def _beat(self) -> None:
         """Assert AUTOMATIC liveliness, again and again."""
@@ -176,10 +168,10 @@ class PublisherMonitor:
 
     def _on_deadline_missed(self, periods: int) -> bool:
         self._missed += periods
-        self._hub.emit("deadline", QoSOfferedDeadlineMissedInfo(self._missed, periods))
+        self.emit("deadline", QoSOfferedDeadlineMissedInfo(self._missed, periods))
         return True
 
     def _on_lease_over(self, periods: int) -> bool:  # noqa: ARG002  # it is lost once
         self._lost += 1
-        self._hub.emit("liveliness", QoSLivelinessLostInfo(self._lost, 1))
+        self.emit("liveliness", QoSLivelinessLostInfo(self._lost, 1))
         return False

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from aionode.clock import Duration, TimeBase
     from aionode.clock._time_base import Alarm
     from aionode.endpoints._core.graph_entry import GraphEntry
-    from aionode.endpoints._qos.event_hub import EventHandler
     from aionode.endpoints.events import EventStream
     from aionode.endpoints.stats import CallbackStats
     from aionode.graph import EndpointInfo
@@ -48,7 +47,7 @@ class MonitoredReader(Protocol):
         """Wake what waits for room."""
 
 
-class SubscriptionMonitor:
+class SubscriptionMonitor(EventHub):
     """Watches the publishers and messages of one subscription, and tells of its events.
 
     It puts itself into the way of messages only if a policy needs that: the subscription's own
@@ -68,7 +67,6 @@ class SubscriptionMonitor:
         "_deadline",
         "_endpoint",
         "_graph_entry",
-        "_hub",
         "_items",
         "_lifespans_ns",
         "_liveliness",
@@ -89,12 +87,12 @@ class SubscriptionMonitor:
         time_base: TimeBase,
         event_callbacks: SubscriptionEventCallbacks | None,
     ) -> None:
+        super().__init__(graph_entry, event_callbacks, SubscriptionEventCallbacks)
         self._graph_entry = graph_entry
         self._endpoint = graph_entry.endpoint
         self._reader = reader
         self._time_base = time_base
         self._now_ns = time_base.system_ns
-        self._hub = EventHub(graph_entry, event_callbacks, SubscriptionEventCallbacks)
         self._runs = False
         self._missed = 0
         qos = self._endpoint.qos
@@ -104,7 +102,7 @@ class SubscriptionMonitor:
                 time_base, qos.deadline.nanoseconds, self._on_deadline_missed
             )
         self._liveliness: PublisherLiveliness | None = None
-        if not is_unlimited(qos.liveliness_lease_duration) or self._hub.calls("liveliness"):
+        if not is_unlimited(qos.liveliness_lease_duration) or self.calls("liveliness"):
             self._watch_liveliness()
         self._own_lifespan_ns = lifespan_ns(qos.lifespan)
         # By gid, of publishers that limit it. They stay when the publisher has gone, as its
@@ -115,16 +113,11 @@ class SubscriptionMonitor:
         if self._own_lifespan_ns != NEVER_NS:
             self._expire()
         self._matching: Matching | None = None
-        if self._hub.has_listeners:
+        if self.has_listeners:
             self._watch_matches()
         graph_entry.watch(self._note_publisher)
         if self._deadline is not None or not is_unlimited(qos.liveliness_lease_duration):
             reader.on_arrival = self._on_arrival
-
-    @property
-    def handler(self) -> EventHandler | None:
-        """What calls the event callbacks; None without any."""
-        return self._hub.handler
 
     def events(self) -> EventStream[Any]:
         """Return the stream of all events."""
@@ -133,7 +126,7 @@ class SubscriptionMonitor:
             self._watch_liveliness()
             for publisher in self._graph_entry.matched():
                 self._note_publisher(publisher, present=True)
-        return self._hub.stream()
+        return self.stream()
 
     def start(self) -> None:
         """Begin to watch: the node runs now."""
@@ -152,7 +145,7 @@ class SubscriptionMonitor:
             self._liveliness.stop()
         if self._purge is not None:
             self._purge.cancel()
-        self._hub.close()
+        super().close()
 
     def note_alive(self, gid: bytes) -> None:
         """Take the assertion of a publisher."""
@@ -168,7 +161,7 @@ class SubscriptionMonitor:
 
     def _watch_matches(self) -> None:
         if self._matching is None:
-            self._matching = Matching(self._endpoint, self._hub.emit)
+            self._matching = Matching(self._endpoint, self.emit)
             self._graph_entry.watch(self._matching.note)
             self._reader.on_lost = self._on_lost
             if self._reader.stats.lost:
@@ -176,7 +169,7 @@ class SubscriptionMonitor:
 
     def _watch_liveliness(self) -> None:
         self._liveliness = PublisherLiveliness(
-            self._time_base, self._endpoint.qos, self._hub.emitter("liveliness")
+            self._time_base, self._endpoint.qos, self.emitter("liveliness")
         )
         if self._runs:
             self._liveliness.start()
@@ -206,11 +199,11 @@ class SubscriptionMonitor:
         return True
 
     def _on_lost(self, count: int) -> None:
-        self._hub.emit("message_lost", QoSMessageLostInfo(self._reader.stats.lost, count))
+        self.emit("message_lost", QoSMessageLostInfo(self._reader.stats.lost, count))
 
     def _on_deadline_missed(self, periods: int) -> bool:
         self._missed += periods
-        self._hub.emit("deadline", QoSRequestedDeadlineMissedInfo(self._missed, periods))
+        self.emit("deadline", QoSRequestedDeadlineMissedInfo(self._missed, periods))
         return True
 
     # Lifespan

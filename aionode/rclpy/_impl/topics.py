@@ -172,8 +172,17 @@ class Inbox:
         self._post = post
         self._room_waiters: list[Callable[[], None]] = []
 
-    def deliver(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
+    def deliver(
+        self,
+        msg: Any,
+        gid: bytes,
+        sequence: int,
+        source_ns: int,
+        inline_deadline_ns: int = 0,
+        arrived_ns: int = 0,
+    ) -> None:
         """Take one message."""
+        sample_info = SampleInfo(gid, sequence, source_ns, arrived_ns)
         if self.feed:
             self._post(partial(self._tell_feed, sample_info))
         if self.accept is not None and not self.accept(msg.data):

@@ -402,7 +402,7 @@ class Connection:
             if not self._on_readable():
                 return
 
-    def _on_readable(self) -> bool:
+    def _on_readable(self) -> bool:  # noqa: C901  # one call for each message
         """Read once; return whether there was anything, so that there may be more."""
         sock = self._sock
         if sock is None:
@@ -425,26 +425,28 @@ class Connection:
         try:
             if ancillary:
                 self._take_descriptors(ancillary)
-            self._take_frames(self._parser.feed(data))
+            deadline_ns = perf_ns() + SLICE_NS
+            data = self._parser.take_messages(data, self.receivers.handlers, deadline_ns)
+            if data:
+                self._take_frames(self._parser.feed(data), deadline_ns)
         except FrameError as error:
             self.close(error if not flags & MSG_CTRUNC else FrameError(NO_DESCRIPTOR))
         else:
             if flags & MSG_CTRUNC:  # the frames before the one that lacks its descriptor are whole
                 self.close(FrameError(NO_DESCRIPTOR))
-            elif self._parser.held > self._max_held:
+            elif data and self._parser.held > self._max_held:
                 self._owner.on_held(self)
         return True
 
-    def _take_frames(self, frames: list[Frame]) -> None:
-        inline_deadline_ns = perf_ns() + SLICE_NS
+    def _take_frames(self, frames: list[Frame], inline_deadline_ns: int) -> None:
         handlers = self.receivers.handlers
         for frame in frames:
             kind = frame.kind
             if kind == DATA:
                 payload: Data = self._map(frame) if frame.in_shm else frame.payload
-                take = handlers.get(frame.gid)
-                if take is not None:  # else the subscription was just destroyed
-                    take(payload, frame, inline_deadline_ns)
+                handler = handlers.get(frame.gid)
+                if handler is not None:  # else the subscription was just destroyed
+                    handler(payload, frame.sequence, frame.source_ns, inline_deadline_ns)
             elif kind in (REPLY, REQUEST):
                 payload = self._map(frame) if frame.in_shm else frame.payload
                 self._owner.on_call(self, frame, payload, inline_deadline_ns)

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import enum
 import struct
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, ClassVar, Final, NamedTuple, Self
 
 import msgspec
@@ -31,6 +32,8 @@ __all__ = [
     "GID_SIZE",
     "HEADER_SIZE",
     "MAX_INLINE",
+    "MESSAGE_HEADER",
+    "MESSAGE_MARK",
     "VERSION",
     "BufferRef",
     "Cancel",
@@ -43,6 +46,7 @@ __all__ = [
     "Frame",
     "FrameParser",
     "Gone",
+    "Handler",
     "Hello",
     "Kind",
     "Open",
@@ -72,6 +76,9 @@ HEADER: Final = struct.Struct("<IBBHqq16s")
 HEADER_SIZE: Final = HEADER.size
 
 MARK: Final = 0xA10E
+
+MESSAGE_HEADER: Final = struct.Struct("<IIqq16s")
+"""The same header with kind, flags and mark as one number, for messages."""
 
 IN_SHM: Final = 1
 
@@ -123,6 +130,9 @@ class Kind(enum.IntEnum):
 
 LAST_KIND: Final = max(Kind).value
 
+MESSAGE_MARK: Final = int(Kind.DATA) | MARK << 16
+"""Kind, flags and mark of a message whose payload is in the stream."""
+
 
 class Frame(msgspec.Struct, frozen=True, gc=False):
     """One frame as it was received.
@@ -144,6 +154,12 @@ class Frame(msgspec.Struct, frozen=True, gc=False):
     payload: bytes = b""
     in_shm: bool = False
     has_fd: bool = False
+
+
+Handler = Callable[[bytes | bytearray | memoryview, int, int, int], None]
+"""Takes a message of one publisher: its payload, number and time, and until which `perf_ns` its
+callback may run within the call.
+"""
 
 
 class BufferRef(NamedTuple):
@@ -212,6 +228,39 @@ class FrameParser:
         self._pieces: list[bytes] = []
         self.missing = HEADER_SIZE
         self.held = 0
+
+    def take_messages(
+        self, data: bytes, handlers: Mapping[bytes, Handler], inline_deadline_ns: int
+    ) -> bytes:
+        """Hand the messages that the stream goes on with to their handlers, and return the rest.
+
+        The rest begins with a frame of another kind, or with a part of a frame; it is for `feed`.
+        Nothing is made for a message but its payload, unlike there.
+
+        Args:
+            data: What was read.
+            handlers: What takes the messages of a publisher, by its gid; others are left out.
+            inline_deadline_ns: Until which `perf_ns` callbacks may run within this call.
+        """
+        if self._pieces:
+            if len(data) < self.missing:
+                return data
+            data = b"".join((*self._pieces, data))
+            self._pieces.clear()
+            self.held = 0
+            self.missing = HEADER_SIZE
+        offset = 0
+        end = len(data)
+        while end - offset >= HEADER_SIZE:
+            size, mark, sequence, source_ns, gid = MESSAGE_HEADER.unpack_from(data, offset)
+            begin = offset + HEADER_SIZE
+            if mark != MESSAGE_MARK or end - begin < size:
+                break
+            offset = begin + size
+            handler = handlers.get(gid)
+            if handler is not None:  # else the subscription was just destroyed
+                handler(data[begin:offset], sequence, source_ns, inline_deadline_ns)
+        return data[offset:]
 
     def feed(self, data: bytes) -> list[Frame]:
         """Return the frames that `data` completes.

@@ -8,7 +8,7 @@ from aionode.graph import EndpointKind
 from aionode.qos import ReliabilityPolicy, depth_of, keeps_all
 from aionode.transport.base import Writer
 from aionode.transport.ipc import _protocol as protocol
-from aionode.transport.ipc._protocol import BufferRef, Gone, Opened
+from aionode.transport.ipc._protocol import MESSAGE_HEADER, MESSAGE_MARK, BufferRef, Gone, Opened
 from aionode.transport.ipc._send_queue import DATA, IpcSendQueue, RemoteSubscription
 from aionode.transport.ipc._shared_memory import SHARED_FROM
 from aionode.wire import cdr
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from aionode.graph import EndpointInfo
-    from aionode.transport.base import SampleInfo
     from aionode.transport.ipc._connection import Connection
     from aionode.transport.ipc._protocol import Credit, Open
     from aionode.transport.ipc._registry import LinkRegistry
@@ -52,9 +51,11 @@ class IpcWriter(Writer):
         self._send_queues: dict[Connection, IpcSendQueue] = {}
         # The number of the last message, as far as it was encoded for anything.
         self._sequence = 0
-        # Made when it is needed: most publishers of a node are never heard over a link.
+        # The same, for `write`: one of them may prove to be broken meanwhile, and is removed.
+        self._targets: tuple[IpcSendQueue, ...] = ()
+        # What encodes messages that go to every process in one piece; None if there is no link, or
+        # if `_write_otherwise` has to see to them.
         self._encode: Callable[[Any], bytes] | None = None
-        self._shares = False
         # Whether Zenoh has to carry messages too: a matched subscription has not switched.
         self._needs_zenoh = True
         # The registry's `changes` when that was computed; -1 to compute it again.
@@ -68,7 +69,7 @@ class IpcWriter(Writer):
     @property
     def active(self) -> bool:  # type: ignore[override]  # asked for each message, and so computed
         """Whether a message written now would be used."""
-        return bool(self._send_queues) or self._zenoh.active
+        return bool(self._targets) or self._zenoh.active
 
     @property
     def dropped(self) -> int:
@@ -96,54 +97,64 @@ class IpcWriter(Writer):
             for reader in send_queue.readers.values()
         )
 
-    def write(self, msg: Any, sample_info: SampleInfo) -> None:
+    def write(self, msg: Any, sequence: int, source_ns: int) -> None:
         """Send `msg` over each route that a subscription needs."""
-        send_queues = self._send_queues
-        if send_queues:
-            # A tuple, as one of them may prove to be broken, and is removed.
-            targets = tuple(send_queues.values())
-            if self._is_filtered:
-                targets = self._wanting(targets, msg)
-            encode = self._encode
-            if encode is None:
-                encode = self._encode = cdr.encoder(self._msg_type)
-                self._shares = has_views(self._msg_type)
-            sequence = sample_info.sequence
-            if not targets:
-                pass
-            elif self._shares:
-                self._write_parts(cdr.parts_encoder(self._msg_type)(msg), sample_info, targets)
-            elif len(payload := encode(msg)) >= SHARED_FROM:
-                self._write_parts([payload], sample_info, targets)
-            else:
+        encode = self._encode
+        if encode is not None:
+            payload = encode(msg)
+            size = len(payload)
+            if size < SHARED_FROM:
                 # `protocol.pack` inlined: one call less for each message.
-                head = protocol.HEADER.pack(
-                    len(payload), DATA, 0, protocol.MARK, sequence, sample_info.source_ns, self._gid
-                )
-                data = head + payload
-                for send_queue in targets:
+                data = MESSAGE_HEADER.pack(size, MESSAGE_MARK, sequence, source_ns, self._gid)
+                data += payload
+                for send_queue in self._targets:
                     send_queue.send(sequence, data)
+            else:
+                self._write_parts([payload], sequence, source_ns, self._targets)
+            self._sequence = sequence
+        elif self._targets:
+            self._write_otherwise(msg, sequence, source_ns)
             self._sequence = sequence
         if self._needs_zenoh and self.update():
             if self._zenoh.active:
-                self._zenoh.write(msg, sample_info)
-            self._sequence = sample_info.sequence
+                self._zenoh.write(msg, sequence, source_ns)
+            self._sequence = sequence
 
-    def _wanting(self, send_queues: tuple[IpcSendQueue, ...], msg: Any) -> tuple[IpcSendQueue, ...]:
-        """Return the send queues of processes in which a subscription wants `msg`."""
-        wanting = tuple(one for one in send_queues if one.wants is None or one.wants(msg))
-        self._filtered += len(send_queues) - len(wanting)
-        return wanting
+    def _write_otherwise(self, msg: Any, sequence: int, source_ns: int) -> None:
+        """Send a message over links that holds views, or that some processes do not want."""
+        targets = self._targets
+        if self._is_filtered:
+            targets = tuple(one for one in targets if one.wants is None or one.wants(msg))
+            self._filtered += len(self._targets) - len(targets)
+        if not targets:
+            return
+        if has_views(self._msg_type):
+            parts = cdr.parts_encoder(self._msg_type)(msg)
+        else:
+            parts = [cdr.encoder(self._msg_type)(msg)]
+        self._write_parts(parts, sequence, source_ns, targets)
 
     def update_filters(self) -> None:
         """Find out which processes want all messages, after a change of subscriptions."""
         filters = self._registry.content_filters
         for send_queue in self._send_queues.values():
             send_queue.wants = filters.wanted_by(send_queue.readers, self._msg_type)
-        self._is_filtered = any(one.wants is not None for one in self._send_queues.values())
+        self._targets_changed()
+
+    def _targets_changed(self) -> None:
+        """Find out how to send from the next message on."""
+        targets = self._targets = tuple(self._send_queues.values())
+        self._is_filtered = any(one.wants is not None for one in targets)
+        self._encode = None
+        if targets and not self._is_filtered and not has_views(self._msg_type):
+            self._encode = cdr.encoder(self._msg_type)
 
     def _write_parts(
-        self, parts: Sequence[Data], sample_info: SampleInfo, targets: tuple[IpcSendQueue, ...]
+        self,
+        parts: Sequence[Data],
+        sequence: int,
+        source_ns: int,
+        targets: tuple[IpcSendQueue, ...],
     ) -> None:
         """Send what may be large: if it is, in one shared buffer for all links."""
         pool = self._registry.pool
@@ -151,11 +162,9 @@ class IpcWriter(Writer):
         buffer = pool.filled(parts, size) if size >= SHARED_FROM else None
         payload = b"".join(parts) if buffer is None else BufferRef(buffer.number, size).pack()
         in_shm = buffer is not None
-        data = protocol.pack(
-            DATA, sample_info.sequence, sample_info.source_ns, self._gid, payload, in_shm=in_shm
-        )
+        data = protocol.pack(DATA, sequence, source_ns, self._gid, payload, in_shm=in_shm)
         for send_queue in targets:
-            send_queue.send(sample_info.sequence, data, buffer)
+            send_queue.send(sequence, data, buffer)
         if buffer is not None:
             pool.release(buffer)
 
@@ -186,6 +195,7 @@ class IpcWriter(Writer):
             send_queue.end(gone)
             self._registry.keep(self._gid, send_queue)
         self._send_queues.clear()
+        self._targets_changed()
 
     # Control frames of subscriptions at the other end of a link
 
@@ -249,6 +259,7 @@ class IpcWriter(Writer):
         send_queue = self._send_queues.pop(connection, None)
         if send_queue is not None:
             self._dropped += send_queue.dropped
+            self._targets_changed()
         return send_queue
 
     def reconsider(self) -> None:

@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from aionode.transport.ipc._protocol import Frame
+    from aionode.transport.ipc._protocol import Handler
     from aionode.wire.cdr import Data
 
 __all__ = ["Receiver", "ReceiverTable"]
@@ -20,7 +18,9 @@ class Receiver(Protocol):
     def gid(self) -> bytes:
         """The gid of the subscription."""
 
-    def from_link(self, payload: Data, frame: Frame, inline_deadline_ns: int) -> None:
+    def from_link(
+        self, payload: Data, sequence: int, source_ns: int, inline_deadline_ns: int
+    ) -> None:
         """Take a message."""
 
     def opened(self, sequence: int) -> None:
@@ -44,7 +44,7 @@ class ReceiverTable:
     """
 
     def __init__(self) -> None:
-        self.handlers: dict[bytes, Callable[[Data, Frame, int], None]] = {}
+        self.handlers: dict[bytes, Handler] = {}
         # By publisher, and then by subscription.
         self._receivers: dict[bytes, dict[bytes, Receiver]] = {}
 
@@ -83,14 +83,14 @@ class ReceiverTable:
         return found
 
 
-def handler_for(receivers: dict[bytes, Receiver]) -> Callable[[Data, Frame, int], None]:
+def handler_for(receivers: dict[bytes, Receiver]) -> Handler:
     """Return what passes a publisher's messages to its receivers; mostly there is one."""
     if len(receivers) == 1:
         (only,) = receivers.values()
         return only.from_link
 
-    def take(payload: Data, frame: Frame, inline_deadline_ns: int) -> None:
+    def take(payload: Data, sequence: int, source_ns: int, inline_deadline_ns: int) -> None:
         for receiver in tuple(receivers.values()):
-            receiver.from_link(payload, frame, inline_deadline_ns)
+            receiver.from_link(payload, sequence, source_ns, inline_deadline_ns)
 
     return take

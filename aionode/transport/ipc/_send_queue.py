@@ -91,7 +91,7 @@ class IpcSendQueue:
         self._depth = depth
         self._keep_all = keep_all
         self._limited = False  # whether a subscription has a window
-        self._sent = 0  # how many frames the connection has taken
+        self._sent = 0  # how many frames the connection has taken while it was limited
         # Number, frame, and the buffer that holds its payload. What waits for the socket or for a
         # window, and what was sent and is not confirmed by every subscription that confirms.
         self._waiting: deque[tuple[int, bytes, SharedBuffer | None]] = deque()
@@ -150,7 +150,6 @@ class IpcSendQueue:
             if self.confirmed:
                 self._unconfirmed.append((sequence, data, None))
             if self.connection.write(data):
-                self._sent += 1
                 if len(self._unconfirmed) > MAX_UNCONFIRMED:
                     self._let_go(self._unconfirmed.popleft()[2])
                 return

@@ -67,7 +67,7 @@ class IpcServer(Registration):
         self, connection: Connection, frame: Frame, payload: Data, inline_deadline_ns: int
     ) -> None:
         """Take a request; a handler may run within this call until `inline_deadline_ns`."""
-        sample_info = SampleInfo(frame.gid, frame.sequence, frame.source_ns, True)
+        sample_info = SampleInfo(frame.gid, frame.sequence, frame.source_ns)
         try:
             message = cdr.decode(self.srv_type.Request, payload)
         except DecodeError as error:
@@ -285,9 +285,7 @@ class IpcCall:
                 self._reply_to.fail(ServiceError(service, f"the response is unreadable: {error}"))
             return
         if self._finish():
-            self._reply_to.reply(
-                response, SampleInfo(frame.gid, frame.sequence, frame.source_ns, True)
-            )
+            self._reply_to.reply(response, SampleInfo(frame.gid, frame.sequence, frame.source_ns))
 
     def failed(self, error_type: str, error_text: str) -> None:
         """Take a server's error."""

@@ -23,12 +23,12 @@ from __future__ import annotations
 
 import enum
 from collections import defaultdict, deque
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from aionode.errors import DecodeError, FrameError
 from aionode.message import fields
 from aionode.qos import ReliabilityPolicy, depth_of, keeps_all
-from aionode.transport.base import ReaderRegistration, Registration, SampleInfo
+from aionode.transport.base import ReaderRegistration, Registration
 from aionode.transport.ipc._protocol import Close, Credit, Open, Switched, can_link
 from aionode.wire import cdr
 
@@ -62,9 +62,11 @@ A reliable subscription holds as many as its depth, if that is more; a KEEP_ALL 
 MAX_RECOVERING: Final = 50_000
 """How many messages are held at most while retransmitted ones are awaited."""
 
-CONFIRM_MESSAGES: Final = 64
 CONFIRM_BYTES: Final = 1 << 16
-"""After so many messages, or bytes, a subscription confirms what it has received."""
+"""After so many bytes a subscription confirms what it has received."""
+
+MESSAGE_BYTES: Final = 1 << 10
+"""What each message counts beyond its payload: 64 messages without any are confirmed as well."""
 
 ZENOH_LATE_S: Final = 0.1
 """How long a subscription that holds messages waits for the other route to deliver anything."""
@@ -89,6 +91,15 @@ class Route(enum.Enum):
 
 ZENOH: Final = Route.ZENOH
 IPC: Final = Route.IPC
+
+
+class Message(NamedTuple):
+    """A message that may be held: where it arrived, others are awaited."""
+
+    msg: Any
+    sequence: int
+    source_ns: int
+    arrived_ns: int
 
 
 class RemotePublisher:
@@ -144,7 +155,7 @@ class RemotePublisher:
         self.connection: Connection | None = None
         self.route = ZENOH
         self.last = 0
-        self.full: deque[tuple[Any, SampleInfo]] = deque()
+        self.full: deque[Message] = deque()
         self._registry = registry
         self._decode = reader.decoder()
         self._deliver = reader.deliver_local
@@ -163,7 +174,7 @@ class RemotePublisher:
         # Links that have ended and whose unconfirmed messages were not all sent again yet.
         self._owed = 0
         # By number: what came over one route and has to wait for another; empty in a steady state.
-        self._held: dict[int, tuple[Any, SampleInfo]] = {}
+        self._held: dict[int, Message] = {}
         self._max_held = MAX_HELD
         if self._keep_all:
             self._max_held = MAX_RECOVERING
@@ -238,33 +249,30 @@ class RemotePublisher:
 
     # Messages
 
-    def from_link(self, payload: Data, frame: Frame, inline_deadline_ns: int) -> None:
+    def from_link(
+        self, payload: Data, sequence: int, source_ns: int, inline_deadline_ns: int
+    ) -> None:
         """Take a message that came over the link; before `opened` it is for another reader."""
         try:
             msg = self._decode(payload)
         except DecodeError as error:
             self.reader.reject(error)
             return
-        sequence = frame.sequence
         if self.route is IPC and not self._held and not self._keep_all:
             if sequence > self.last:
                 self.last = sequence
-                sample_info = SampleInfo(frame.gid, sequence, frame.source_ns, True)
-                self._deliver(msg, sample_info, inline_deadline_ns)
+                self._deliver(msg, self.publisher, sequence, source_ns, inline_deadline_ns)
         else:
             # It may be held for a while, so note that it has arrived now.
-            now_ns = self._registry.now_ns()
-            sample_info = SampleInfo(frame.gid, sequence, frame.source_ns, True, now_ns)
-            self._from_link_in_order(msg, sample_info, inline_deadline_ns)
+            message = Message(msg, sequence, source_ns, self._registry.now_ns())
+            self._from_link_in_order(message, inline_deadline_ns)
         if self._confirms:
             self._used += 1
-            self._used_bytes += len(payload)
-            if self._used >= CONFIRM_MESSAGES or self._used_bytes >= CONFIRM_BYTES or frame.in_shm:
+            self._used_bytes = used_bytes = self._used_bytes + len(payload) + MESSAGE_BYTES
+            if used_bytes >= CONFIRM_BYTES:
                 self._confirm()
 
-    def _from_link_in_order(
-        self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int
-    ) -> None:
+    def _from_link_in_order(self, message: Message, inline_deadline_ns: int) -> None:
         if len(self.full) >= MAX_FULL:
             raise FrameError(
                 f"{self.reader.endpoint.name}: {MAX_FULL} messages beyond the window of "
@@ -272,31 +280,31 @@ class RemotePublisher:
             )
         before = self.route
         if before is Route.BOTH:
-            self._hold(msg, sample_info)
+            self._hold(message)
             if len(self._held) >= self._max_held:
                 self._switch()
-        elif before is IPC and sample_info.sequence > self.last:
-            self._next(msg, sample_info, inline_deadline_ns)
+        elif before is IPC and message.sequence > self.last:
+            self._next(message, inline_deadline_ns)
             held = self._held
             while held and (oldest := next(iter(held))) <= self.last:
                 del held[oldest]
-        elif before is Route.RECOVERING and self._linked and sample_info.sequence > self.last:
-            self._hold(msg, sample_info)
+        elif before is Route.RECOVERING and self._linked and message.sequence > self.last:
+            self._hold(message)
             self._recover()
         if self.route is not before or self.waits:
             self._route_changed()
 
-    def from_zenoh(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
+    def from_zenoh(self, message: Message, inline_deadline_ns: int = 0) -> None:
         """Take a message that came over Zenoh."""
         before = self.route
         self._progressed = True
-        number = sample_info.sequence
+        number = message.sequence
         if number > self.last:
             if before is IPC or before is Route.RECOVERING:
-                self._hold(msg, sample_info)
+                self._hold(message)
                 self._recover()
             else:
-                self._next(msg, sample_info, inline_deadline_ns)
+                self._next(message, inline_deadline_ns)
                 if before is Route.BOTH and number >= self._base:
                     self._switch()
         if self.route is not before or self.waits:
@@ -315,7 +323,7 @@ class RemotePublisher:
                 self.route = Route.RECOVERING
                 self._base = frame.sequence - 1
                 self._owed = max(self._owed, 1)
-            self._hold(msg, SampleInfo(frame.gid, frame.sequence, frame.source_ns, True))
+            self._hold(Message(msg, frame.sequence, frame.source_ns, 0))
             self._recover()
         self._route_changed()
 
@@ -343,16 +351,20 @@ class RemotePublisher:
             self._release()
             self.route = IPC if self._linked else ZENOH
 
-    def _next(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
-        self.last = sample_info.sequence
+    def _next(self, message: Message, inline_deadline_ns: int = 0) -> None:
+        self.last = message.sequence
         if self._keep_all and (self.full or not self.reader.has_room_itself()):
-            self.full.append((msg, sample_info))
+            self.full.append(message)
             self._wait_for_room()
         else:
-            self._deliver(msg, sample_info, inline_deadline_ns)
+            self._hand_over(message, inline_deadline_ns)
 
-    def _hold(self, msg: Any, sample_info: SampleInfo) -> None:
-        self._held[sample_info.sequence] = (msg, sample_info)
+    def _hand_over(self, message: Message, inline_deadline_ns: int = 0) -> None:
+        msg, sequence, source_ns, arrived_ns = message
+        self._deliver(msg, self.publisher, sequence, source_ns, inline_deadline_ns, arrived_ns)
+
+    def _hold(self, message: Message) -> None:
+        self._held[message.sequence] = message
         if self.route is IPC and len(self._held) > MAX_HELD:
             # A copy: it comes over the link as well, or is retransmitted if that ends.
             del self._held[next(iter(self._held))]
@@ -363,7 +375,7 @@ class RemotePublisher:
         if self.route is not Route.RECOVERING:
             return
         while self.last + 1 in self._held:
-            self._next(*self._held.pop(self.last + 1))
+            self._next(self._held.pop(self.last + 1))
         if not self._owed and self.last >= self._base:
             if self._linked:  # what is held came over Zenoh, ahead of the link
                 self.route = IPC
@@ -375,7 +387,7 @@ class RemotePublisher:
         held, self._held = self._held, {}
         for number in sorted(held):
             if number > self.last:
-                self._next(*held[number])
+                self._next(held[number])
 
     # What follows from it
 
@@ -418,7 +430,7 @@ class RemotePublisher:
         self._waiting_for_room = False
         full = self.full
         while full and self.reader.has_room_itself():
-            self._deliver(*full.popleft(), 0)
+            self._hand_over(full.popleft())
         if full:
             self._wait_for_room()
         else:
@@ -479,13 +491,22 @@ class IpcReader(ReaderRegistration):
         """Return the function that decodes its messages."""
         return bytes if self.raw else cdr.decoder(self._msg_type)
 
-    def deliver(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int = 0) -> None:
+    def deliver(
+        self,
+        msg: Any,
+        gid: bytes,
+        sequence: int,
+        source_ns: int,
+        inline_deadline_ns: int = 0,
+        arrived_ns: int = 0,
+    ) -> None:
         """Take a message that came over Zenoh."""
-        remote_publisher = self.remote_publishers.get(sample_info.gid)
+        remote_publisher = self.remote_publishers.get(gid)
         if remote_publisher is None:
-            self.deliver_local(msg, sample_info, inline_deadline_ns)
+            self.deliver_local(msg, gid, sequence, source_ns, inline_deadline_ns)
         else:
-            remote_publisher.from_zenoh(msg, sample_info, inline_deadline_ns)
+            message = Message(msg, sequence, source_ns, arrived_ns)
+            remote_publisher.from_zenoh(message, inline_deadline_ns)
 
     def has_room(self) -> bool:
         """Whether a message can be taken without losing one that should be kept."""

@@ -167,7 +167,7 @@ class RclServer(RclDeclaration):
         except (DecodeError, TransportError) as error:
             self.state.note_malformed(self.endpoint.name, str(error))
             return True
-        sample_info = SampleInfo(gid, info.request_id.sequence, info.source_ns, True)
+        sample_info = SampleInfo(gid, info.request_id.sequence, info.source_ns)
         self._serve(RclRequest(message, sample_info, self), inline_deadline_ns)
         return True
 
@@ -402,7 +402,7 @@ class RclCall:
             reply_to.fail(ServiceError(name, f"the response is unreadable: {error}"))
         else:
             gid, number = bytes(info.request_id.gid), info.request_id.sequence
-            reply_to.reply(response, SampleInfo(gid, number, info.source_ns, True))
+            reply_to.reply(response, SampleInfo(gid, number, info.source_ns))
 
     def end(self) -> None:
         """Handle that no answer can come."""

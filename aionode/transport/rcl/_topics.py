@@ -12,7 +12,7 @@ from aionode.errors import DecodeError
 from aionode.graph import EndpointKind
 from aionode.qos import DurabilityPolicy, depth_of, keeps_all
 from aionode.transport._send_thread import SendQueue, SendThread
-from aionode.transport.base import SampleInfo, Writer
+from aionode.transport.base import Writer
 from aionode.transport.rcl._bindings import UNNUMBERED, MessageInfo, load, view
 from aionode.transport.rcl._state import RclDeclaration
 from aionode.transport.rcl._types import rosidl_class
@@ -110,7 +110,7 @@ class RclWriter(RclDeclaration, Writer):
 
     # Messages
 
-    def write(self, msg: Any, sample_info: SampleInfo) -> None:  # noqa: ARG002  # DDS numbers them
+    def write(self, msg: Any, sequence: int, source_ns: int) -> None:  # noqa: ARG002  # DDS numbers them
         """Send `msg`."""
         payload = self._encode(msg)
         if self._publish is None:
@@ -268,9 +268,8 @@ class RclReader(RclDeclaration):
         sequence = info.sequence
         if sequence == UNNUMBERED:
             sequence = self._counts[gid] = self._counts.get(gid, 0) + 1
-        sample_info = SampleInfo(gid, sequence, info.source_ns, True)
         if self._raw:
-            reader.deliver(payload, sample_info, inline_deadline_ns)
+            reader.deliver(payload, gid, sequence, info.source_ns, inline_deadline_ns)
             return
         try:
             msg = self._decode(payload)
@@ -278,7 +277,7 @@ class RclReader(RclDeclaration):
             self.state.note_malformed(self.endpoint.name, str(error))
             reader.reject(error)
         else:
-            reader.deliver(msg, sample_info, inline_deadline_ns)
+            reader.deliver(msg, gid, sequence, info.source_ns, inline_deadline_ns)
 
     def _wait_for_room(self) -> None:
         """Leave messages in the middleware, which holds their publishers back."""

@@ -30,7 +30,7 @@ class BridgeServer(BridgeDeclaration, ZenohServer):
             return
         found = None if extra is None else parse_request_id(extra.to_bytes())
         client, sequence = found or (UNKNOWN_GID, 0)
-        self._take_from(query, SampleInfo(client, sequence, 0, True))
+        self._take_from(query, SampleInfo(client, sequence, 0))
 
     def attachment_of(self, sample_info: SampleInfo) -> None:
         """Return None: responses through a bridge have no attachment."""

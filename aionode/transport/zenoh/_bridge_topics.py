@@ -61,7 +61,7 @@ class BridgeReader(BridgeDeclaration, ZenohReader):
         if sample.kind != zenoh.SampleKind.PUT or sample_info_of(sample.attachment) is not None:
             return  # of a context of aionode, whose message comes on rmw_zenoh's key too
         payload = sample.payload.to_bytes()
-        sample_info = SampleInfo(UNKNOWN_GID, 0, 0, True)
+        sample_info = SampleInfo(UNKNOWN_GID, 0, 0)
         if self._keep_all:
             self._accept_or_wait(payload, sample_info, None)
         else:

@@ -85,7 +85,7 @@ def sample_info_of(extra: zenoh.ZBytes | None) -> SampleInfo | None:
     if extra is None:
         return None
     fields = unpack_fields(extra.to_bytes())
-    return None if fields is None else SampleInfo(fields[2], fields[0], fields[1], True)
+    return None if fields is None else SampleInfo(fields[2], fields[0], fields[1])
 
 
 def withdraw(publisher: zenoh.Publisher | ext.AdvancedPublisher) -> None:

@@ -53,7 +53,6 @@ if TYPE_CHECKING:
 
     from aionode.graph import EndpointInfo
     from aionode.transport._reliability import Entry, ReaderProxy
-    from aionode.transport.base import SampleInfo
     from aionode.transport.zenoh._session_state import SessionState
     from aionode.wire._acknack import Submessage
 
@@ -318,7 +317,7 @@ class ZenohWriter(Declaration, Writer):
 
     # Messages
 
-    def write(self, msg: Any, sample_info: SampleInfo) -> None:
+    def write(self, msg: Any, sequence: int, source_ns: int) -> None:
         """Send `msg`, unless no reader wants it: the history takes a jump of its numbers."""
         if self._wants is not None and not self._wants(msg):
             self._filtered += 1
@@ -327,7 +326,7 @@ class ZenohWriter(Declaration, Writer):
         if encode is None:
             encode = self._encode = cdr.encoder(self._msg_type)
         payload = encode(msg)
-        extra = attachment.pack(sample_info.sequence, sample_info.source_ns, self.gid)
+        extra = attachment.pack(sequence, source_ns, self.gid)
         history = self._history
         if self._publisher is None:
             if self._transient:
@@ -337,7 +336,7 @@ class ZenohWriter(Declaration, Writer):
             if self._expiry is not None:
                 self._expiry.note()
         else:
-            history.write(sample_info.sequence, payload, extra)
+            history.write(sequence, payload, extra)
             if not self._is_watched and history.entries:
                 self._watch()
 

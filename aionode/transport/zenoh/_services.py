@@ -141,7 +141,7 @@ class ZenohServer(Declaration):
         if sample_info is None:
             if query.attachment is not None:
                 self.state.note_malformed(self.key, "an attachment")
-            sample_info = SampleInfo(UNKNOWN_GID, 0, 0, True)
+            sample_info = SampleInfo(UNKNOWN_GID, 0, 0)
         self._take_from(query, sample_info)
 
     def _take_from(self, query: zenoh.Query, sample_info: SampleInfo) -> None:
@@ -418,9 +418,7 @@ class ZenohCall:
             )
             return
         self._finish()
-        reply_to.reply(
-            response, sample_info_of(sample.attachment) or SampleInfo(UNKNOWN_GID, 0, 0, True)
-        )
+        reply_to.reply(response, sample_info_of(sample.attachment) or SampleInfo(UNKNOWN_GID, 0, 0))
 
     def _try_again(self) -> bool:
         """Send the request again if no server had it though there is one; return whether."""

@@ -189,29 +189,28 @@ class ZenohReader(Declaration, ReaderRegistration):
         if self._transient and gid in self.state.own_gids:
             return  # a late subscription asks the publishers of its own context for history too
         payload = sample.payload.to_bytes()
-        sample_info = SampleInfo(gid, sequence, source_ns, True)
         proxy = self._proxies.get(gid)
         if proxy is None:
             if self._acknowledges:
                 self._note_last(gid, sequence)
             if self._keep_all:
-                self._accept_or_wait(payload, sample_info, None)
+                self._accept_or_wait(payload, SampleInfo(gid, sequence, source_ns), None)
                 return
         elif sequence == proxy.expected and (not self._keep_all or self._has_room()):
             proxy.note_in_order(len(payload))
         else:
-            self._take_in_order(proxy, payload, sample_info)
+            self._take_in_order(proxy, payload, SampleInfo(gid, sequence, source_ns))
             return
         # As `_hand_over`, which would be one more call for each message.
-        if self._decode is None or self._raw:
-            self._hand_over(payload, sample_info)
-            return
+        decode = self._decode
+        if decode is None:
+            decode = self._make_decode()
         try:
-            msg = self._decode(payload)
+            msg = decode(payload)
         except DecodeError as error:
             self._reject(error)
         else:
-            self._deliver(msg, sample_info, self._waker.inline_deadline_ns)
+            self._deliver(msg, gid, sequence, source_ns, self._waker.inline_deadline_ns)
 
     def _without_attachment(self, extra: zenoh.ZBytes | None) -> tuple[int, int, bytes]:
         """Return the fields of a message that ROS drops; here it counts, from an unknown sender."""
@@ -283,19 +282,25 @@ class ZenohReader(Declaration, ReaderRegistration):
         if full:
             self._wait_for_room()
 
+    def _make_decode(self) -> Callable[[bytes], Any]:
+        """Make the decoder with the first message: most subscriptions never need it."""
+        decode = self._decode = bytes if self._raw else cdr.decoder(self._msg_type)
+        return decode
+
     def _hand_over(self, payload: bytes, sample_info: SampleInfo) -> None:
-        if self._raw:
-            self._deliver(payload, sample_info, self._waker.inline_deadline_ns)
-            return
-        decode = self._decode
-        if decode is None:
-            decode = self._decode = cdr.decoder(self._msg_type)
+        """Deliver a message that may have waited."""
         try:
-            msg = decode(payload)
+            msg = (self._decode or self._make_decode())(payload)
         except DecodeError as error:
             self._reject(error)
         else:
-            self._deliver(msg, sample_info, self._waker.inline_deadline_ns)
+            self._deliver(
+                msg,
+                sample_info.gid,
+                sample_info.sequence,
+                sample_info.source_ns,
+                self._waker.inline_deadline_ns,
+            )
 
     def _reject(self, error: DecodeError) -> None:
         self.state.note_malformed(self._key, str(error))
@@ -318,7 +323,7 @@ class ZenohReader(Declaration, ReaderRegistration):
         elif submessage.kind is SubmessageKind.GAP:
             proxy.gap(submessage.first, submessage.last)
         else:
-            sample_info = SampleInfo(submessage.writer, submessage.first, submessage.last, True)
+            sample_info = SampleInfo(submessage.writer, submessage.first, submessage.last)
             self._take_in_order(proxy, submessage.rest, sample_info)
             return
         if proxy.next <= proxy.last:

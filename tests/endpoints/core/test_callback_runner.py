@@ -11,7 +11,7 @@ import pytest
 
 from aionode._concurrency import checkpoint
 from aionode.clock import perf_ns
-from aionode.endpoints._core import callback_runner
+from aionode.endpoints._core import callback_runner, message_queue
 from aionode.endpoints._core.callback_runner import CallbackContext
 from aionode.endpoints.stats import Distribution
 from aionode.errors import CallbackCancelledError
@@ -316,7 +316,7 @@ async def test_a_full_queue_lets_others_run_in_between(
     node: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A callback that is always ready does not occupy the loop."""
-    monkeypatch.setattr(callback_runner, "SLICE_NS", 0)
+    monkeypatch.setattr(message_queue, "SLICE_NS", 0)
     order: list[str] = []
     listen(node, lambda msg: order.append("topic"))
     send(node, 10)

@@ -42,8 +42,7 @@ def bring(
     if inline_deadline_ns is None:
         inline_deadline_ns = perf_ns() + MINUTE_NS
     for number in numbers:
-        sample_info = SampleInfo(bytes(16), number, 0, remote=True)
-        subscription._reader.deliver(Int32(data=number), sample_info, inline_deadline_ns)
+        subscription._reader.deliver(Int32(data=number), bytes(16), number, 0, inline_deadline_ns)
 
 
 class Asked(Request):
@@ -51,7 +50,7 @@ class Asked(Request):
 
     def __init__(self) -> None:
         self.message = AddTwoInts.Request(a=2, b=3)
-        self.sample_info = SampleInfo(bytes(16), 1, 0, remote=True)
+        self.sample_info = SampleInfo(bytes(16), 1, 0)
         self.outcome: list[object] = []
 
     def reply(self, response: Any) -> None:

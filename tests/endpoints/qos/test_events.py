@@ -23,7 +23,6 @@ from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.node import Node
 from aionode.qos import QoSPolicyKind, QoSProfile, ReliabilityPolicy
 from aionode.testing import local_context, settle
-from aionode.transport.base import SampleInfo
 from tests.endpoints.qos.conftest import Pair, next_of, waiting
 
 BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -68,7 +67,7 @@ async def test_messages_that_are_missing_are_an_event(node: Node) -> None:
         Int32, "n", event_callbacks=SubscriptionEventCallbacks(message_lost=got.append)
     )
     for number in (1, 2, 5, 6, 8):
-        subscription._reader.deliver(Int32(), SampleInfo(b"x" * 16, number, 0, True))
+        subscription._reader.deliver(Int32(), b"x" * 16, number, 0)
     await settle()
     assert got == [QoSMessageLostInfo(2, 2), QoSMessageLostInfo(3, 1)]
 
@@ -79,7 +78,7 @@ async def test_a_late_stream_begins_with_what_has_happened(node: Node) -> None:
     subscription = node.create_subscription(Int32, "n")
     node.create_subscription(Int32, "n").destroy()
     for number in (1, 5):
-        subscription._reader.deliver(Int32(), SampleInfo(b"x" * 16, number, 0, True))
+        subscription._reader.deliver(Int32(), b"x" * 16, number, 0)
     assert waiting(subscription.events, QoSMessageLostInfo) == [QoSMessageLostInfo(3, 3)]
     assert waiting(publisher.events, MatchedInfo) == [MatchedInfo(1, 1, 1, 1)]
 

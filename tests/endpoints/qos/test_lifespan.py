@@ -14,7 +14,6 @@ from aionode.graph import EndpointKind
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from aionode.testing import settle
-from aionode.transport.base import SampleInfo
 from aionode.transport.zenoh._subscription import ZenohReader
 from tests.endpoints.qos.conftest import Pair
 from tests.support.peers import quiet_node
@@ -132,9 +131,9 @@ async def test_a_stamp_from_the_future_counts_as_now(pair: Pair) -> None:
     """Clocks of two machines may differ; DDS then counts from the arrival."""
     _, subscription = await pair.joined(10, LIMITED)
     future_ns = pair.clock.system_ns() + 3600 * 10**9
-    subscription._reader.deliver(Int32(data=1), SampleInfo(b"x" * 16, 1, future_ns, True))
+    subscription._reader.deliver(Int32(data=1), b"x" * 16, 1, future_ns)
     assert (await subscription.receive()).data == 1
-    subscription._reader.deliver(Int32(data=2), SampleInfo(b"x" * 16, 2, future_ns, True))
+    subscription._reader.deliver(Int32(data=2), b"x" * 16, 2, future_ns)
     await pair.clock.advance(1)
     assert not subscription._reader
 

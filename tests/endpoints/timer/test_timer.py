@@ -13,7 +13,7 @@ import pytest
 
 from aionode._concurrency import checkpoint
 from aionode.clock import Clock, ClockType, ROSClock, Time
-from aionode.endpoints._core.callback_runner import CallbackContext, CallbackRunner
+from aionode.endpoints._core.callback_runner import CallbackRunner, Callbacks
 from aionode.endpoints.stats import CallbackStats
 from aionode.endpoints.timer import Timer, TimerInfo
 from aionode.endpoints.timer._timer import to_period_ns
@@ -36,16 +36,8 @@ def make_runner(
     callback: Callable[..., Any], timer: Timer, stats: CallbackStats, *, offload: bool = False
 ) -> CallbackRunner:
     """Run callbacks as a node does, without a node."""
-    context = CallbackContext("/node", timer._subject, timer)
-    return CallbackRunner(
-        callback,
-        context,
-        stats,
-        on_error="raise",
-        offload=offload,
-        budget_ns=60 * S,
-        logger=Silent(),  # type: ignore[arg-type]
-    )
+    callbacks = Callbacks("/node", Silent(), budget_ns=60 * S)  # type: ignore[arg-type]
+    return CallbackRunner(callback, timer, callbacks, stats, on_error="raise", offload=offload)
 
 
 class Bench:

@@ -8,7 +8,6 @@ from typing import Any
 import pytest
 
 from aionode.interfaces.std_msgs.msg import Int32
-from aionode.transport.base import SampleInfo
 from aionode.transport.ipc import _subscription as subscriptions
 from tests.support.links import folder, manager_of, two_nodes, writer_of
 from tests.support.peers import KEEP_ALL
@@ -35,7 +34,7 @@ async def test_copies_that_zenoh_brings_after_the_end_of_a_publisher_are_left_ou
         await nodes.b.get_clock().sleep(0.05)  # its last word over the link
 
         for number in range(1, sent + 2):
-            reader.deliver(Int32(data=number), SampleInfo(gid, number, 0, True))
+            reader.deliver(Int32(data=number), gid, number, 0)
 
         assert subscription.stats.received == sent + 1
         assert not subscription._reader

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.qos import QoSProfile
-from aionode.transport.base import SampleInfo
 from aionode.transport.ipc._protocol import Frame, Kind
 from aionode.transport.ipc._subscription import MAX_HELD, IpcReader, RemotePublisher, Route
 from tests.support.peers import KEEP_ALL
@@ -52,7 +51,7 @@ class Local:
         self.raw = True
         self._got = got
 
-    def deliver(self, msg: bytes, _: SampleInfo, __: int = 0) -> None:
+    def deliver(self, msg: bytes, *_: object) -> None:
         """Take a message, whose bytes are its number."""
         self._got.append(int.from_bytes(msg))
 
@@ -108,11 +107,11 @@ class HandedOver:
 
     def from_zenoh(self, number: int) -> None:
         """Let Zenoh bring a message."""
-        self.reader.deliver(number.to_bytes(8), SampleInfo(GID, number, 0, True))
+        self.reader.deliver(number.to_bytes(8), GID, number, 0)
 
     def from_link(self, number: int) -> None:
         """Let the link bring a message."""
-        self.remote.from_link(number.to_bytes(8), Frame(Kind.DATA, number, 0, GID), 0)
+        self.remote.from_link(number.to_bytes(8), number, 0, 0)
 
     def from_retransmit(self, number: int) -> None:
         """Let a retransmitted message come."""

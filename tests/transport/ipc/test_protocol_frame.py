@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import itertools
+from typing import Any
 
+import msgspec
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -50,6 +52,37 @@ def test_frames_come_out_as_they_went_in_however_the_stream_is_cut(
     found = [one for piece in pieces_of(stream, cuts) for one in parser.feed(piece)]
     assert found == frames
     assert parser.missing == protocol.HEADER_SIZE
+
+
+@given(FRAMES, st.lists(st.integers(0, 10_000), max_size=12))
+@settings(max_examples=200)
+def test_messages_go_straight_to_their_handlers_in_the_order_of_all_frames(
+    frames: list[Frame], cuts: list[int]
+) -> None:
+    """The short way of messages and the long way of everything else share one stream."""
+    parser = FrameParser()
+    gid = bytes(16)
+    frames = [
+        msgspec.structs.replace(one, gid=gid) if one.kind == Kind.DATA else one for one in frames
+    ]
+    found: list[Frame] = []
+
+    def take(payload: Any, sequence: int, source_ns: int, deadline_ns: int) -> None:
+        found.append(Frame(Kind.DATA, sequence, source_ns, gid, payload))
+        assert deadline_ns == 7
+
+    for piece in pieces_of(b"".join(packed(one) for one in frames), cuts):
+        rest = parser.take_messages(piece, {gid: take}, 7)
+        found += parser.feed(rest)
+    assert found == frames
+    assert parser.missing == protocol.HEADER_SIZE
+
+
+def test_messages_that_nothing_hears_are_left_out() -> None:
+    """They were sent before the publisher's process knew that the subscription was destroyed."""
+    data = packed(Frame(Kind.DATA, 1, 2, bytes(16), b"one"))
+    parser = FrameParser()
+    assert parser.take_messages(data + data[:-1], {}, 0) == data[:-1]
 
 
 @given(ONE, st.data())
