@@ -4,8 +4,8 @@ It works beside Zenoh, which discovers the processes and carries messages to all
 in docs/design.md.
 """
 
+from aionode.transport.ipc._endpoint_table import can_link
 from aionode.transport.ipc._listener import Advertisement, available
-from aionode.transport.ipc._protocol import can_link
 from aionode.transport.ipc._transport import IpcTransport
 
 __all__ = ["Advertisement", "IpcTransport", "available", "can_link"]

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
+from aionode.qos import DurabilityPolicy
+
 if TYPE_CHECKING:
     from aionode.graph import EndpointInfo
 
-__all__ = ["EndpointTable"]
+__all__ = ["EndpointTable", "can_link"]
 
 
 class HasEndpoint(Protocol):
@@ -52,3 +54,12 @@ class EndpointTable(Generic[EndpointT]):
     def named(self, name: str) -> list[EndpointT]:
         """Return those of one topic or service."""
         return list(self._by_name.get(name, {}).values())
+
+
+def can_link(publisher: EndpointInfo) -> bool:
+    """Whether a publisher's messages may go over a link.
+
+    Not those of a transient-local publisher: Zenoh keeps them for late subscriptions, and therefore
+    has to carry them all.
+    """
+    return publisher.qos.resolved().durability is not DurabilityPolicy.TRANSIENT_LOCAL

@@ -11,7 +11,7 @@ from aionode.clock import MachineTime
 from aionode.errors import FrameError, TransportError
 from aionode.graph import EndpointKind
 from aionode.transport.ipc._connection import Connection
-from aionode.transport.ipc._endpoint_table import EndpointTable
+from aionode.transport.ipc._endpoint_table import EndpointTable, can_link
 from aionode.transport.ipc._protocol import (
     VERSION,
     Cancel,
@@ -26,7 +26,6 @@ from aionode.transport.ipc._protocol import (
     Opened,
     RetransmitDone,
     Switched,
-    can_link,
     unpack_batch,
 )
 from aionode.transport.ipc._publisher import IpcWriter

@@ -18,15 +18,11 @@ from __future__ import annotations
 import enum
 import struct
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, ClassVar, Final, NamedTuple, Self
+from typing import ClassVar, Final, NamedTuple, Self
 
 import msgspec
 
 from aionode.errors import FrameError
-from aionode.qos import DurabilityPolicy
-
-if TYPE_CHECKING:
-    from aionode.graph import EndpointInfo
 
 __all__ = [
     "GID_SIZE",
@@ -54,7 +50,6 @@ __all__ = [
     "Release",
     "RetransmitDone",
     "Switched",
-    "can_link",
     "decode_control",
     "has_fd",
     "pack",
@@ -601,12 +596,3 @@ def subscription_in(frame: Frame) -> bytes:
             f"in a frame of kind {frame.kind}"
         )
     return frame.payload
-
-
-def can_link(publisher: EndpointInfo) -> bool:
-    """Whether a publisher's messages may go over a link.
-
-    Not those of a transient-local publisher: Zenoh keeps them for late subscriptions, and therefore
-    has to carry them all.
-    """
-    return publisher.qos.resolved().durability is not DurabilityPolicy.TRANSIENT_LOCAL

@@ -29,7 +29,8 @@ from aionode.errors import DecodeError, FrameError
 from aionode.message import fields
 from aionode.qos import ReliabilityPolicy, depth_of, keeps_all
 from aionode.transport.base import ReaderRegistration, Registration
-from aionode.transport.ipc._protocol import Close, Credit, Open, Switched, can_link
+from aionode.transport.ipc._endpoint_table import can_link
+from aionode.transport.ipc._protocol import Close, Credit, Open, Switched
 from aionode.wire import cdr
 
 if TYPE_CHECKING:

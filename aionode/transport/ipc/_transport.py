@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.errors import TransportError
 from aionode.transport.base import Transport
+from aionode.transport.ipc._endpoint_table import can_link
 from aionode.transport.ipc._listener import Advertisement, Listener, socket_folder
 from aionode.transport.ipc._manager import LinkManager
-from aionode.transport.ipc._protocol import can_link
 from aionode.transport.ipc._publisher import IpcWriter
 from aionode.transport.ipc._service import IpcRequester, IpcServer
 from aionode.transport.ipc._subscription import IpcReader, may_be_large

@@ -76,10 +76,10 @@ class WriterStub(Stub[Writer], Writer):
         """Whether `has_room` may be false."""
         return self.made is not None and self.made.bounded
 
-    def write(self, msg: Any, sample_info: SampleInfo) -> None:
+    def write(self, msg: Any, sequence: int, source_ns: int) -> None:
         """Send `msg`."""
         if self.made is not None:
-            self.made.write(msg, sample_info)
+            self.made.write(msg, sequence, source_ns)
 
     def has_room(self) -> bool:
         """Whether one more message can wait to be sent."""
