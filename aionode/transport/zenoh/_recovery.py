@@ -118,6 +118,7 @@ class Recovery:
         self._timer: asyncio.TimerHandle | None = None
         self._looking = False
         self._until_s = 0.0
+        self._changed_s = 0.0  # when a connection was made or lost last
         self._changing_since_s = 0.0  # when the first change was seen after the last look
         # Participants whose connection was lost and not made anew. A router may forward what they
         # send meanwhile, but not always what this session sends.
@@ -159,7 +160,7 @@ class Recovery:
     def _take_change(self, event: zenoh.TransportEvent) -> None:
         if event.transport.whatami == zenoh.WhatAmI.CLIENT:
             return  # it dials by itself
-        now_s = asyncio.get_running_loop().time()
+        now_s = self._changed_s = asyncio.get_running_loop().time()
         zid = str(event.transport.zid)
         if event.kind == zenoh.SampleKind.DELETE:
             if now_s >= self._until_s:
@@ -181,6 +182,11 @@ class Recovery:
     def _check_returned(self, zid: str) -> None:
         """Cut the connection to a participant that has returned, but has not declared anything."""
         session, acknowledgements = self._session, self._state.acknowledgements
+        loop = asyncio.get_running_loop()
+        if session is not None and loop.time() - self._changed_s < DECLARED_S / 2:
+            # Where many connect at once, tokens take longer, and a cut makes all take longer still.
+            loop.call_later(DECLARED_S, self._check_returned, zid)
+            return
         if (
             session is not None
             and zid in acknowledgements.participants - acknowledgements.present - self._lost
