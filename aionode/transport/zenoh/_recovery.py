@@ -58,6 +58,9 @@ FIRST_S: Final = 0.5
 DECLARED_S: Final = 1.0
 """How long after a participant has returned its tokens may take; they take some milliseconds."""
 
+FEW: Final = 3
+"""If more participants than that have declared nothing, they are slow, and not silent for good."""
+
 POSTPONED_S: Final = 3.0
 """For so long a look waits for connections that go on being made or lost."""
 
@@ -183,15 +186,14 @@ class Recovery:
         """Cut the connection to a participant that has returned, but has not declared anything."""
         session, acknowledgements = self._session, self._state.acknowledgements
         loop = asyncio.get_running_loop()
-        if session is not None and loop.time() - self._changed_s < DECLARED_S / 2:
+        if session is None:
+            return
+        connected = {str(each.zid) for each in session.info.transports()} - self._lost
+        silent = connected & (acknowledgements.participants - acknowledgements.present)
+        if loop.time() - self._changed_s < DECLARED_S / 2 or len(silent) > FEW:
             # Where many connect at once, tokens take longer, and a cut makes all take longer still.
             loop.call_later(DECLARED_S, self._check_returned, zid)
-            return
-        if (
-            session is not None
-            and zid in acknowledgements.participants - acknowledgements.present - self._lost
-            and self._cuts[zid] < ATTEMPTS
-        ):
+        elif zid in silent and self._cuts[zid] < ATTEMPTS:
             self._cuts[zid] += 1
             logger.info("process %s is connected, but declares nothing: connected anew", zid)
             start_thread(
