@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from aionode.graph import EndpointKind
-from aionode.transport.zenoh._delivery import is_reliable, is_transient
+from aionode.qos import DurabilityPolicy, ReliabilityPolicy
 
 if TYPE_CHECKING:
     from aionode.graph import EndpointInfo, Graph
@@ -60,8 +60,8 @@ class MatchedReaders:
         participant = reader.node.participant
         if participant not in self._state.acknowledgements.participants:
             self.others.add(reader.gid)
-        elif is_reliable(reader.qos):
-            if is_transient(reader.qos):
+        elif reader.qos.resolved().reliability is ReliabilityPolicy.RELIABLE:
+            if reader.qos.durability is DurabilityPolicy.TRANSIENT_LOCAL:
                 self.others.add(reader.gid)
             else:
                 self.acknowledging[reader.gid] = participant

@@ -58,6 +58,9 @@ FIRST_S: Final = 0.5
 DECLARED_S: Final = 1.0
 """How long after a participant has returned its tokens may take; they take some milliseconds."""
 
+FEW: Final = 3
+"""If more participants than that have declared nothing, they are slow, and not silent for good."""
+
 POSTPONED_S: Final = 3.0
 """For so long a look waits for connections that go on being made or lost."""
 
@@ -121,6 +124,7 @@ class Recovery:
         self._timer: asyncio.TimerHandle | None = None
         self._looking = False
         self._until_s = 0.0
+        self._changed_s = 0.0  # when a connection was made or lost last
         self._changing_since_s = 0.0  # when the first change was seen after the last look
         # Participants whose connection was lost and not made anew. A router may forward what they
         # send meanwhile, but not always what this session sends.
@@ -162,7 +166,7 @@ class Recovery:
     def _take_change(self, event: zenoh.TransportEvent) -> None:
         if event.transport.whatami == zenoh.WhatAmI.CLIENT:
             return  # it dials by itself
-        now_s = asyncio.get_running_loop().time()
+        now_s = self._changed_s = asyncio.get_running_loop().time()
         zid = str(event.transport.zid)
         if event.kind == zenoh.SampleKind.DELETE:
             if now_s >= self._until_s:
@@ -184,11 +188,15 @@ class Recovery:
     def _check_returned(self, zid: str) -> None:
         """Cut the connection to a participant that has returned, but has not declared anything."""
         session, acknowledgements = self._session, self._state.acknowledgements
-        if (
-            session is not None
-            and zid in acknowledgements.participants - acknowledgements.present - self._lost
-            and self._cuts[zid] < ATTEMPTS
-        ):
+        loop = asyncio.get_running_loop()
+        if session is None:
+            return
+        connected = {str(each.zid) for each in session.info.transports()} - self._lost
+        silent = connected & (acknowledgements.participants - acknowledgements.present)
+        if loop.time() - self._changed_s < DECLARED_S / 2 or len(silent) > FEW:
+            # Where many connect at once, tokens take longer, and a cut makes all take longer still.
+            loop.call_later(DECLARED_S, self._check_returned, zid)
+        elif zid in silent and self._cuts[zid] < ATTEMPTS:
             self._cuts[zid] += 1
             logger.info("process %s is connected, but declares nothing: connected anew", zid)
             start_thread(

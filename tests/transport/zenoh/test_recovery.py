@@ -373,6 +373,19 @@ def test_a_look_is_known_by_its_id() -> None:
         assert not is_look(str(session.zid()))
 
 
+async def test_no_connection_is_cut_while_others_are_being_made() -> None:
+    """Of 100 contexts that started at once, each cut others that were merely slow."""
+    async with asyncio.timeout(4 * LIMIT_S), context("a1") as first, context("b2"):
+        acknowledgements = first._state.acknowledgements
+        while "b2" not in acknowledgements.present:
+            await checkpoint()
+        acknowledgements.present.clear()
+        first._recovery._changed_s = asyncio.get_running_loop().time()
+        first._recovery._check_returned("b2")
+
+        assert not first._recovery._cuts
+
+
 async def test_a_participant_that_is_connected_and_declares_nothing_is_connected_anew(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -382,6 +395,7 @@ async def test_a_participant_that_is_connected_and_declares_nothing_is_connected
         acknowledgements = first._state.acknowledgements
         while "b2" not in acknowledgements.present:
             await checkpoint()
+        first._recovery._changed_s = 0.0
         first._recovery._check_returned("b2")
         assert not first._recovery._cuts
 
