@@ -6,9 +6,10 @@ has. Four times a second a newcomer opens a plain Zenoh session with the router,
 tokens, and leaves; and one does the same with a second router, which is alone.
 
 On a busy machine most of that time is waiting for a processor. Linux counts it for each thread, and
-it is taken off: that of the router's threads and of the newcomer's. What is left is what the router
-needs to compute, and what it waits for by itself, such as a lock. The program fails if a newcomer
-gets no answer, or if one of them takes `LIMIT_S` longer than the longest with the idle router.
+that of the router's thread and the newcomer's thread that waited for longest is taken off. What is
+left is what the router needs to compute, and what it waits for by itself, such as a lock. The
+program fails if a newcomer gets no answer, or if one of them takes `LIMIT_S` longer than the
+longest with the idle router.
 """
 
 from __future__ import annotations
@@ -81,19 +82,37 @@ def newcomer(port: int) -> None:
                 raise TimeoutError(f"no answer in {ANSWER_S} s")
 
 
-def scheduled_ns(*processes: int) -> tuple[int, int]:
-    """Return how long the threads of some processes have run, and waited for a processor.
+def scheduled_ns(process: int) -> dict[str, tuple[int, int]]:
+    """Return how long each thread of a process has run, and waited for a processor, by its id.
 
-    Zeros where the system does not tell.
+    Empty where the system does not tell.
     """
-    ran_ns = waited_ns = 0
-    for process in processes:
-        for path in Path(f"/proc/{process}/task").glob("*/schedstat"):
-            with suppress(OSError):  # a thread that has ended
-                ran, waited, _ = map(int, path.read_text().split())
-                ran_ns += ran
-                waited_ns += waited
-    return ran_ns, waited_ns
+    found = {}
+    for path in Path(f"/proc/{process}/task").glob("*/schedstat"):
+        with suppress(OSError):  # a thread that has ended
+            ran, waited, _ = map(int, path.read_text().split())
+            found[path.parent.name] = ran, waited
+    return found
+
+
+class Scheduled:
+    """What the threads of a process do from now on."""
+
+    def __init__(self, process: int) -> None:
+        self._process = process
+        self._before = scheduled_ns(process)
+
+    def since_ns(self) -> tuple[int, int]:
+        """Return how long all threads have run, and how long one has waited at most.
+
+        Threads wait at the same time, so the sum of that would be too much.
+        """
+        ran_ns, waits_ns = 0, [0]
+        for thread, (ran, waited) in scheduled_ns(self._process).items():
+            ran_before, waited_before = self._before.get(thread, (0, 0))
+            ran_ns += ran - ran_before
+            waits_ns.append(waited - waited_before)
+        return ran_ns, max(waits_ns)
 
 
 class Answers:
@@ -114,15 +133,15 @@ class Answers:
 
     def ask(self) -> None:
         """Let one newcomer ask."""
-        ran_ns, _ = scheduled_ns(self.router)
-        _, waited_ns = scheduled_ns(self.router, os.getpid())
+        router, own = Scheduled(self.router), Scheduled(os.getpid())
         began_ns = time.perf_counter_ns()
         newcomer(self.port)
         took_ns = time.perf_counter_ns() - began_ns
-        waited_ns = scheduled_ns(self.router, os.getpid())[1] - waited_ns
+        ran_ns, waited_ns = router.since_ns()
+        waited_ns += own.since_ns()[1]
         self.whole_s.append(took_ns / 1e9)
-        self.own_s.append(max(took_ns - max(waited_ns, 0), 0) / 1e9)
-        self.ran_s.append((scheduled_ns(self.router)[0] - ran_ns) / 1e9)
+        self.own_s.append(max(took_ns - waited_ns, 0) / 1e9)
+        self.ran_s.append(ran_ns / 1e9)
 
     def text(self) -> str:
         """Return the figures, in milliseconds."""
