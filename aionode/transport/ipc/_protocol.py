@@ -17,7 +17,6 @@ from __future__ import annotations
 
 import enum
 import struct
-from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, ClassVar, Final, NamedTuple, Self
 
 import msgspec
@@ -26,7 +25,10 @@ from aionode.errors import FrameError
 from aionode.qos import DurabilityPolicy
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from aionode.graph import EndpointInfo
+    from aionode.transport.ipc._receivers import Handler
 
 __all__ = [
     "GID_SIZE",
@@ -46,7 +48,6 @@ __all__ = [
     "Frame",
     "FrameParser",
     "Gone",
-    "Handler",
     "Hello",
     "Kind",
     "Open",
@@ -156,12 +157,6 @@ class Frame(msgspec.Struct, frozen=True, gc=False):
     has_fd: bool = False
 
 
-Handler = Callable[[bytes | bytearray | memoryview, int, int, int], None]
-"""Takes a message of one publisher: its payload, number and time, and until which `perf_ns` its
-callback may run within the call.
-"""
-
-
 class BufferRef(NamedTuple):
     """Where a large payload is."""
 
@@ -235,12 +230,8 @@ class FrameParser:
         """Hand the messages that the stream goes on with to their handlers, and return the rest.
 
         The rest begins with a frame of another kind, or with a part of a frame; it is for `feed`.
-        Nothing is made for a message but its payload, unlike there.
-
-        Args:
-            data: What was read.
-            handlers: What takes the messages of a publisher, by its gid; others are left out.
-            inline_deadline_ns: Until which `perf_ns` callbacks may run within this call.
+        Nothing is made for a message but its payload, unlike there. Messages of publishers that
+        have no handler, by their gid, are left out.
         """
         if self._pieces:
             if len(data) < self.missing:
