@@ -78,8 +78,7 @@ HEADER_SIZE: Final = HEADER.size
 
 MARK: Final = 0xA10E
 
-MESSAGE_HEADER: Final = struct.Struct("<IIqq16s")
-"""The same header with kind, flags and mark as one number, for messages."""
+MESSAGE_HEADER: Final = struct.Struct("<IIqq16s")  # with kind, flags and mark as one number
 
 IN_SHM: Final = 1
 
@@ -131,8 +130,7 @@ class Kind(enum.IntEnum):
 
 LAST_KIND: Final = max(Kind).value
 
-MESSAGE_MARK: Final = int(Kind.DATA) | MARK << 16
-"""Kind, flags and mark of a message whose payload is in the stream."""
+MESSAGE_MARK: Final = int(Kind.DATA) | MARK << 16  # of a message in the stream
 
 
 class Frame(msgspec.Struct, frozen=True, gc=False):
@@ -230,8 +228,7 @@ class FrameParser:
         """Hand the messages that the stream goes on with to their handlers, and return the rest.
 
         The rest begins with a frame of another kind, or with a part of a frame; it is for `feed`.
-        Nothing is made for a message but its payload, unlike there. Messages of publishers that
-        have no handler, by their gid, are left out.
+        Messages of publishers without a handler are left out. Nothing is made but payloads.
         """
         if self._pieces:
             if len(data) < self.missing:
@@ -240,8 +237,7 @@ class FrameParser:
             self._pieces.clear()
             self.held = 0
             self.missing = HEADER_SIZE
-        offset = 0
-        end = len(data)
+        offset, end = 0, len(data)
         while end - offset >= HEADER_SIZE:
             size, mark, sequence, source_ns, gid = MESSAGE_HEADER.unpack_from(data, offset)
             begin = offset + HEADER_SIZE
