@@ -17,12 +17,16 @@ from __future__ import annotations
 
 import enum
 import struct
-from collections.abc import Callable, Mapping
-from typing import ClassVar, Final, NamedTuple, Self
+from typing import TYPE_CHECKING, ClassVar, Final, NamedTuple, Self
 
 import msgspec
 
 from aionode.errors import FrameError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from aionode.transport.ipc._receivers import Handler
 
 __all__ = [
     "GID_SIZE",
@@ -42,7 +46,6 @@ __all__ = [
     "Frame",
     "FrameParser",
     "Gone",
-    "Handler",
     "Hello",
     "Kind",
     "Open",
@@ -72,8 +75,7 @@ HEADER_SIZE: Final = HEADER.size
 
 MARK: Final = 0xA10E
 
-MESSAGE_HEADER: Final = struct.Struct("<IIqq16s")
-"""The same header with kind, flags and mark as one number, for messages."""
+MESSAGE_HEADER: Final = struct.Struct("<IIqq16s")  # with kind, flags and mark as one number
 
 IN_SHM: Final = 1
 
@@ -125,8 +127,7 @@ class Kind(enum.IntEnum):
 
 LAST_KIND: Final = max(Kind).value
 
-MESSAGE_MARK: Final = int(Kind.DATA) | MARK << 16
-"""Kind, flags and mark of a message whose payload is in the stream."""
+MESSAGE_MARK: Final = int(Kind.DATA) | MARK << 16  # of a message in the stream
 
 
 class Frame(msgspec.Struct, frozen=True, gc=False):
@@ -149,12 +150,6 @@ class Frame(msgspec.Struct, frozen=True, gc=False):
     payload: bytes = b""
     in_shm: bool = False
     has_fd: bool = False
-
-
-Handler = Callable[[bytes | bytearray | memoryview, int, int, int], None]
-"""Takes a message of one publisher: its payload, number and time, and until which `perf_ns` its
-callback may run within the call.
-"""
 
 
 class BufferRef(NamedTuple):
@@ -230,12 +225,7 @@ class FrameParser:
         """Hand the messages that the stream goes on with to their handlers, and return the rest.
 
         The rest begins with a frame of another kind, or with a part of a frame; it is for `feed`.
-        Nothing is made for a message but its payload, unlike there.
-
-        Args:
-            data: What was read.
-            handlers: What takes the messages of a publisher, by its gid; others are left out.
-            inline_deadline_ns: Until which `perf_ns` callbacks may run within this call.
+        Messages of publishers without a handler are left out. Nothing is made but payloads.
         """
         if self._pieces:
             if len(data) < self.missing:
@@ -244,8 +234,7 @@ class FrameParser:
             self._pieces.clear()
             self.held = 0
             self.missing = HEADER_SIZE
-        offset = 0
-        end = len(data)
+        offset, end = 0, len(data)
         while end - offset >= HEADER_SIZE:
             size, mark, sequence, source_ns, gid = MESSAGE_HEADER.unpack_from(data, offset)
             begin = offset + HEADER_SIZE
