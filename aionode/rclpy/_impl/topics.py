@@ -14,6 +14,7 @@ from aionode.rclpy._impl.destroyable import Destroyable
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._impl.qos import profile_of
 from aionode.rclpy._impl.typesupport import aionode_class, message_support
+from aionode.transport.base import SampleInfo
 from aionode.wire import cdr
 
 if TYPE_CHECKING:
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from aionode.qos import QoSProfile
     from aionode.rclpy._impl.destroyable import Signal
     from aionode.rclpy._impl.node import NodeHandle
-    from aionode.transport.base import SampleInfo
 
 __all__ = ["PublisherHandle", "SubscriptionHandle"]
 

@@ -17,16 +17,12 @@ from __future__ import annotations
 
 import enum
 import struct
-from typing import TYPE_CHECKING, ClassVar, Final, NamedTuple, Self
+from collections.abc import Callable, Mapping
+from typing import ClassVar, Final, NamedTuple, Self
 
 import msgspec
 
 from aionode.errors import FrameError
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from aionode.transport.ipc._receivers import Handler
 
 __all__ = [
     "GID_SIZE",
@@ -46,6 +42,7 @@ __all__ = [
     "Frame",
     "FrameParser",
     "Gone",
+    "Handler",
     "Hello",
     "Kind",
     "Open",
@@ -58,6 +55,11 @@ __all__ = [
     "pack",
     "unpack_batch",
 ]
+
+Handler = Callable[[bytes | bytearray | memoryview, int, int, int], None]
+"""Takes a message of one publisher: its payload, number and time, and until which `perf_ns` its
+callback may run within the call.
+"""
 
 VERSION: Final = 1
 """Version of this format; only equal versions can be linked."""

@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
+    from aionode.transport.ipc._protocol import Handler
     from aionode.wire.cdr import Data
 
-__all__ = ["Handler", "Receiver", "ReceiverTable"]
-
-Handler = Callable[[bytes | bytearray | memoryview, int, int, int], None]
-"""Takes a message of one publisher: its payload, number and time, and until which `perf_ns` its
-callback may run within the call.
-"""
+__all__ = ["Receiver", "ReceiverTable"]
 
 
 class Receiver(Protocol):
