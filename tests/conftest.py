@@ -97,8 +97,8 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
 
 @pytest.hookimpl(optionalhook=True)  # of pytest-xdist
 def pytest_xdist_auto_num_workers() -> int:
-    """Use one worker more than there are processors: tests of processes mostly wait."""
-    return (os.cpu_count() or 1) + 1
+    """Use two workers more than there are processors: tests of processes mostly wait."""
+    return (os.cpu_count() or 1) + 2
 
 
 @pytest.hookimpl(tryfirst=True)  # before tests are deselected by their marks
