@@ -29,7 +29,7 @@ from aionode.transport._zenoh_config import (
     session_settings,
 )
 from aionode.transport.zenoh._handlers import direct, reason
-from aionode.transport.zenoh._sockets import SocketOptions
+from aionode.transport.zenoh._sockets import SocketOptions, cut_unanswered
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -356,9 +356,14 @@ async def close_session(session: zenoh.Session) -> None:
         except zenoh.ZError as error:
             logger.debug("session: not closed properly: %s", error)
 
-    with suppress(TimeoutError):
+    cutting = asyncio.create_task(cut_unanswered())  # one may have begun after `cut_stuck`
+    try:
         async with asyncio.timeout(CLOSE_S):
             await run_in_own_thread(work)
+    except TimeoutError:
+        return
+    finally:
+        cutting.cancel()
 
 
 class ConnectionWatcher:

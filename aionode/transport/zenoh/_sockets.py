@@ -257,6 +257,20 @@ def cut(peers: set[str]) -> None:
                 one.shutdown(socket.SHUT_RDWR)
 
 
+async def cut_unanswered() -> None:
+    """Cut connections that are being made with peers that do not answer, until cancelled.
+
+    A session that is being closed waits for each of them, for ten seconds.
+    """
+    silent: set[str] = set()
+    while sys.platform.startswith("linux"):
+        with suppress(TimeoutError):
+            async with asyncio.timeout(STUCK_S):
+                await asyncio.get_running_loop().create_future()
+        before, silent = silent, unanswered()
+        cut(before & silent)
+
+
 async def cut_stuck(session: zenoh.Session) -> None:
     """Cut connections that a session about to be closed would wait for.
 

@@ -16,7 +16,7 @@ import zenoh  # noqa: TID251  # type of sessions
 
 from aionode._concurrency import checkpoint
 from aionode.context import Context
-from aionode.transport.zenoh import _sockets
+from aionode.transport.zenoh import _sockets, _transport
 from aionode.transport.zenoh._session import close_session, open_router
 from tests.support.peers import two_contexts
 
@@ -143,9 +143,18 @@ def test_a_descriptor_whose_number_is_used_again_is_new() -> None:
         assert number in {each for each, _ in _sockets.sockets(known)}
 
 
+async def not_seen(_: zenoh.Session) -> None:
+    """Find no connection to cut, as if it began only while the session is being closed."""
+
+
+@pytest.mark.parametrize("begins", ["before", "meanwhile"])
 @pytest.mark.parametrize("who", ["we dial", "it dials"])
-async def test_a_context_closes_at_once_while_a_connection_is_not_answered(who: str) -> None:
+async def test_a_context_closes_at_once_while_a_connection_is_not_answered(
+    who: str, begins: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """A program that is frozen accepts, and is accepted, as its system does that for it."""
+    if begins == "meanwhile":
+        monkeypatch.setattr(_transport, "cut_stuck", not_seen)
     async with AsyncExitStack() as stack:
         silent = stack.enter_context(socket.socket())
         silent.bind(("127.0.0.1", 0))
