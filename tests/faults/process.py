@@ -74,6 +74,20 @@ def told_by(endpoint: Any) -> int:
     return int(endpoint.stats.dropped) + int(getattr(endpoint.stats, "lost", 0))
 
 
+class GivenUp(logging.Handler):
+    """Counts the messages of which a warning says that links have given them up."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.count = 0
+        logging.getLogger("aionode.transport.ipc").addHandler(self)
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Add the number in a warning."""
+        if "were given up" in record.msg and isinstance(record.args, tuple):
+            self.count += int(record.args[1])  # type: ignore[call-overload]  # a number
+
+
 class CoreWait:
     """For how long the threads of this process were ready to run, but had no core of the machine.
 
@@ -117,6 +131,7 @@ class Reporter:
         self.report = Report()
         self.endpoints: list[Any] = []
         self.nodes: Callable[[], list[str]] = list
+        self.given_up = GivenUp()
 
     def hear(self, topic: str, data: str) -> None:
         """Take a message."""
@@ -151,7 +166,7 @@ class Reporter:
         """Print a report; its gap begins anew."""
         self.report.time_s = time.monotonic()
         self.report.nodes = sorted(self.nodes())
-        self.report.told = sum(map(told_by, self.endpoints))
+        self.report.told = sum(map(told_by, self.endpoints)) + self.given_up.count
         os.write(int(os.environ[REPORTS_VARIABLE]), msgspec.json.encode(self.report) + b"\n")
         self.report.gap_s = self.report.own_gap_s = 0.0
 
