@@ -17,7 +17,7 @@ from aionode.endpoints.subscription import Subscription
 from aionode.endpoints.timer import Rate, Timer
 from aionode.endpoints.timer._timer import to_period_ns
 from aionode.errors import brief, shortened
-from aionode.graph import EndpointKind
+from aionode.graph import SERVICE_KINDS, EndpointKind
 from aionode.message import Message, ServiceType, holds_arrays
 from aionode.parameter import declare_qos_overrides
 
@@ -437,7 +437,7 @@ class NodeEndpoints(NodeParameters):
         """Return the graph entry of a new endpoint, which `_add_entity` opens."""
         if self._constructed:  # the built-in services are rarely called, and start without it
             load_arrays(ros_type)
-        is_service = kind in {EndpointKind.SERVER, EndpointKind.CLIENT}
+        is_service = kind in SERVICE_KINDS
         full_name = self._resolve(name, is_service=is_service)
         profile = qos.as_profile(qos_profile)
         if overriding is not None:

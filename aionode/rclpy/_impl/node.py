@@ -10,7 +10,7 @@ from aionode.arguments import Arguments
 from aionode.bare_node import BareNode
 from aionode.clock import MachineTime, Time
 from aionode.errors import NodeNameNonExistentError
-from aionode.graph import TOPIC_KINDS, EndpointKind
+from aionode.graph import SERVICE_KINDS, TOPIC_KINDS, EndpointKind
 from aionode.interfaces.rcl_interfaces.msg import Log
 from aionode.logging import get_logger
 from aionode.rclpy._impl.context import parsed
@@ -164,10 +164,10 @@ class NodeHandle(Destroyable):
         return found
 
     def service_names_and_types(self) -> NamesAndTypes:
-        """Return every service that has a server, with its types."""
+        """Return every service that has a server or a client, with its types."""
         found: NamesAndTypes = self.ask(
             "failed to get service names and types",
-            lambda graph: graph.names_and_types(EndpointKind.SERVER),
+            lambda graph: graph.names_and_types(*SERVICE_KINDS),
         )
         return found
 
