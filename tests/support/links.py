@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import shutil
 import tempfile
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -32,6 +32,9 @@ __all__ = [
     "two_nodes",
     "writer_of",
 ]
+
+PERIOD_S = 0.001
+"""The time between two numbers while a test waits for something else."""
 
 
 @pytest.fixture(autouse=True)
@@ -107,6 +110,7 @@ class Counting:
         self.publisher = nodes.a.create_publisher(Int32, topic, profile)
         self.subscription = nodes.b.create_subscription(Int32, topic, None, profile)
         self.next = 0
+        self._clock = nodes.a.get_clock()
 
     def publish(self, count: int = 1) -> None:
         """Publish the next numbers."""
@@ -122,8 +126,13 @@ class Counting:
             range(first, self.next)
         )
 
-    async def until_linked(self, linked: int = 1) -> None:
-        """Publish and receive until `readers` readers use the link only."""
-        await self.publisher.wait_for_subscribers()
-        while writer_of(self.publisher).linked != linked:
+    async def go_until(self, condition: Callable[[], Any]) -> None:
+        """Go on until something is so; a publisher at full speed would only delay it."""
+        while not condition():
             await self.go()
+            await self._clock.sleep(PERIOD_S)
+
+    async def until_linked(self, linked: int = 1) -> None:
+        """Publish and receive until `linked` readers use the link only."""
+        await self.publisher.wait_for_subscribers()
+        await self.go_until(lambda: writer_of(self.publisher).linked == linked)

@@ -96,8 +96,7 @@ async def test_every_kind_of_reader_gets_each_message_once() -> None:
         with raw_session() as session:
             samples = Collector()
             subscriber = session.declare_subscriber(f"{DOMAIN_ID}/**", samples)
-            while not samples.items:
-                await numbers.go()
+            await numbers.go_until(lambda: samples.items)
             await numbers.go(50)
             while number_of(samples.items[-1]) < numbers.next - 1:
                 await checkpoint()
@@ -238,8 +237,7 @@ async def test_malformed_data_ends_the_link_and_not_the_stream(
         link._sock.send(garbage)
         if len(garbage) < 40:
             link.close()
-        while not link.closed:
-            await numbers.go()
+        await numbers.go_until(lambda: link.closed)
         await numbers.go(100)
         assert numbers.subscription.stats.lost == 0
     assert len(garbage) < 40 or "expected a frame" in caplog.text
@@ -470,8 +468,7 @@ async def linked_images(nodes: Two) -> tuple[Any, Any]:
     await numbers.until_linked()
     publisher = nodes.a.create_publisher(Image, "images", 10)
     subscription = nodes.b.create_subscription(Image, "images", None, 10)
-    while writer_of(publisher).linked == 0:
-        await numbers.go()
+    await numbers.go_until(lambda: writer_of(publisher).linked)
     return publisher, subscription
 
 

@@ -190,8 +190,7 @@ async def test_a_process_that_keeps_memory_gets_the_rest_through_the_stream(
         await numbers.until_linked()
         publisher = nodes.a.create_publisher(Image, "images", 10)
         subscription = nodes.b.create_subscription(Image, "images", None, 10)
-        while writer_of(publisher).linked == 0:
-            await numbers.go()
+        await numbers.go_until(lambda: writer_of(publisher).linked)
         kept: list[Any] = []
         for number in range(8):
             publisher.publish(Image(height=1, width=600_000, data=bytes([number]) * 600_000))
@@ -207,8 +206,7 @@ async def test_a_publisher_that_goes_gives_its_memory_back() -> None:
         await numbers.until_linked()
         publisher = nodes.a.create_publisher(Image, "images", 10)
         nodes.b.create_subscription(Image, "images", None, 10)
-        while writer_of(publisher).linked == 0:
-            await numbers.go()
+        await numbers.go_until(lambda: writer_of(publisher).linked)
         publisher.publish(Image(height=1, width=600_000, data=bytes(600_000)))
         publisher.destroy()  # before any confirmation can have come
         assert manager_of(nodes.a)._ending
