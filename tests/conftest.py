@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import functools
+import gc
 import inspect
 import os
 import sys
@@ -34,6 +35,9 @@ settings.load_profile("tests")
 # examples of their own take it as a part of that of the profile.
 settings.register_profile("thorough", settings.get_profile("tests"), max_examples=100)
 settings.register_profile("fuzz", settings.get_profile("tests"), max_examples=2000)
+
+# Collecting makes half a million objects that all stay: looking for garbage takes half of its time.
+gc.disable()
 
 # Hundreds of processes would each compile aionode where Python is told to write no bytecode. What
 # they share is not written beside the sources then.
@@ -99,6 +103,12 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
 def pytest_xdist_auto_num_workers() -> int:
     """Use two workers more than there are processors: tests of processes mostly wait."""
     return (os.cpu_count() or 1) + 2
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtestloop() -> None:
+    """Look for garbage again when the tests are collected."""
+    gc.enable()
 
 
 @pytest.hookimpl(tryfirst=True)  # before tests are deselected by their marks

@@ -29,7 +29,6 @@ __all__ = [
     "StandIn",
     "cause_of_death",
     "stand_in",
-    "until",
 ]
 
 HEADER = bytes.fromhex("00010000")
@@ -311,12 +310,6 @@ def stand_in(namespace: str = "/", *, first: bool = True, joins_late: int = 0) -
         config.insert_json5(key, json.dumps(value))
     with closing(zenoh.open(config)) as session:
         yield StandIn(session, namespace, joins_late)
-
-
-async def until(condition: Callable[[], Any]) -> None:
-    """Wait until something is so in another thread."""
-    while not condition():  # noqa: ASYNC110  # Zenoh's thread sets no event
-        await asyncio.sleep(0.005)  # noqa: TID251  # as above
 
 
 async def main() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import shutil
 import tempfile
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -32,6 +32,9 @@ __all__ = [
     "two_nodes",
     "writer_of",
 ]
+
+PERIOD_S = 0.001
+"""The time between two numbers while a test waits for something else."""
 
 
 @pytest.fixture(autouse=True)
@@ -122,8 +125,13 @@ class Counting:
             range(first, self.next)
         )
 
-    async def until_linked(self, linked: int = 1) -> None:
-        """Publish and receive until `readers` readers use the link only."""
-        await self.publisher.wait_for_subscribers()
-        while writer_of(self.publisher).linked != linked:
+    async def go_until(self, condition: Callable[[], Any]) -> None:
+        """Go on until something is so; a publisher at full speed would only delay it."""
+        while not condition():
             await self.go()
+            await asyncio.sleep(PERIOD_S)  # noqa: TID251  # a clock's alarm has a file
+
+    async def until_linked(self, linked: int = 1) -> None:
+        """Publish and receive until `linked` readers use the link only."""
+        await self.publisher.wait_for_subscribers()
+        await self.go_until(lambda: writer_of(self.publisher).linked == linked)

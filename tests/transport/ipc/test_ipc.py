@@ -43,6 +43,7 @@ from tests.support.links import (
     writer_of,
 )
 from tests.support.peers import DOMAIN_ID, KEEP_ALL, Collector, quiet_node, raw_session
+from tests.support.waiting import until
 
 __all__ = ["folder"]  # a fixture
 
@@ -76,8 +77,7 @@ async def test_a_message_that_is_held_has_the_time_of_its_arrival(
         publisher.publish(Int32())  # which is waited for
         nodes.b.create_subscription(Int32, "n", lambda _, info: infos.append(info), 100)
         await publisher.wait_for_subscribers()
-        while not manager_of(nodes.a).links:
-            await checkpoint()
+        await until(lambda: manager_of(nodes.a).links)
         while not infos:  # a few at a time: when there are too many, none is held
             publisher.publish(Int32())
             await asyncio.to_thread(threading.Event().wait, 0.001)
@@ -96,11 +96,9 @@ async def test_every_kind_of_reader_gets_each_message_once() -> None:
         with raw_session() as session:
             samples = Collector()
             subscriber = session.declare_subscriber(f"{DOMAIN_ID}/**", samples)
-            while not samples.items:
-                await numbers.go()
+            await numbers.go_until(lambda: samples.items)
             await numbers.go(50)
-            while number_of(samples.items[-1]) < numbers.next - 1:
-                await checkpoint()
+            await until(lambda: number_of(samples.items[-1]) >= numbers.next - 1)
             subscriber.undeclare()
         heard = [number_of(sample) for sample in samples.items]
         assert heard == list(range(heard[0], numbers.next))
@@ -124,8 +122,8 @@ async def test_what_was_in_a_broken_link_reaches_each_reader_once() -> None:
         with raw_session() as session:
             samples = Collector()
             subscriber = session.declare_subscriber(NUMBERS, samples)
-            while not writer_of(numbers.publisher).update():  # until the unannounced peer is known
-                await checkpoint()
+            # until the unannounced peer is known
+            await until(lambda: writer_of(numbers.publisher).update())
             while not samples.items:
                 numbers.publish()
                 await checkpoint()
@@ -238,8 +236,7 @@ async def test_malformed_data_ends_the_link_and_not_the_stream(
         link._sock.send(garbage)
         if len(garbage) < 40:
             link.close()
-        while not link.closed:
-            await numbers.go()
+        await numbers.go_until(lambda: link.closed)
         await numbers.go(100)
         assert numbers.subscription.stats.lost == 0
     assert len(garbage) < 40 or "expected a frame" in caplog.text
@@ -416,8 +413,7 @@ async def test_an_action_takes_the_link() -> None:
         nodes.b.create_action_server(Fibonacci, "count", execute)
         client: Any = nodes.a.create_action_client(Fibonacci, "count")
         await client.wait_for_server()
-        while not manager_of(nodes.a).links:
-            await checkpoint()
+        await until(lambda: manager_of(nodes.a).links)
         for _ in range(3):
             goal = await client.send_goal(Fibonacci.Goal(order=20))
             got = [list(feedback.sequence) async for feedback in goal]
@@ -470,8 +466,7 @@ async def linked_images(nodes: Two) -> tuple[Any, Any]:
     await numbers.until_linked()
     publisher = nodes.a.create_publisher(Image, "images", 10)
     subscription = nodes.b.create_subscription(Image, "images", None, 10)
-    while writer_of(publisher).linked == 0:
-        await numbers.go()
+    await numbers.go_until(lambda: writer_of(publisher).linked)
     return publisher, subscription
 
 

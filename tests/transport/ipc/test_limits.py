@@ -29,6 +29,7 @@ from aionode.transport.ipc._listener import Advertisement, Listener, socket_fold
 from aionode.transport.ipc._protocol import Kind
 from tests.support.links import Counting, folder, link_of, manager_of, two_nodes, writer_of
 from tests.support.peers import DOMAIN_ID, quiet_node
+from tests.support.waiting import until
 
 __all__ = ["folder"]  # a fixture
 
@@ -190,8 +191,7 @@ async def test_a_process_that_keeps_memory_gets_the_rest_through_the_stream(
         await numbers.until_linked()
         publisher = nodes.a.create_publisher(Image, "images", 10)
         subscription = nodes.b.create_subscription(Image, "images", None, 10)
-        while writer_of(publisher).linked == 0:
-            await numbers.go()
+        await numbers.go_until(lambda: writer_of(publisher).linked)
         kept: list[Any] = []
         for number in range(8):
             publisher.publish(Image(height=1, width=600_000, data=bytes([number]) * 600_000))
@@ -207,8 +207,7 @@ async def test_a_publisher_that_goes_gives_its_memory_back() -> None:
         await numbers.until_linked()
         publisher = nodes.a.create_publisher(Image, "images", 10)
         nodes.b.create_subscription(Image, "images", None, 10)
-        while writer_of(publisher).linked == 0:
-            await numbers.go()
+        await numbers.go_until(lambda: writer_of(publisher).linked)
         publisher.publish(Image(height=1, width=600_000, data=bytes(600_000)))
         publisher.destroy()  # before any confirmation can have come
         assert manager_of(nodes.a)._ending
@@ -290,14 +289,12 @@ async def test_a_context_that_dials_again_replaces_a_link_whose_end_is_unread(
     async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
         with closing(await dialled(folder, node.context)) as first:
             await loop.sock_sendall(first, hello(1))
-            while not manager_of(node).links:
-                await checkpoint()
+            await until(lambda: manager_of(node).links)
             old = link_of(node)
             loop.remove_reader(old._fd)
         with closing(await dialled(folder, node.context)) as second:
             await loop.sock_sendall(second, hello(1))
-            while manager_of(node).linked("1") in (None, old):
-                await checkpoint()
+            await until(lambda: manager_of(node).linked("1") not in (None, old))
         assert old.closed
     assert "second link" not in caplog.text
 

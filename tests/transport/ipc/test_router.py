@@ -102,8 +102,7 @@ class Linked:
 
     async def until_it_needs_zenoh(self, needed: bool) -> None:
         """Go on until messages go to Zenoh as well, or do not."""
-        while writer_of(self.numbers.publisher).update() != needed:
-            await self.numbers.go()
+        await self.numbers.go_until(lambda: writer_of(self.numbers.publisher).update() == needed)
 
 
 @asynccontextmanager
@@ -189,8 +188,7 @@ async def test_a_router_that_comes_back_is_asked_anew(monkeypatch: pytest.Monkey
                 await both.until_it_needs_zenoh(True)
                 await both.until_it_needs_zenoh(False)
                 assert both.router.excludes(NUMBERS)
-            while both.matching._routers:
-                await numbers.go()
+            await numbers.go_until(lambda: not both.matching._routers)
 
 
 async def test_a_stream_whose_link_ends_beside_a_router_loses_nothing(

@@ -7,7 +7,6 @@ from typing import Any
 
 import pytest
 
-from aionode._concurrency import checkpoint
 from aionode.graph import EndpointKind
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.qos import QoSProfile, ReliabilityPolicy
@@ -25,6 +24,7 @@ from tests.support.peers import (
     raw_session,
     two_contexts,
 )
+from tests.support.waiting import until
 
 
 @pytest.fixture(autouse=True)
@@ -199,13 +199,11 @@ async def test_an_idle_keep_all_publisher_hears_of_its_readers(
         b.create_subscription(Int32, "n", None, KEEP_ALL)
         await publisher.wait_for_subscribers()
         writer: Any = writer_of(publisher)
-        while not writer._history.readers:
-            await checkpoint()
+        await until(lambda: writer._history.readers)
         (reader,) = writer._history.readers.values()
         for _ in range(3):
             heard_ns = reader.heard_ns
-            while reader.heard_ns == heard_ns:
-                await checkpoint()
+            await until(lambda heard_ns=heard_ns: reader.heard_ns != heard_ns)
 
 
 async def test_what_is_published_while_a_frozen_reader_is_away_is_sent_on_its_return() -> None:
@@ -237,8 +235,7 @@ async def test_what_is_published_while_a_frozen_reader_is_away_is_sent_on_its_re
         info = next(iter(graph.endpoints(EndpointKind.SUBSCRIPTION, name="/n")))
         graph.remove_endpoint(info)
         writer._update()
-        while writer._publisher.matching_status.matching:
-            await checkpoint()
+        await until(lambda: not writer._publisher.matching_status.matching)
         writer._update()
         for number in (2, 3):
             publisher.publish(Int32(data=number))

@@ -22,8 +22,9 @@ from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from aionode.parameter_client import AsyncParameterClient
 from aionode.wire import cdr
-from tests.support.bridge import ADD, FAST, HEADER, LATCHED, StandIn, add, stand_in, string, until
+from tests.support.bridge import ADD, FAST, HEADER, LATCHED, StandIn, add, stand_in, string
 from tests.support.peers import KEEP_ALL, kept, quiet_node, two_contexts
+from tests.support.waiting import until
 
 FIB = "example_interfaces/action/Fibonacci"
 GOAL_STATUS = "action_msgs/msg/GoalStatusArray"

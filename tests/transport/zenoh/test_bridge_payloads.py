@@ -23,9 +23,10 @@ from aionode.message import type_name
 from aionode.node import Node
 from aionode.qos import QoSProfile
 from aionode.wire import cdr
-from tests.support.bridge import LATCHED, StandIn, stand_in, string, until
+from tests.support.bridge import LATCHED, StandIn, stand_in, string
 from tests.support.peers import KEEP_ALL, kept, quiet_node
 from tests.support.strategies import messages
+from tests.support.waiting import until
 
 MOMENT = Duration(nanoseconds=1_000_000)
 PROFILES = {

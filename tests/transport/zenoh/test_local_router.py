@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
 from contextlib import AsyncExitStack
 
 import pytest
 
-from aionode._concurrency import checkpoint
 from aionode.context import Context
 from aionode.errors import ConfigurationError
 from aionode.transport._zenoh_config import network_from
@@ -18,6 +16,7 @@ from aionode.transport.zenoh._session import answering_ports
 from aionode.transport.zenoh._session_state import SessionState
 from aionode.transport.zenoh._transport import ZenohTransport
 from tests.support.peers import ros_router
+from tests.support.waiting import until
 
 LIMIT_S = 15.0
 FAR = "tcp/192.0.2.1:7447"
@@ -56,13 +55,6 @@ async def test_the_first_process_with_static_peers_opens_a_router() -> None:
         assert routers[1] is None
         assert str(routers[0].zid()).startswith(ROUTER_IDS)
     assert not answering_ports([port_of(first)])
-
-
-async def until(condition: Callable[[], bool]) -> None:
-    """Wait for what a thread of Zenoh brings, which tells no loop."""
-    async with asyncio.timeout(LIMIT_S):
-        while not condition():
-            await checkpoint()
 
 
 async def test_another_process_takes_the_place_of_one_that_ended() -> None:

@@ -31,6 +31,7 @@ from tests.support.peers import (
     ros_router,
     ros_session,
 )
+from tests.support.waiting import until
 
 pytestmark = pytest.mark.one_loop
 
@@ -377,8 +378,7 @@ async def test_no_connection_is_cut_while_others_are_being_made() -> None:
     """Of 100 contexts that started at once, each cut others that were merely slow."""
     async with asyncio.timeout(4 * LIMIT_S), context("a1") as first, context("b2"):
         acknowledgements = first._state.acknowledgements
-        while "b2" not in acknowledgements.present:
-            await checkpoint()
+        await until(lambda: "b2" in acknowledgements.present)
         acknowledgements.present.clear()
         first._recovery._changed_s = asyncio.get_running_loop().time()
         first._recovery._check_returned("b2")
@@ -393,15 +393,13 @@ async def test_a_participant_that_is_connected_and_declares_nothing_is_connected
     monkeypatch.setattr(recovery, "DECLARED_S", 0.05)
     async with asyncio.timeout(3 * LIMIT_S), context("a1") as first, context("b2"):
         acknowledgements = first._state.acknowledgements
-        while "b2" not in acknowledgements.present:
-            await checkpoint()
+        await until(lambda: "b2" in acknowledgements.present)
         first._recovery._changed_s = 0.0
         first._recovery._check_returned("b2")
         assert not first._recovery._cuts
 
         acknowledgements.present.clear()
         first._recovery._check_returned("b2")
-        while "b2" not in acknowledgements.present:
-            await checkpoint()
+        await until(lambda: "b2" in acknowledgements.present)
 
         assert first._recovery._cuts == {"b2": 1}

@@ -19,6 +19,7 @@ from aionode.context import Context
 from aionode.transport.zenoh import _sockets, _transport
 from aionode.transport.zenoh._session import close_session, open_router
 from tests.support.peers import two_contexts
+from tests.support.waiting import until
 
 pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"), reason="only Linux lists the sockets of a process"
@@ -47,8 +48,7 @@ def options(session: zenoh.Session) -> list[tuple[bool, int]]:
 async def until_set(session: zenoh.Session, wanted: tuple[bool, int]) -> None:
     """Wait until all connections of a session have the wanted options."""
     async with asyncio.timeout(20):
-        while set(options(session)) != {wanted}:
-            await checkpoint()
+        await until(lambda: set(options(session)) == {wanted})
 
 
 def descriptors() -> int:
@@ -83,8 +83,7 @@ async def test_a_closed_context_looks_for_sockets_no_more() -> None:
     async with two_contexts() as both:
         transports: list[Any] = [context.transports[1] for context in both]
         setters = [transport._socket_options for transport in transports]
-        while not all(each._timer for each in setters):
-            await checkpoint()
+        await until(lambda: all(each._timer for each in setters))
         timers = [each._timer for each in setters]
 
     for timer in timers:

@@ -15,7 +15,6 @@ from typing import Any
 import pytest
 import zenoh  # noqa: TID251  # plays the other participants, without aionode
 
-from aionode._concurrency import checkpoint
 from aionode.context import Context
 from aionode.errors import QueueFullError
 from aionode.graph import EndpointInfo, EndpointKind
@@ -41,6 +40,7 @@ from tests.support.peers import (
     two_contexts,
 )
 from tests.support.spies import returns_of
+from tests.support.waiting import until
 
 VECTORS: dict[str, Any] = json.loads(
     Path(__file__).parents[2].joinpath("vectors", "vectors.json").read_text()
@@ -362,8 +362,8 @@ async def test_strange_tokens_are_counted_and_the_graph_goes_on(
                 )
             ):
                 await node.graph.until(lambda: "fine" in {n.name for n in node.graph.nodes()})
-                while transport_of(node).malformed.total() < 3:  # they may come after it
-                    await checkpoint()
+                # they may come after it
+                await until(lambda: transport_of(node).malformed.total() >= 3)
             await node.graph.until(lambda: [n.name for n in node.graph.nodes()] == ["watcher"])
 
         assert transport_of(node).malformed.total() == 3
