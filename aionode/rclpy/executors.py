@@ -228,21 +228,33 @@ class Executor:
         )
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Wait for one callback and call it. Only one thread may do this at a time.
+        """Wait for one callback and call it, or have a thread call it. One thread at a time may.
 
         Args:
             timeout_sec: The longest wait in seconds; None or negative for ever.
+
+        Raises:
+            NotImplementedError: it is an executor of one's own that does not define this.
+            Exception: what the callback raised, or an earlier one that a thread has called.
         """
-        raise NotImplementedError
+        self._spin_once_impl(timeout_sec)
 
     def spin_once_until_future_complete(
         self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
     ) -> None:
-        """Wait for one callback and call it, but no longer than until `future` is done."""
-        raise NotImplementedError
+        """As `spin_once`, but no longer than until `future` is done."""
+        future.add_done_callback(lambda _: self.wake())
+        self._spin_once_until_future_complete(future, timeout_sec)
 
     def _spin_once_until_future_complete(
         self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
+    ) -> None:
+        self._spin_once_impl(timeout_sec, future.done)
+
+    def _spin_once_impl(
+        self,
+        timeout_sec: float | TimeoutObject | None = None,
+        condition: Callable[[], bool] = never,
     ) -> None:
         raise NotImplementedError
 
@@ -503,22 +515,6 @@ class SingleThreadedExecutor(Executor):
         if exception is not None:
             raise exception
 
-    def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Wait for one callback and call it."""
-        self._spin_once_impl(timeout_sec)
-
-    def _spin_once_until_future_complete(
-        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
-    ) -> None:
-        self._spin_once_impl(timeout_sec, future.done)
-
-    def spin_once_until_future_complete(
-        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
-    ) -> None:
-        """Wait for one callback and call it, but no longer than until `future` is done."""
-        future.add_done_callback(lambda _: self.wake())
-        self._spin_once_until_future_complete(future, timeout_sec)
-
 
 class MultiThreadedExecutor(Executor):
     """Calls callbacks in a pool of threads.
@@ -574,22 +570,6 @@ class MultiThreadedExecutor(Executor):
         finally:
             task._scheduled = False
             self.wake()
-
-    def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Wait for one callback and hand it to a thread; raise what an earlier one has raised."""
-        self._spin_once_impl(timeout_sec)
-
-    def _spin_once_until_future_complete(
-        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
-    ) -> None:
-        self._spin_once_impl(timeout_sec, future.done)
-
-    def spin_once_until_future_complete(
-        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
-    ) -> None:
-        """Wait for one callback, but no longer than until `future` is done; see `spin_once`."""
-        future.add_done_callback(lambda _: self.wake())
-        self._spin_once_until_future_complete(future, timeout_sec)
 
     def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool = True) -> bool:
         """Begin no more callbacks, wait for those that run, and end the threads."""
