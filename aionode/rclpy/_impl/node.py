@@ -14,7 +14,7 @@ from aionode.graph import SERVICE_KINDS, TOPIC_KINDS, EndpointKind
 from aionode.interfaces.rcl_interfaces.msg import Log
 from aionode.logging import get_logger
 from aionode.rclpy._impl.context import parsed
-from aionode.rclpy._impl.destroyable import Destroyable
+from aionode.rclpy._impl.destroyable import Arrivals, Destroyable
 from aionode.rclpy._impl.qos import profile_of
 
 if TYPE_CHECKING:
@@ -47,6 +47,9 @@ class NodeHandle(Destroyable):
         context_handle: Its context.
         io: The thread that works for it.
         bare: The node in the core; used in that thread only.
+        messages: Whether messages have come for its subscriptions.
+        requests: Whether requests have come for its service servers.
+        responses: Whether responses have come for its clients.
     """
 
     def __init__(
@@ -60,6 +63,9 @@ class NodeHandle(Destroyable):
         rosout_qos_profile: Any = None,
     ) -> None:
         super().__init__()
+        self.messages = Arrivals(self.signal)
+        self.requests = Arrivals(self.signal)
+        self.responses = Arrivals(self.signal)
         self._stop_rosout: Callable[[], None] | None = None
         names.validate_node_name(node_name)
         namespace = names.normalize_namespace(namespace)
