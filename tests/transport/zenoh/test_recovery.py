@@ -373,35 +373,81 @@ def test_a_look_is_known_by_its_id() -> None:
         assert not is_look(str(session.zid()))
 
 
+@asynccontextmanager
+async def silent_after_return(ours: ZenohTransport, *names: str) -> AsyncIterator[None]:
+    """Others that run, have returned, and have not declared anything, as `ours` sees it."""
+    acknowledgements = ours._state.acknowledgements
+    async with AsyncExitStack() as stack:
+        for name in names:
+            await stack.enter_async_context(context(name))
+        while not acknowledgements.present.issuperset(names):
+            await checkpoint()
+        acknowledgements.present.clear()
+        ours._recovery._returned.update(names)
+        yield
+
+
 async def test_no_connection_is_cut_while_others_are_being_made() -> None:
     """Of 100 contexts that started at once, each cut others that were merely slow."""
-    async with asyncio.timeout(4 * LIMIT_S), context("a1") as first, context("b2"):
-        acknowledgements = first._state.acknowledgements
-        while "b2" not in acknowledgements.present:
-            await checkpoint()
-        acknowledgements.present.clear()
+    async with (
+        asyncio.timeout(4 * LIMIT_S),
+        context("a1") as first,
+        silent_after_return(first, "b2"),
+    ):
         first._recovery._changed_s = asyncio.get_running_loop().time()
-        first._recovery._check_returned("b2")
+        first._recovery._check_returned()
 
         assert not first._recovery._cuts
+        assert first._recovery._returned == {"b2"}
 
 
-async def test_a_participant_that_is_connected_and_declares_nothing_is_connected_anew(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Zenoh took its new connection for another link of the one that is lost."""
-    monkeypatch.setattr(recovery, "DECLARED_S", 0.05)
-    async with asyncio.timeout(3 * LIMIT_S), context("a1") as first, context("b2"):
-        acknowledgements = first._state.acknowledgements
-        while "b2" not in acknowledgements.present:
-            await checkpoint()
+async def test_one_that_has_declared_itself_is_not_connected_anew() -> None:
+    """Its tokens came a moment after its connection."""
+    async with (
+        asyncio.timeout(4 * LIMIT_S),
+        context("a1") as first,
+        silent_after_return(first, "b2"),
+    ):
+        first._state.acknowledgements.present.add("b2")
         first._recovery._changed_s = 0.0
-        first._recovery._check_returned("b2")
-        assert not first._recovery._cuts
+        first._recovery._check_returned()
 
-        acknowledgements.present.clear()
-        first._recovery._check_returned("b2")
-        while "b2" not in acknowledgements.present:
+        assert not first._recovery._cuts
+        assert not first._recovery._returned
+
+
+@pytest.mark.parametrize("count", [1, recovery.FEW + 1])
+async def test_participants_that_are_connected_and_declare_nothing_are_connected_anew(
+    count: int,
+) -> None:
+    """Zenoh took their new connections for further links of those that are lost."""
+    names = {f"{number}b" for number in range(1, count + 1)}
+    async with (
+        asyncio.timeout(4 * LIMIT_S),
+        context("a1") as first,
+        silent_after_return(first, *names),
+    ):
+        first._recovery._changed_s = 0.0
+        first._recovery._check_returned()
+        while first._state.acknowledgements.present != names:
             await checkpoint()
 
-        assert first._recovery._cuts == {"b2": 1}
+        assert first._recovery._cuts == dict.fromkeys(names, 1)
+
+
+async def test_many_that_declare_nothing_are_waited_for_longer() -> None:
+    """They are slow, as long as connections go on being made."""
+    names = [f"{number}b" for number in range(1, recovery.FEW + 2)]
+    async with (
+        asyncio.timeout(4 * LIMIT_S),
+        context("a1") as first,
+        silent_after_return(first, *names),
+    ):
+        first._recovery._changed_s = asyncio.get_running_loop().time() - recovery.DECLARED_S
+        first._recovery._check_returned()
+        assert not first._recovery._cuts
+        assert first._recovery._check is not None
+
+        first._recovery._returned.discard(names[0])
+        first._recovery._check_returned()
+        assert len(first._recovery._cuts) == recovery.FEW
