@@ -8,9 +8,10 @@ from typing import Any
 import pytest
 
 from aionode._concurrency import checkpoint
+from aionode.clock import perf_ns
 from aionode.graph import EndpointKind
 from aionode.interfaces.std_msgs.msg import Int32, String
-from aionode.qos import QoSProfile, ReliabilityPolicy
+from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from aionode.transport._writer_proxy import WriterProxy
 from aionode.transport.zenoh._acknowledgements import Acknowledgements
 from aionode.transport.zenoh._publisher import ZenohWriter
@@ -25,6 +26,8 @@ from tests.support.peers import (
     raw_session,
     two_contexts,
 )
+
+TRANSIENT = QoSProfile(history=HistoryPolicy.KEEP_ALL, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 @pytest.fixture(autouse=True)
@@ -56,9 +59,18 @@ async def acknowledged(publisher: Any) -> None:
         await changed.wait()
 
 
-@pytest.mark.parametrize("qos", [QoSProfile(depth=1000), KEEP_ALL], ids=["last", "all"])
+@pytest.mark.parametrize(
+    ("qos", "theirs"),
+    [
+        (QoSProfile(depth=1000), QoSProfile(depth=1000)),
+        (KEEP_ALL, KEEP_ALL),
+        (TRANSIENT, TRANSIENT),
+        (TRANSIENT, KEEP_ALL),
+    ],
+    ids=["last", "all", "all transient local", "all transient local to volatile"],
+)
 async def test_what_is_lost_on_the_way_is_sent_again(
-    qos: QoSProfile, monkeypatch: pytest.MonkeyPatch
+    qos: QoSProfile, theirs: QoSProfile, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Every third message here, the last one included."""
     put, count = ZenohWriter.put, 0
@@ -76,7 +88,7 @@ async def test_what_is_lost_on_the_way_is_sent_again(
         quiet_node("b", second) as b,
     ):
         publisher = a.create_publisher(Int32, "n", qos)
-        subscription = b.create_subscription(Int32, "n", None, qos)
+        subscription = b.create_subscription(Int32, "n", None, theirs)
         await publisher.wait_for_subscribers()
         for number in range(300):
             publisher.publish(Int32(data=number))
@@ -248,5 +260,52 @@ async def test_what_is_published_while_a_frozen_reader_is_away_is_sent_on_its_re
         graph.add_endpoint(info)
         writer._update()
         assert [(await subscription.receive()).data for _ in range(3)] == [1, 2, 3]
+        assert subscription.stats.lost == 0
+        assert publisher.stats.dropped == 0
+
+
+@pytest.mark.parametrize("is_forgotten", [True, False], ids=["forgotten", "waited for"])
+async def test_a_transient_local_reader_that_returns_gets_each_message_once(
+    is_forgotten: bool,
+) -> None:
+    """From Zenoh's history if its publisher took it for ended, and else from both."""
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        publisher = a.create_publisher(Int32, "n", TRANSIENT)
+        publisher.publish(Int32(data=0))
+        subscription: Any = b.create_subscription(Int32, "n", None, TRANSIENT)
+        await publisher.wait_for_subscribers()
+        publisher.publish(Int32(data=1))
+        assert [(await subscription.receive()).data for _ in range(2)] == [0, 1]
+        await acknowledged(publisher)
+
+        writer: Any = writer_of(publisher)
+        graph = writer.state.graph
+        reader: Any = next(
+            each for each in subscription._registrations if isinstance(each, ZenohReader)
+        )
+        for subscriber in reader._subscribers:
+            subscriber.undeclare()
+        reader._subscribers.clear()
+        writer._history.readers[reader.gid].heard_ns = perf_ns() if is_forgotten else 0
+        info = next(iter(graph.endpoints(EndpointKind.SUBSCRIPTION, name="/n")))
+        graph.remove_endpoint(info)
+        writer._update()
+        assert (reader.gid not in writer._history.readers) is is_forgotten
+        for number in (2, 3):
+            publisher.publish(Int32(data=number))
+        await publisher.drain()
+
+        graph.add_endpoint(info)
+        writer._update()
+        reader.declare_data(reader.state.session)
+        assert [(await subscription.receive()).data for _ in range(2)] == [2, 3]
+        publisher.publish(Int32(data=4))
+        assert (await subscription.receive()).data == 4
+        await acknowledged(publisher)
+        assert subscription.stats.received == 5
         assert subscription.stats.lost == 0
         assert publisher.stats.dropped == 0
