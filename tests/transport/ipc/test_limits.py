@@ -115,8 +115,11 @@ def test_the_sockets_of_contexts_that_live_are_not_dialled_at_the_start(folder: 
         living.close()
 
 
-async def test_a_long_frame_in_place_of_the_hello_is_refused(folder: Path) -> None:
-    """An unknown client must not make a process hold megabytes."""
+async def test_a_long_frame_in_place_of_the_hello_is_refused(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An unknown client must not make a process hold megabytes, as long as a Hello may take."""
+    monkeypatch.setattr(manager, "HELLO_S", 3600.0)
     async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
         with closing(await dialled(folder, node.context)) as sock:
             head = protocol.HEADER.pack(1 << 26, Kind.HELLO, 0, protocol.MARK, 1, 1, bytes(16))
