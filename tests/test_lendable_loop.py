@@ -370,7 +370,7 @@ def test_nothing_is_lost_while_threads_borrow_a_busy_loop(times: int) -> None:
     with running_loop() as loop:
         for here, _ in pairs:
             borrow(loop)
-            loop.add_reader(here, lambda here=here: work.do("read", len(here.recv(64))))
+            loop.add_reader(here, lambda sock: work.do("read", len(sock.recv(64))), here)
             loop.give_back()
         loop.call_soon_threadsafe(work.tick, loop)
         jobs = [

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from functools import partial
 from typing import Any
 
 import pytest
@@ -300,9 +301,12 @@ async def test_an_idle_keep_all_publisher_hears_of_its_readers(
         writer: Any = writer_of(publisher)
         await until(lambda: writer._history.readers)
         (reader,) = writer._history.readers.values()
+
+        def is_heard_since(before_ns: int) -> bool:
+            return bool(reader.heard_ns != before_ns)
+
         for _ in range(3):
-            heard_ns = reader.heard_ns
-            await until(lambda heard_ns=heard_ns: reader.heard_ns != heard_ns)
+            await until(partial(is_heard_since, reader.heard_ns))
 
 
 async def test_what_is_published_while_a_frozen_reader_is_away_is_sent_on_its_return() -> None:
