@@ -201,9 +201,13 @@ async def test_an_idle_keep_all_publisher_hears_of_its_readers(
         writer: Any = writer_of(publisher)
         await until(lambda: writer._history.readers)
         (reader,) = writer._history.readers.values()
+
+        async def until_heard() -> None:
+            before_ns = reader.heard_ns
+            await until(lambda: reader.heard_ns != before_ns)
+
         for _ in range(3):
-            heard_ns = reader.heard_ns
-            await until(lambda heard_ns=heard_ns: reader.heard_ns != heard_ns)
+            await until_heard()
 
 
 async def test_what_is_published_while_a_frozen_reader_is_away_is_sent_on_its_return() -> None:
