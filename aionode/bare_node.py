@@ -125,7 +125,10 @@ class BarePublisher(BareEndpoint):
         for writer in self._here:
             if writer.active:
                 writer.write(msg, self.published, source_ns)
-        return sample_info if any(writer.active for writer in self._elsewhere) else None
+        for other in self._elsewhere:
+            if other.active:
+                return sample_info
+        return None
 
     def publish_elsewhere(self, msg: Any, sample_info: SampleInfo) -> None:
         """Send a message to other contexts, after `publish_here`; in the thread of the loop.

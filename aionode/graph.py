@@ -21,7 +21,15 @@ if TYPE_CHECKING:
 
     from aionode.qos import QoSProfile
 
-__all__ = ["TOPIC_KINDS", "EndpointInfo", "EndpointKind", "Graph", "Mismatch", "NodeInfo"]
+__all__ = [
+    "SERVICE_KINDS",
+    "TOPIC_KINDS",
+    "EndpointInfo",
+    "EndpointKind",
+    "Graph",
+    "Mismatch",
+    "NodeInfo",
+]
 
 K = TypeVar("K")
 V = TypeVar("V")
@@ -405,3 +413,4 @@ def _take_out(index: dict[K, dict[V, None]], key: K, member: V) -> None:
 
 
 TOPIC_KINDS = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION)
+SERVICE_KINDS = (EndpointKind.SERVER, EndpointKind.CLIENT)

@@ -54,6 +54,7 @@ class LendableLoop(asyncio.SelectorEventLoop):
         # Held by the thread of the loop except while it waits for events, and by the borrower.
         self._owned = Lock()
         self._owned.acquire()
+        self._lends = True
         self._is_lent = False
         self._has_news = False
         self._loop_of_borrower: asyncio.AbstractEventLoop | None = None
@@ -63,6 +64,11 @@ class LendableLoop(asyncio.SelectorEventLoop):
             self.readers = Readers(self)
             super().add_reader(self.readers.fileno(), self.readers._look)
 
+    def set_debug(self, enabled: bool) -> None:
+        """Set asyncio's debug mode, in which the loop is not lent."""
+        super().set_debug(enabled)
+        self._lends = not enabled
+
     def borrow(self) -> bool:
         """Take the loop if it sleeps and no other thread has it. Never waits.
 
@@ -70,7 +76,7 @@ class LendableLoop(asyncio.SelectorEventLoop):
             Whether the caller has it. Then it has to call `give_back` soon: until then the loop
             does not wake up. Always False in asyncio's debug mode, which checks threads.
         """
-        if self.get_debug() or not self._owned.acquire(blocking=False):
+        if not self._lends or not self._owned.acquire(blocking=False):
             return False
         self._is_lent = True
         self._loop_of_borrower = asyncio._get_running_loop()
@@ -149,7 +155,8 @@ class Readers:
         self._callbacks: dict[int, Callable[[], Any]] = {}
         self._epoll = select.epoll()
         self._gate = select.epoll()
-        self._gate.register(self._epoll.fileno(), select.EPOLLIN)
+        self._fd = self._epoll.fileno()
+        self._gate.register(self._fd, select.EPOLLIN)
         self._waiting = Lock()
         self._closing = False
         self._event = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
@@ -170,18 +177,18 @@ class Readers:
         if self._closing:
             self._waiting.release()
             return False
-        self._gate.modify(self._epoll.fileno(), 0)
+        self._gate.modify(self._fd, 0)
         return True
 
-    def wait(self, timeout_s: float | None) -> list[int]:
+    def wait(self, timeout_s: float | None) -> list[tuple[int, int]]:
         """Wait until something is readable, or `rouse` is called; with whole milliseconds.
 
         Returns:
             What `call` takes; empty if the time has passed.
         """
-        return [fd for fd, _ in self._epoll.poll(timeout_s)]
+        return self._epoll.poll(timeout_s)
 
-    def call(self, readable: list[int]) -> bool:
+    def call(self, readable: list[tuple[int, int]]) -> bool:
         """Borrow the loop and call the callbacks of these descriptors.
 
         Returns:
@@ -200,7 +207,7 @@ class Readers:
 
     def end(self) -> None:
         """Let the loop wait for its descriptors itself."""
-        self._gate.modify(self._epoll.fileno(), select.EPOLLIN)
+        self._gate.modify(self._fd, select.EPOLLIN)
         self._waiting.release()
 
     def rouse(self) -> None:
@@ -216,8 +223,8 @@ class Readers:
         """Read what is readable; in the thread of the loop."""
         self._call(self.wait(0))
 
-    def _call(self, readable: list[int]) -> None:
-        for fd in readable:
+    def _call(self, readable: list[tuple[int, int]]) -> None:
+        for fd, _ in readable:
             callback = self._callbacks.get(fd)
             if callback is None:  # the callback of another one has removed it
                 continue

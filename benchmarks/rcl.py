@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 KINDS = ("rclpy-events", "aionode", "aionode-uvloop", "rclpy-default")
 PLAN = (("tight", 100, 0.0), ("100Hz", 20, 0.01))  # name, round trips, pause in seconds
 TEXT = "0123456789abcdef"
+FIRST_S = 0.2  # after which the first message is sent again
 LIMIT_S = 180.0  # of one turn, on a machine that does much else
 
 
@@ -168,7 +169,7 @@ async def aionode_part(role: str, kind: str) -> None:
             return
         ping = node.create_publisher(String, f"{topic}_ping", 10)
         times: list[int] = []
-        began = count = 0
+        began, count = 0, 1
         pause_s = 0.0
         ended = loop.create_future()
 
@@ -178,6 +179,8 @@ async def aionode_part(role: str, kind: str) -> None:
             ping.publish(message)
 
         def on_pong(_: Any) -> None:
+            if ended.done():  # by another answer to the first pings
+                return
             times.append(time.perf_counter_ns() - began)
             if len(times) == count:
                 ended.set_result(None)
@@ -187,9 +190,10 @@ async def aionode_part(role: str, kind: str) -> None:
                 send()
 
         node.create_subscription(String, f"{topic}_pong", on_pong)
-        await ping.wait_for_subscribers()
-        await node.context.graph.until(lambda: bool(node.count_publishers(f"/{topic}_pong")))
         message = String(data=TEXT)
+        while not ended.done():  # until the echo knows this process
+            send()
+            await asyncio.wait([ended], timeout=FIRST_S)
         while (turn := await asyncio.to_thread(next_turn)) is not None:
             count, pause_s = turn
             times.clear()
@@ -222,9 +226,8 @@ def rclpy_part(role: str, kind: str) -> None:
     ping = node.create_publisher(String, f"{topic}_ping", 10)
     message = String(data=TEXT)
     times: list[int] = []
-    began = count = 0
-    pause_s = 0.0
-    ended: Any = None
+    began, count, pause_s = 0, 1, 0.0
+    ended = Future(executor=executor)
 
     def send() -> None:
         nonlocal began
@@ -233,6 +236,8 @@ def rclpy_part(role: str, kind: str) -> None:
         ping.publish(message)
 
     def on_pong(_: Any) -> None:
+        if ended.done():  # by another answer to the first pings
+            return
         times.append(time.perf_counter_ns() - began)
         if len(times) == count:
             ended.set_result(None)
@@ -244,8 +249,9 @@ def rclpy_part(role: str, kind: str) -> None:
     timer = node.create_timer(0.01, send)
     timer.cancel()
     node.create_subscription(String, f"{topic}_pong", on_pong, 10)
-    while not (node.count_publishers(f"/{topic}_pong") and ping.get_subscription_count()):
-        time.sleep(0.01)
+    while not ended.done():  # until the echo knows this process
+        send()
+        executor.spin_until_future_complete(ended, timeout_sec=FIRST_S)
     while (turn := next_turn()) is not None:
         count, pause_s = turn
         times.clear()
@@ -334,59 +340,87 @@ def resident_kb() -> int:
     return pages * resource.getpagesize() // 1024
 
 
+class Stream:
+    """Numbered messages of one size in both directions, of which each has to arrive.
+
+    Each size has a topic of its own: Fast DDS never shrinks the buffers of a topic, so that large
+    messages among small ones would have all of them grow.
+    """
+
+    def __init__(self, node: Any, size: int) -> None:
+        from aionode.interfaces.std_msgs.msg import UInt8MultiArray
+        from aionode.qos import HistoryPolicy, QoSProfile
+
+        self._type = UInt8MultiArray
+        self._rest = bytes(size)
+        self._own = os.getpid().to_bytes(4, "little")
+        profile = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+        self.publisher = node.create_publisher(UInt8MultiArray, f"stress_{size}", profile)
+        self._reader = node.create_subscription(UInt8MultiArray, f"stress_{size}", None, profile)
+        self.sent = 0
+        self.wrong = 0
+        self.last: dict[bytes, int] = {}
+
+    def send(self) -> None:
+        """Send one message."""
+        data = self._own + self.sent.to_bytes(8, "little") + self._rest
+        self.publisher.publish(self._type(data=data))
+        self.sent += 1
+
+    async def read(self) -> None:
+        """Read, and count what is not in order."""
+        async for msg in self._reader:
+            data = bytes(msg.data)
+            sender, number = data[:4], int.from_bytes(data[4:12], "little")
+            self.wrong += number != self.last.get(sender, -1) + 1
+            self.last[sender] = number
+
+    def __str__(self) -> str:
+        received = {int.from_bytes(key, "little"): number + 1 for key, number in self.last.items()}
+        return (
+            f"{12 + len(self._rest)} bytes: sent {self.sent}, received {received}, "
+            f"out of order or lost {self.wrong}"
+        )
+
+
 async def stress_part(seconds: float) -> None:
     """Publish as fast as the other side reads, and read; print what came and what was slow."""
-    from aionode import Context, Node
-    from aionode.interfaces.std_msgs.msg import UInt8MultiArray
-    from aionode.qos import HistoryPolicy, QoSProfile
+    from aionode import Context, Node, freeze_objects
 
-    loop = asyncio.get_running_loop()
     async with (
         Context(transport="rcl") as context,
         Node(f"stress{os.getpid()}", context=context) as node,
     ):
-        profile = QoSProfile(history=HistoryPolicy.KEEP_ALL)
-        writer = node.create_publisher(UInt8MultiArray, "stress", profile)
-        reader = node.create_subscription(UInt8MultiArray, "stress", None, profile)
-        last: dict[bytes, int] = {}
-        wrong = 0
-        memory: list[int] = []
-
-        async def read() -> None:
-            nonlocal wrong
-            async for msg in reader:
-                data = bytes(msg.data)
-                sender, number = data[:4], int.from_bytes(data[4:12], "little")
-                wrong += number != last.get(sender, -1) + 1
-                last[sender] = number
-
-        reading = loop.create_task(read())
-        await writer.wait_for_subscribers(2)
+        small, large = streams = Stream(node, 100), Stream(node, 100_000)
+        reading = [asyncio.ensure_future(one.read()) for one in streams]
+        for one in streams:
+            await one.publisher.wait_for_subscribers(2)
         await asyncio.sleep(1.0)
-        own = os.getpid().to_bytes(4, "little")
-        gaps = Gaps(loop)
+        freeze_objects()  # as `aionode.run` does a second after the start
+        gaps = Gaps(asyncio.get_running_loop())
         gaps.watch()
+        memory: list[int] = []
         began = time.perf_counter()
-        number = 0
         while (now := time.perf_counter() - began) < seconds:
-            size = 100_000 if number % 1000 == 999 else 100
-            writer.publish(UInt8MultiArray(data=own + number.to_bytes(8, "little") + bytes(size)))
-            number += 1
-            if number % 50 == 0:
-                await writer.drain()
+            small.send()
+            if small.sent % 1000 == 0:
+                large.send()
+            if small.sent % 50 == 0:
+                for one in streams:
+                    await one.publisher.drain()
             if now > seconds * (len(memory) + 1) / 6:
                 memory.append(resident_kb())
-        await writer.drain()
+        for one in streams:
+            await one.publisher.drain()
         late = gaps.end()
-        before: dict[bytes, int] = {}
-        while before != last:  # the other side may send on for a while
-            before = dict(last)
+        before: list[dict[bytes, int]] = []
+        while before != [one.last for one in streams]:  # the other side may send on for a while
+            before = [dict(one.last) for one in streams]
             await asyncio.sleep(2.0)
-        reading.cancel()
-        received = {int.from_bytes(key, "little"): value + 1 for key, value in last.items()}
+        for task in reading:
+            task.cancel()
         print(
-            f"{os.getpid()}: sent {number} ({number / seconds:.0f}/s), received {received}, "
-            f"out of order or lost {wrong}; {late}; memory "
+            f"{os.getpid()}: {small}; {large}; {late}; memory "
             f"{', '.join(f'{one / 1024:.0f}' for one in memory)} MB",
             flush=True,
         )

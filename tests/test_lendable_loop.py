@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import queue
 import socket
+import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 
 import pytest
 
+from aionode.clock import perf_ns
 from aionode.lendable_loop import LendableLoop, Readers
 
 PATIENCE_S = 10.0
@@ -280,3 +284,124 @@ def test_an_exception_of_a_reader_goes_to_the_handler_of_the_loop(
         readers.end()
 
     assert [type(each) for each in handled] == [LookupError]
+
+
+# Everything at once
+
+
+class Work:
+    """What a loop and its borrowers do; notes when two threads do something at the same time."""
+
+    def __init__(self) -> None:
+        self.done: Counter[str] = Counter()
+        self.longest_pause_ns = 0
+        self._last_tick_ns = perf_ns()
+        self._one = threading.Lock()
+
+    def do(self, what: str, count: int = 1) -> None:
+        """Count something."""
+        if not self._one.acquire(blocking=False):
+            self.done["collisions"] += 1
+            return
+        os.sched_yield()  # another thread may run now, if nothing prevents it
+        self.done[what] += count
+        self._one.release()
+
+    def counts(self, names: Iterable[str]) -> dict[str, int]:
+        """Return how often these things were done so far."""
+        return {name: self.done[name] for name in names}
+
+    def tick(self, loop: LendableLoop) -> None:
+        """Note that timers of the loop run, and set the next one."""
+        now_ns = perf_ns()
+        self.longest_pause_ns = max(self.longest_pause_ns, now_ns - self._last_tick_ns)
+        self._last_tick_ns = now_ns
+        self.do("ticks")
+        loop.call_later(0.001, self.tick, loop)
+
+    def borrow(self, loop: LendableLoop, times: int) -> None:
+        """Borrow the loop so often, and give it something to do each time."""
+        for _ in range(times):
+            borrow(loop)
+            self.do("borrowed")
+            loop.call_soon(self.do, "soon")
+            loop.call_later(0.0, self.do, "later")
+            loop.give_back()
+
+    def post(self, loop: LendableLoop, times: int) -> None:
+        """Hand so many things over, and wake whoever waits in place of the loop."""
+        for number in range(times):
+            loop.call_soon_threadsafe(self.do, "posted")
+            if loop.readers is not None and number % 8 == 0:
+                loop.readers.rouse()
+
+    def wait(self, loop: LendableLoop, over: threading.Event) -> None:
+        """Wait in place of the loop, again and again."""
+        while loop.readers is not None and not over.is_set():
+            if loop.readers.begin():
+                for _ in range(16):
+                    if not loop.readers.call(loop.readers.wait(0.005)):
+                        break
+                loop.readers.end()
+
+
+def send(sock: socket.socket, times: int) -> None:
+    """Send so many bytes, one at a time."""
+    for _ in range(times):
+        sock.send(b"x")
+
+
+@pytest.fixture
+def quick_switches() -> Iterator[None]:
+    """Have Python change between threads as often as it can."""
+    usual_s = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    yield
+    sys.setswitchinterval(usual_s)
+
+
+@pytest.mark.usefixtures("quick_switches")
+@pytest.mark.parametrize("times", [10, pytest.param(2_000, marks=pytest.mark.stress)])
+@pytest.mark.timeout(300)
+def test_nothing_is_lost_while_threads_borrow_a_busy_loop(times: int) -> None:
+    """Timers, sockets and other threads keep it busy, and two threads wait in place of it."""
+    work, over = Work(), threading.Event()
+    pairs = [socket.socketpair() for _ in range(3)]
+    with running_loop() as loop:
+        for here, _ in pairs:
+            borrow(loop)
+            loop.add_reader(here, lambda sock: work.do("read", len(sock.recv(64))), here)
+            loop.give_back()
+        loop.call_soon_threadsafe(work.tick, loop)
+        jobs = [
+            *[threading.Thread(target=work.borrow, args=(loop, times)) for _ in range(3)],
+            *[threading.Thread(target=work.post, args=(loop, times)) for _ in range(3)],
+            *[threading.Thread(target=send, args=(there, times)) for _, there in pairs],
+        ]
+        waiters = [threading.Thread(target=work.wait, args=(loop, over)) for _ in range(2)]
+        for thread in (*waiters, *jobs):
+            thread.start()
+        for thread in jobs:
+            thread.join()
+        over.set()
+        for thread in waiters:
+            thread.join()
+        # Nobody waits in place of the loop any more: it goes on by itself.
+        ticks = work.done["ticks"]
+        for _, there in pairs:
+            send(there, 1)
+        wanted = dict.fromkeys(("borrowed", "soon", "later", "posted"), 3 * times)
+        wanted |= {"read": 3 * (times + 1), "collisions": 0}
+        ends_ns = perf_ns() + int(PATIENCE_S * 1e9)
+        while work.counts(wanted) != wanted or work.done["ticks"] == ticks:
+            if perf_ns() > ends_ns:
+                break
+            threading.Event().wait(0.01)
+        for here, _ in pairs:
+            loop.call_soon_threadsafe(loop.remove_reader, here)
+    for sock in (sock for pair in pairs for sock in pair):
+        sock.close()
+
+    assert work.counts(wanted) == wanted
+    assert work.done["ticks"] > ticks
+    assert work.longest_pause_ns < PATIENCE_S * 1e9

@@ -12,6 +12,7 @@ from aionode._node.end import EndRecord, NodeEnd
 from aionode.arguments import Arguments, Usage, parse_arguments
 from aionode.clock import ROSClock
 from aionode.endpoints._core.callback_runner import Callbacks
+from aionode.endpoints._core.endpoint import Endpoint
 from aionode.endpoints._core.entity import EndStage
 from aionode.endpoints._core.loop_affinity import in_loop_thread
 from aionode.endpoints._core.shutdown import Ending
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from aionode.clock import Clock
     from aionode.context import Context
     from aionode.endpoints._core.entity import Entity
-    from aionode.endpoints._core.graph_entry import GraphEntry
     from aionode.graph import Graph
     from aionode.logging import RcutilsLogger
     from aionode.transport.base import Registration
@@ -327,15 +327,15 @@ class NodeBase:
     # Entities
 
     @in_loop_thread
-    def _add_entity(self, entity: EntityT, graph_entry: GraphEntry | None = None) -> EntityT:
+    def _add_entity(self, entity: EntityT) -> EntityT:
         """Own `entity`: enter it into the graph, start it if the node runs, destroy it at the end.
 
         An action server or client, made of other entities, adds itself here.
         """
         self._entities[entity] = None
         entity._adopt(self._forget_entity, self._affinity)
-        if graph_entry is not None:
-            graph_entry.open()
+        if isinstance(entity, Endpoint):
+            entity._enter_graph()
         if self._tasks is not None:
             self._start_entity(entity, self._tasks)
         return entity

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar, overload
 from aionode import qos
 from aionode._node.parameters import NodeParameters
 from aionode.clock import Clock
-from aionode.endpoints._core.graph_entry import GraphEntry
+from aionode.endpoints._core.endpoint import EndpointSetup
 from aionode.endpoints._core.loop_affinity import in_loop_thread
 from aionode.endpoints.client import Client
 from aionode.endpoints.publisher import Publisher
@@ -17,7 +17,7 @@ from aionode.endpoints.subscription import Subscription
 from aionode.endpoints.timer import Rate, Timer
 from aionode.endpoints.timer._timer import to_period_ns
 from aionode.errors import brief, shortened
-from aionode.graph import EndpointKind
+from aionode.graph import SERVICE_KINDS, EndpointKind
 from aionode.message import Message, ServiceType, holds_arrays
 from aionode.parameter import declare_qos_overrides
 
@@ -96,19 +96,19 @@ class NodeEndpoints(NodeParameters):
         """
         self._refuse_if_destroyed("publisher")
         expect_message_type(msg_type, f"publisher of {topic}")
-        graph_entry = self._graph_entry(
+        setup = self._endpoint_setup(
             EndpointKind.PUBLISHER, topic, msg_type, qos_profile, qos_overriding_options
         )
         publisher = Publisher(
-            graph_entry,
+            setup,
             msg_type,
             lambda: self.context._register(
-                lambda transport: transport.create_writer(graph_entry.endpoint, msg_type)
+                lambda transport: transport.create_writer(setup.endpoint, msg_type)
             ),
             self.context.time_base,
             event_callbacks,
         )
-        return self._add_with_events(publisher, graph_entry)
+        return self._add_with_events(publisher)
 
     @overload
     def create_subscription(
@@ -188,11 +188,11 @@ class NodeEndpoints(NodeParameters):
         """
         self._refuse_if_destroyed("subscription")
         expect_message_type(msg_type, f"subscription of {topic}")
-        graph_entry = self._graph_entry(
+        setup = self._endpoint_setup(
             EndpointKind.SUBSCRIPTION, topic, msg_type, qos_profile, qos_overriding_options
         )
         subscription: Subscription[Any] = Subscription(
-            graph_entry,
+            setup,
             msg_type,
             callback,
             self.context.time_base,
@@ -210,11 +210,11 @@ class NodeEndpoints(NodeParameters):
         subscription._add_registrations(
             self.context._register(
                 lambda transport: transport.create_reader(
-                    graph_entry.endpoint, msg_type, subscription._reader
+                    setup.endpoint, msg_type, subscription._reader
                 )
             )
         )
-        return self._add_with_events(subscription, graph_entry)
+        return self._add_with_events(subscription)
 
     @in_loop_thread
     def create_service(
@@ -251,9 +251,9 @@ class NodeEndpoints(NodeParameters):
         """
         self._refuse_if_destroyed("service")
         expect_service_type(srv_type, f"service {srv_name}")
-        graph_entry = self._graph_entry(EndpointKind.SERVER, srv_name, srv_type, qos_profile)
+        setup = self._endpoint_setup(EndpointKind.SERVER, srv_name, srv_type, qos_profile)
         service: Service[RequestT, ResponseT] = Service(
-            graph_entry,
+            setup,
             srv_type,
             callback,
             self.create_publisher,
@@ -263,12 +263,10 @@ class NodeEndpoints(NodeParameters):
         )
         service._add_registrations(
             self.context._register(
-                lambda transport: transport.create_server(
-                    graph_entry.endpoint, srv_type, service._serve
-                )
+                lambda transport: transport.create_server(setup.endpoint, srv_type, service._serve)
             )
         )
-        return self._add_entity(service, graph_entry)
+        return self._add_entity(service)
 
     @in_loop_thread
     def create_client(
@@ -292,19 +290,18 @@ class NodeEndpoints(NodeParameters):
         """
         self._refuse_if_destroyed("client")
         expect_service_type(srv_type, f"client of {srv_name}")
-        graph_entry = self._graph_entry(EndpointKind.CLIENT, srv_name, srv_type, qos_profile)
+        setup = self._endpoint_setup(EndpointKind.CLIENT, srv_name, srv_type, qos_profile)
         requesters = self.context._register(
-            lambda transport: transport.create_requester(graph_entry.endpoint, srv_type)
+            lambda transport: transport.create_requester(setup.endpoint, srv_type)
         )
         return self._add_entity(
             Client(
-                graph_entry,
+                setup,
                 srv_type,
                 requesters,
                 self.context.time_base,
                 self.create_publisher,
-            ),
-            graph_entry,
+            )
         )
 
     @in_loop_thread
@@ -418,26 +415,26 @@ class NodeEndpoints(NodeParameters):
         entity.destroy()
         return True
 
-    def _add_with_events(self, endpoint: TopicT, graph_entry: GraphEntry) -> TopicT:
+    def _add_with_events(self, endpoint: TopicT) -> TopicT:
         """Own a publisher or subscription, and what calls its event callbacks."""
-        self._add_entity(endpoint, graph_entry)
-        handler = endpoint._monitor.handler
-        if handler is not None:
-            self._add_entity(handler)
+        self._add_entity(endpoint)
+        monitor = endpoint._monitor
+        if monitor is not None and monitor.handler is not None:
+            self._add_entity(monitor.handler)
         return endpoint
 
-    def _graph_entry(
+    def _endpoint_setup(
         self,
         kind: EndpointKind,
         name: str,
         ros_type: Any,
         qos_profile: QoSProfile | int,
         overriding: QoSOverridingOptions | None = None,
-    ) -> GraphEntry:
-        """Return the graph entry of a new endpoint, which `_add_entity` opens."""
+    ) -> EndpointSetup:
+        """Return what a new endpoint is made with; `_add_entity` puts it into the graph."""
         if self._constructed:  # the built-in services are rarely called, and start without it
             load_arrays(ros_type)
-        is_service = kind in {EndpointKind.SERVER, EndpointKind.CLIENT}
+        is_service = kind in SERVICE_KINDS
         full_name = self._resolve(name, is_service=is_service)
         profile = qos.as_profile(qos_profile)
         if overriding is not None:
@@ -453,7 +450,7 @@ class NodeEndpoints(NodeParameters):
         endpoint = self.context._describe_endpoint(
             kind, self._info, full_name, ros_type, profile.resolved()
         )
-        return GraphEntry(endpoint, self.graph, self._callbacks, self._affinity)
+        return EndpointSetup(endpoint, self.graph, self._callbacks, self._affinity)
 
 
 def load_arrays(ros_type: Any) -> None:

@@ -11,7 +11,7 @@ from aionode import names
 from aionode._node.base import NodeBase
 from aionode.endpoints._core.future import asks
 from aionode.errors import NodeNameNonExistentError
-from aionode.graph import TOPIC_KINDS, EndpointKind
+from aionode.graph import SERVICE_KINDS, TOPIC_KINDS, EndpointKind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -122,8 +122,8 @@ class NodeGraphQueries(NodeBase):
         return self.graph.names_and_types(*TOPIC_KINDS)
 
     def get_service_names_and_types(self) -> NamesAndTypes:
-        """Return every service that has a server, with its types."""
-        return self.graph.names_and_types(EndpointKind.SERVER)
+        """Return every service that has a server or a client, with its types."""
+        return self.graph.names_and_types(*SERVICE_KINDS)
 
     def get_action_names_and_types(self) -> NamesAndTypes:
         """Return every action, with its types."""

@@ -21,7 +21,6 @@ from aionode.errors import (
     ServiceUnavailableError,
     silence,
 )
-from aionode.graph import EndpointKind
 from aionode.message import Message, checker
 from aionode.transport.base import SampleInfo
 
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from aionode.clock import TimeBase
-    from aionode.endpoints._core.graph_entry import GraphEntry
+    from aionode.endpoints._core.endpoint import EndpointSetup
     from aionode.endpoints.publisher import Publisher
     from aionode.errors import ServiceError
     from aionode.transport.base import Call, Requester
@@ -52,14 +51,14 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
 
     def __init__(
         self,
-        graph_entry: GraphEntry,
+        setup: EndpointSetup,
         srv_type: Any,
         requesters: Sequence[Requester],
         time_base: TimeBase,
         create_publisher: Callable[..., Publisher[Any]],
     ) -> None:
-        subject = f"client of {graph_entry.endpoint.name}"
-        super().__init__(subject, graph_entry, srv_type, create_publisher, EndStage.LAST)
+        subject = f"client of {setup.endpoint.name}"
+        super().__init__(subject, setup, srv_type, create_publisher, EndStage.LAST)
         self.stats = ClientStats()
         self._requesters = tuple(requesters)
         self._check = checker(srv_type.Request)
@@ -71,13 +70,13 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
 
     def __repr__(self) -> str:
         return (
-            f"<Client {self.srv_name} {self._graph_entry.endpoint.type_name} "
+            f"<Client {self.srv_name} {self._endpoint.type_name} "
             f"calls={self.stats.calls} errors={self.stats.errors}>"
         )
 
     def service_is_ready(self) -> bool:
         """Return whether a server is matched now."""
-        return self._graph_entry.count_matched(EndpointKind.SERVER) > 0
+        return self._count_matched() > 0
 
     @asks
     async def wait_for_service(self, timeout_sec: float | None = None) -> bool:
@@ -97,7 +96,7 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
         self._refuse_if_destroyed()
         try:
             async with asyncio.timeout(timeout_sec):
-                await self._graph_entry.until(self.service_is_ready)
+                await self._until(self.service_is_ready)
         except TimeoutError:
             return self.service_is_ready()
         self._tell_caveat()
@@ -207,7 +206,7 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
         if servers == 0:
             self._check(request)
             self._warn_of_silence()
-        endpoint = self._graph_entry.endpoint
+        endpoint = self._endpoint
         sample_info = SampleInfo(endpoint.gid, self.stats.calls, self._now_ns())
         exchange = Exchange(endpoint.name, servers, self._answers)
         try:
@@ -244,21 +243,21 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
         caveat = self._caveat()
         if caveat and not self._has_told_caveat:
             self._has_told_caveat = True
-            self._graph_entry.callbacks.logger.warning(
+            self._callbacks.logger.warning(
                 f"{self.srv_name}: a server is matched, but may not answer: {caveat}"
             )
 
     def _warn_of_silence(self) -> None:
         if not self._warned:
             self._warned = True
-            self._graph_entry.callbacks.logger.warning(
+            self._callbacks.logger.warning(
                 f"{self.srv_name}: called while {silence(0)} The call waits without an answer; "
                 "`await client.wait_for_service()` first"
             )
 
     def _close(self) -> None:
         """Withdraw the client; cancel its calls, and the tasks that wait for a server."""
-        self._graph_entry.close()
+        self._leave_graph()
         # First, so that the calls do not fail as if the servers had gone.
         for answer in list(self._answers):
             answer.cancel(f"{self._subject}: destroyed")

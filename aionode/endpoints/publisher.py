@@ -6,11 +6,12 @@ from collections.abc import Callable
 from threading import get_ident
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from aionode.endpoints._core.entity import EndStage, Entity
+from aionode.endpoints._core.endpoint import Endpoint
+from aionode.endpoints._core.entity import EndStage
+from aionode.endpoints._qos.event_hub import is_limited
 from aionode.endpoints._qos.publisher_monitor import PublisherMonitor, SignOfLife
 from aionode.endpoints.stats import PublisherStats
 from aionode.errors import EntityDestroyedError, MessageError, QueueFullError
-from aionode.graph import EndpointKind
 from aionode.message import Message, checker
 from aionode.qos import KEEP_ALL_DEPTH
 
@@ -18,9 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from aionode.clock import TimeBase
-    from aionode.endpoints._core.graph_entry import GraphEntry
+    from aionode.endpoints._core.endpoint import EndpointSetup
     from aionode.endpoints.events import EventStream, PublisherEvent, PublisherEventCallbacks
-    from aionode.qos import QoSProfile
     from aionode.transport.base import Writer
 
 __all__ = ["Publisher"]
@@ -28,7 +28,7 @@ __all__ = ["Publisher"]
 MsgT = TypeVar("MsgT", bound=Message)
 
 
-class Publisher(Entity, Generic[MsgT]):
+class Publisher(Endpoint, Generic[MsgT]):
     """Sends messages of one type to one topic. Made by `Node.create_publisher`.
 
     Attributes:
@@ -39,26 +39,26 @@ class Publisher(Entity, Generic[MsgT]):
 
     def __init__(
         self,
-        graph_entry: GraphEntry,
+        setup: EndpointSetup,
         msg_type: type[MsgT],
         make_writers: Callable[[], Sequence[Writer]],
         time_base: TimeBase,
         event_callbacks: PublisherEventCallbacks | None = None,
     ) -> None:
-        super().__init__(f"publisher of {graph_entry.endpoint.name}", EndStage.LAST)
+        super().__init__(f"publisher of {setup.endpoint.name}", setup, EndStage.LAST)
         self.msg_type = msg_type
-        self.qos_profile: QoSProfile = graph_entry.endpoint.qos
-        self._graph_entry = graph_entry
-        self._endpoint = graph_entry.endpoint
-        self._affinity = graph_entry.affinity
         self._check: Callable[[Any], None] = checker(msg_type)
         self._now_ns = time_base.system_ns
-        # Before anything is announced to others: it refuses callbacks that do not fit.
-        self._monitor = PublisherMonitor(graph_entry, time_base, event_callbacks)
-        writers = self._monitor.writers = tuple(make_writers())
-        self.stats = PublisherStats(writers, graph_entry.matched)
+        self._time_base = time_base
+        self._monitor: PublisherMonitor | None = None  # if a policy or the program needs one
+        qos = self.qos_profile
+        if event_callbacks is not None or is_limited(qos.deadline, qos.liveliness_lease_duration):
+            # Before anything is announced to others: it refuses callbacks that do not fit.
+            self._monitor = PublisherMonitor(self, time_base, event_callbacks)
+        writers = self._all_writers = tuple(make_writers())  # one for each transport
+        self.stats = PublisherStats(writers, self._matched)
         self._signs: tuple[Writer, ...] = ()
-        if self._monitor.needs_signs:
+        if self._monitor is not None and self._monitor.needs_signs:
             self._signs = (SignOfLife(writers, self._check, self._monitor.note_message),)
         self._leave_out_dormant()
         for writer in writers:
@@ -66,19 +66,19 @@ class Publisher(Entity, Generic[MsgT]):
 
     def _leave_out_dormant(self) -> None:
         """Have the other writers take the messages."""
-        awake = tuple(writer for writer in self._monitor.writers if not writer.dormant)
+        awake = tuple(writer for writer in self._all_writers if not writer.dormant)
         self._writers: tuple[Writer, ...] = awake + self._signs
 
     def __repr__(self) -> str:
         return (
-            f"<Publisher {self.topic_name} {self._graph_entry.endpoint.type_name} "
+            f"<Publisher {self.topic_name} {self._endpoint.type_name} "
             f"{self.qos_profile} published={self.stats.published}>"
         )
 
     @property
     def topic_name(self) -> str:
         """The full name of the topic."""
-        return self._graph_entry.endpoint.name
+        return self._endpoint.name
 
     topic = topic_name
 
@@ -151,7 +151,10 @@ class Publisher(Entity, Generic[MsgT]):
             self._affinity.wait_for(self.assert_liveliness)
             return
         self._refuse_if_destroyed("assert liveliness")
-        self._monitor.assert_liveliness()
+        if self._monitor is not None:
+            self._monitor.renew_lease()
+        for writer in self._all_writers:
+            writer.assert_liveliness()
 
     @property
     def events(self) -> EventStream[PublisherEvent]:
@@ -159,6 +162,10 @@ class Publisher(Entity, Generic[MsgT]):
 
         It is the same stream each time; it begins with what has happened so far.
         """
+        if self._monitor is None:
+            self._monitor = PublisherMonitor(self, self._time_base, None)
+            if self.destroyed:
+                self._monitor.close()
         return self._monitor.events()
 
     async def drain(self) -> None:
@@ -172,19 +179,21 @@ class Publisher(Entity, Generic[MsgT]):
 
     def get_subscription_count(self) -> int:
         """Return how many subscriptions are matched, in this process and in others."""
-        return self._graph_entry.count_matched(EndpointKind.SUBSCRIPTION)
+        return self._count_matched()
 
     async def wait_for_subscribers(self, count: int = 1) -> None:
         """Wait until at least `count` subscriptions are matched, without a limit of its own."""
-        await self._graph_entry.until(lambda: self.get_subscription_count() >= count)
+        await self._until(lambda: self.get_subscription_count() >= count)
 
     def _run(self) -> None:
         """Begin to watch deadline and liveliness; there is no work for a task."""
-        self._monitor.start()
+        if self._monitor is not None:
+            self._monitor.start(self._all_writers)
 
     def _close(self) -> None:
         """Withdraw the publisher."""
-        self._monitor.close()
-        self._graph_entry.close()
-        for writer in self._monitor.writers:
+        if self._monitor is not None:
+            self._monitor.close()
+        self._leave_graph()
+        for writer in self._all_writers:
             writer.close()

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from aionode.endpoints._core.callback_runner import OnError
-    from aionode.endpoints._core.graph_entry import GraphEntry
+    from aionode.endpoints._core.endpoint import EndpointSetup
     from aionode.endpoints.publisher import Publisher
     from aionode.transport.base import Registration, Request
 
@@ -61,7 +61,7 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
 
     def __init__(
         self,
-        graph_entry: GraphEntry,
+        setup: EndpointSetup,
         srv_type: Any,
         callback: ServiceCallback[RequestT, ResponseT],
         create_publisher: Callable[..., Publisher[Any]],
@@ -70,8 +70,8 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
         on_error: OnError,
         offload: bool,
     ) -> None:
-        subject = f"service {graph_entry.endpoint.name}"
-        super().__init__(subject, graph_entry, srv_type, create_publisher)
+        subject = f"service {setup.endpoint.name}"
+        super().__init__(subject, setup, srv_type, create_publisher)
         self.callback = callback
         self.stats = CallbackStats()
         self._registrations: list[Registration] = []  # one for each transport
@@ -83,13 +83,13 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
             callback, 2, 1, subject=self._subject, wanted="(request, response) or (request)"
         )
         self._wants_response = wants == 2  # request and response
-        self._runner = graph_entry.callbacks.make_runner(
+        self._runner = setup.callbacks.make_runner(
             callback, self, self.stats, on_error=on_error, offload=offload
         )
 
     def __repr__(self) -> str:
         return (
-            f"<Service {self.srv_name} {self._graph_entry.endpoint.type_name} "
+            f"<Service {self.srv_name} {self._endpoint.type_name} "
             f"received={self.stats.received} errors={self.stats.errors}>"
         )
 
@@ -166,7 +166,7 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
 
     def _close(self) -> None:
         """Withdraw the service, and drop the queued requests."""
-        self._graph_entry.close()
+        self._leave_graph()
         self._introspection.close()
         for registration in self._registrations:
             registration.close()

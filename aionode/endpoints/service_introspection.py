@@ -11,14 +11,15 @@ import contextlib
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, Final
 
-from aionode.endpoints._core.entity import EndStage, Entity
+from aionode.endpoints._core.endpoint import Endpoint
+from aionode.endpoints._core.entity import EndStage
 from aionode.errors import QueueFullError, brief
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.clock import Clock
-    from aionode.endpoints._core.graph_entry import GraphEntry
+    from aionode.endpoints._core.endpoint import EndpointSetup
     from aionode.endpoints.publisher import Publisher
     from aionode.qos import QoSProfile
     from aionode.transport.base import SampleInfo
@@ -125,12 +126,12 @@ class Introspection:
             publisher.publish(event)
 
 
-class IntrospectedEntity(Entity):
+class IntrospectedEntity(Endpoint):
     """A service, or a client of one: its type, its name, and what is published about its calls.
 
     Args:
         subject: What it is, for errors and logs.
-        graph_entry: Its entry in the graph.
+        setup: What its node gives to it.
         srv_type: The service class.
         create_publisher: The node's method.
         stage: When it is destroyed as its node ends.
@@ -143,22 +144,20 @@ class IntrospectedEntity(Entity):
     def __init__(
         self,
         subject: str,
-        graph_entry: GraphEntry,
+        setup: EndpointSetup,
         srv_type: Any,
         create_publisher: Callable[..., Publisher[Any]],
         stage: EndStage = EndStage.CALLBACKS,
     ) -> None:
-        super().__init__(subject, stage)
+        super().__init__(subject, setup, stage)
         self.srv_type = srv_type
-        self.qos_profile: QoSProfile = graph_entry.endpoint.qos
-        self._graph_entry = graph_entry
-        self._introspection = Introspection(srv_type, graph_entry.endpoint.name, create_publisher)
+        self._introspection = Introspection(srv_type, setup.endpoint.name, create_publisher)
         self._introspects = False  # whether it publishes events
 
     @property
     def srv_name(self) -> str:
         """The full name of the service."""
-        return self._graph_entry.endpoint.name
+        return self._endpoint.name
 
     service_name = srv_name
 

@@ -154,24 +154,19 @@ class CallbackStats:
         filtered: How many arrived and did not pass the content filter.
         lost: How many are missing in the sequence numbers of publishers in other processes; not
             counted while there is a content filter.
-        queue_wait: From arrival to the start of the callback.
-        run_time: From the start of the callback to its end, including its awaits.
-        blocking: The longest stretch of each callback without an await, which blocks the loop.
     """
 
     __slots__ = (
+        "_distributions",
         "_inline_ns",
         "_took_ns",
         "_waited_ns",
-        "blocking",
         "dropped",
         "errors",
         "expired",
         "filtered",
         "lost",
-        "queue_wait",
         "received",
-        "run_time",
     )
 
     def __init__(self) -> None:
@@ -181,14 +176,36 @@ class CallbackStats:
         self.errors = 0
         self.filtered = 0
         self.lost = 0
-        self.queue_wait = Distribution(self._record_noted)
-        self.run_time = Distribution(self._record_noted)
-        self.blocking = Distribution(self._record_noted)
+        # Of the waits, runs and blocking stretches; None until something is recorded or read.
+        self._distributions: tuple[Distribution, Distribution, Distribution] | None = None
         # What was noted since `_record_noted`, of callbacks that did not await: how long their item
         # was queued, and how long they ran; and how long those ran whose item was not queued.
         self._waited_ns: list[int] = []
         self._took_ns: list[int] = []
         self._inline_ns: list[int] = []
+
+    @property
+    def queue_wait(self) -> Distribution:
+        """From arrival to the start of the callback."""
+        return self._recorded()[0]
+
+    @property
+    def run_time(self) -> Distribution:
+        """From the start of the callback to its end, including its awaits."""
+        return self._recorded()[1]
+
+    @property
+    def blocking(self) -> Distribution:
+        """The longest stretch of each callback without an await, which blocks the loop."""
+        return self._recorded()[2]
+
+    def _recorded(self) -> tuple[Distribution, Distribution, Distribution]:
+        distributions = self._distributions
+        if distributions is None:
+            note = self._record_noted
+            distributions = Distribution(note), Distribution(note), Distribution(note)
+            self._distributions = distributions
+        return distributions
 
     def _record_call(self, waited_ns: int, took_ns: int) -> None:
         """Add a callback that did not await: how long its item was queued, and how long it ran."""
@@ -204,10 +221,11 @@ class CallbackStats:
 
     def _record_noted(self) -> None:
         """Record what was noted."""
+        queue_wait, run_time, blocking = self._recorded()
         if self._inline_ns:
-            self.queue_wait._merge({_NO_WAIT: len(self._inline_ns)}, 0)
-        self.queue_wait._record_all(self._waited_ns)
-        self.run_time._record_all(self._took_ns + self._inline_ns, self.blocking)
+            queue_wait._merge({_NO_WAIT: len(self._inline_ns)}, 0)
+        queue_wait._record_all(self._waited_ns)
+        run_time._record_all(self._took_ns + self._inline_ns, blocking)
         for noted in (self._waited_ns, self._took_ns, self._inline_ns):
             noted.clear()
 

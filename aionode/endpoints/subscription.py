@@ -14,12 +14,12 @@ from aionode.endpoints._core.callback_runner import (
     checked_concurrency,
     consume,
 )
-from aionode.endpoints._core.entity import Entity
+from aionode.endpoints._core.endpoint import Endpoint
 from aionode.endpoints._core.message_queue import MessageQueue
+from aionode.endpoints._qos.event_hub import is_limited
 from aionode.endpoints._qos.subscription_monitor import SubscriptionMonitor
 from aionode.endpoints.stats import NOTED_CALLS, CallbackStats
 from aionode.errors import DecodeError, EntityDestroyedError
-from aionode.graph import EndpointKind
 from aionode.message import Message
 from aionode.qos import HistoryPolicy, depth_of, is_unlimited
 from aionode.transport.base import ReaderRegistration, SampleInfo
@@ -29,14 +29,13 @@ if TYPE_CHECKING:
 
     from aionode.clock import TimeBase
     from aionode.endpoints._core.callback_runner import OnError
-    from aionode.endpoints._core.graph_entry import GraphEntry
+    from aionode.endpoints._core.endpoint import EndpointSetup
     from aionode.endpoints.events import (
         EventStream,
         SubscriptionEvent,
         SubscriptionEventCallbacks,
     )
     from aionode.graph import EndpointInfo
-    from aionode.qos import QoSProfile
     from aionode.transport.base import Registration
 
 __all__ = ["MessageInfo", "Subscription", "SubscriptionCallback"]
@@ -64,7 +63,7 @@ SubscriptionCallback = Callable[[ItemT], object] | Callable[[ItemT, MessageInfo]
 """What a subscription calls, sync or async; an awaitable that it returns is awaited."""
 
 
-class Subscription(Entity, Generic[ItemT]):
+class Subscription(Endpoint, Generic[ItemT]):
     """Receives the messages of one topic. Made by `Node.create_subscription`.
 
     A callback is called with each message while the node runs. Without one, the subscription is an
@@ -81,7 +80,7 @@ class Subscription(Entity, Generic[ItemT]):
 
     def __init__(
         self,
-        graph_entry: GraphEntry,
+        setup: EndpointSetup,
         msg_type: type[Message],
         callback: SubscriptionCallback[ItemT] | None,
         time_base: TimeBase,
@@ -92,14 +91,11 @@ class Subscription(Entity, Generic[ItemT]):
         offload: bool,
         event_callbacks: SubscriptionEventCallbacks | None = None,
     ) -> None:
-        endpoint = graph_entry.endpoint
-        super().__init__(f"subscription of {endpoint.name}")
+        super().__init__(f"subscription of {setup.endpoint.name}", setup)
         self.msg_type = msg_type
-        self.qos_profile: QoSProfile = endpoint.qos
         self.raw = raw
         self.callback = callback
         self.stats = CallbackStats()
-        self._graph_entry = graph_entry
         self._registrations: list[Registration] = []  # one for each transport
         self._content_filter: ContentFilterOptions | None = None
         self._concurrent = checked_concurrency(concurrent, self._subject)
@@ -110,19 +106,27 @@ class Subscription(Entity, Generic[ItemT]):
             wants = accepts(
                 callback, 1, 2, subject=self._subject, wanted="(message) or (message, info)"
             )
-            self._runner = graph_entry.callbacks.make_runner(
+            self._runner = setup.callbacks.make_runner(
                 callback, self, self.stats, on_error=on_error, offload=offload
             )
-        self._reader = _Reader(endpoint, self.stats, time_base, raw=raw, wants_info=wants == 2)
+        self._reader = _Reader(
+            setup.endpoint, self.stats, time_base, raw=raw, wants_info=wants == 2
+        )
         if self._runner is not None:
             self._reader.runner = self._runner
-        self._monitor = SubscriptionMonitor(graph_entry, self._reader, time_base, event_callbacks)
-        self._reader.note_alive = self._monitor.note_alive
-        self._reader.note_filtered = self._monitor.note_filtered
+        self._time_base = time_base
+        self._runs = False
+        self._monitor: SubscriptionMonitor | None = None  # if a policy or the program needs one
+        qos = self.qos_profile
+        limits = qos.deadline, qos.lifespan, qos.liveliness_lease_duration
+        if event_callbacks is not None or is_limited(*limits):
+            self._make_monitor(event_callbacks)
+        else:
+            self._watch(self._note_publisher)
 
     def __repr__(self) -> str:
         return (
-            f"<Subscription {self.topic_name} {self._graph_entry.endpoint.type_name} "
+            f"<Subscription {self.topic_name} {self._endpoint.type_name} "
             f"{self.qos_profile} "
             f"received={self.stats.received} dropped={self.stats.dropped}>"
         )
@@ -130,13 +134,13 @@ class Subscription(Entity, Generic[ItemT]):
     @property
     def topic_name(self) -> str:
         """The full name of the topic."""
-        return self._graph_entry.endpoint.name
+        return self._endpoint.name
 
     topic = topic_name
 
     def get_publisher_count(self) -> int:
         """Return how many publishers are matched, in this process and in others."""
-        return self._graph_entry.count_matched(EndpointKind.PUBLISHER)
+        return self._count_matched()
 
     # Content filter
 
@@ -166,9 +170,10 @@ class Subscription(Entity, Generic[ItemT]):
             TypeError: a parameter is not a str.
             EntityDestroyedError: the subscription was destroyed (a RuntimeError).
         """
-        affinity = self._graph_entry.affinity
-        if affinity.is_other_thread():
-            affinity.wait_for(self.set_content_filter, filter_expression, expression_parameters)
+        if self._affinity.is_other_thread():
+            self._affinity.wait_for(
+                self.set_content_filter, filter_expression, expression_parameters
+            )
             return
         self._refuse_if_destroyed("set content filter")
         accepts = None
@@ -194,7 +199,24 @@ class Subscription(Entity, Generic[ItemT]):
 
         It is the same stream each time; it begins with what has happened so far.
         """
-        return self._monitor.events()
+        return (self._monitor or self._make_monitor()).events()
+
+    def _note_publisher(self, publisher: EndpointInfo, present: bool) -> None:
+        """Have messages expire if a publisher says so."""
+        limited = present and is_limited(publisher.qos.lifespan)
+        if limited and self._monitor is None and self._endpoint.matches(publisher):
+            self._make_monitor()
+
+    def _make_monitor(
+        self, event_callbacks: SubscriptionEventCallbacks | None = None
+    ) -> SubscriptionMonitor:
+        monitor = SubscriptionMonitor(self, self._reader, self._time_base, event_callbacks)
+        self._monitor = self._reader.monitor = monitor
+        if self._runs:
+            monitor.start()
+        if self.destroyed:
+            monitor.close()
+        return monitor
 
     # Reading without a callback
 
@@ -256,7 +278,9 @@ class Subscription(Entity, Generic[ItemT]):
 
     def _run(self) -> Coroutine[Any, Any, None] | None:
         """Return the coroutine that calls the callback; None without a callback."""
-        self._monitor.start()
+        self._runs = True
+        if self._monitor is not None:
+            self._monitor.start()
         if self._runner is None:
             return None
         receive: Callable[[int, Any], Coroutine[Any, Any, None] | None] = self._runner.receive
@@ -267,8 +291,9 @@ class Subscription(Entity, Generic[ItemT]):
 
     def _close(self) -> None:
         """Withdraw the subscription; unread messages can still be read, without a callback."""
-        self._monitor.close()
-        self._graph_entry.close()
+        if self._monitor is not None:
+            self._monitor.close()
+        self._leave_graph()
         for registration in self._registrations:
             registration.close()
         self._reader.close(discard=self._runner is not None)
@@ -300,8 +325,7 @@ class _Reader(MessageQueue[Any]):
         wants_info: Whether the items are pairs of a message and its `MessageInfo`.
 
     Attributes:
-        note_alive: Takes the assertion of a publisher that it is alive.
-        note_filtered: Takes the publisher of a message that does not pass the content filter.
+        monitor: Is told which publishers are alive; None without one.
         on_arrival: Called with each message; returns whether to deliver it. None for all.
         on_lost: Called with the number of messages that are found missing; None for nothing.
         runner: Runs the callback; not set without one.
@@ -314,8 +338,7 @@ class _Reader(MessageQueue[Any]):
         "_now_ns",
         "_reception_sequence",
         "endpoint",
-        "note_alive",
-        "note_filtered",
+        "monitor",
         "on_arrival",
         "on_lost",
         "raw",
@@ -340,8 +363,7 @@ class _Reader(MessageQueue[Any]):
         self._now_ns = time_base.system_ns
         self._closed = False
         self._accepts: Callable[[Any], bool] | None = None  # the content filter
-        self.note_alive: Callable[[bytes], None]
-        self.note_filtered: Callable[[bytes], None]
+        self.monitor: SubscriptionMonitor | None = None
         self.on_arrival: Callable[[SampleInfo], bool] | None = None
         self.on_lost: Callable[[int], None] | None = None
         self.runner: CallbackRunner
@@ -412,7 +434,8 @@ class _Reader(MessageQueue[Any]):
         if self._accepts is not None:
             if not self._accepts(msg):
                 self.stats.filtered += 1
-                self.note_filtered(sample_info.gid)
+                if self.monitor is not None:
+                    self.monitor.note_filtered(sample_info.gid)
                 return
         else:
             self._note_sequence(sample_info.gid, sample_info.sequence)
@@ -429,6 +452,11 @@ class _Reader(MessageQueue[Any]):
         """
         self._accepts = accepts
         self._last_sequences.clear()
+
+    def note_alive(self, gid: bytes) -> None:
+        """Take the assertion of a publisher that it is alive."""
+        if self.monitor is not None:
+            self.monitor.note_alive(gid)
 
     def reject(self, error: DecodeError) -> None:  # noqa: ARG002  # the transport has logged it
         """Count bytes that are not a message of the subscription's type."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from aionode import names
 from aionode.clock import MachineTime
 from aionode.errors import NameValidationException
-from aionode.graph import EndpointKind
+from aionode.graph import SERVICE_KINDS, EndpointKind
 from aionode.rclpy._impl.destroyable import Wakeup
 from aionode.rclpy.qos import as_own
 from aionode.rclpy.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
@@ -118,7 +118,7 @@ class NodeGraph:
             return self._handle.topic_names_and_types()
 
     def get_service_names_and_types(self) -> NamesAndTypes:
-        """Return every service that has a server, with its types."""
+        """Return every service that has a server or a client, with its types."""
         with self._handle:
             return self._handle.service_names_and_types()
 
@@ -185,7 +185,7 @@ class NodeGraph:
         return self._count(EndpointKind.SERVER, service_name)
 
     def _count(self, kind: EndpointKind, name: str) -> int:
-        is_service = kind in (EndpointKind.CLIENT, EndpointKind.SERVER)
+        is_service = kind in SERVICE_KINDS
         with self._handle:
             full_name = self._expected(name, only_expand=True, is_service=is_service)
             return self._handle.count(kind, full_name)

@@ -16,6 +16,7 @@ from aionode.rclpy._impl.wait_set import WaitSet
 from aionode.rclpy.subscription import Subscription
 
 if TYPE_CHECKING:
+    from aionode.rclpy._impl.destroyable import Arrivals
     from aionode.rclpy._protocols import ExecutorLike, NodeLike
     from aionode.rclpy.callback_groups import Entity
 
@@ -25,6 +26,8 @@ __all__ = ["Ready", "Take", "await_or_execute", "ready_callbacks", "wait_set_of"
 
 Take = Callable[["ExecutorLike", Any], "Callable[[], Any] | None"]
 Ready = tuple["Entity", "NodeLike", Take]
+
+MESSAGE_ONLY = Subscription.CallbackType.MessageOnly
 
 
 def ready_callbacks(
@@ -39,17 +42,31 @@ def ready_callbacks(
             if can_execute(waitable) and is_ready(waitable, context)
         ]
     for node in nodes:
-        for entities, take in (
-            (node._timers, take_timer),
-            (node._subscriptions, take_subscription),
-            (node._guards, take_guard_condition),
-            (node._clients, take_client),
-            (node._services, take_service),
+        handle = node.handle
+        for entities, arrivals, take in (
+            (node._timers, None, take_timer),
+            (node._subscriptions, handle.messages, take_subscription),
+            (node._guards, None, take_guard_condition),
+            (node._clients, handle.responses, take_client),
+            (node._services, handle.requests, take_service),
         ):
-            for entity in entities:
-                if entity.handle.ready() and can_execute(entity):
-                    found.append((entity, node, take))  # few are
+            if entities and (arrivals is None or arrivals.last is not arrivals.seen):
+                for entity in ready_entities(entities, arrivals):
+                    if can_execute(entity):
+                        found.append((entity, node, take))  # few are
     return found
+
+
+def ready_entities(entities: list[Any], arrivals: Arrivals | None) -> list[Any]:
+    """Return those that are ready; if none is, only a new arrival makes one so."""
+    last = None if arrivals is None else arrivals.last
+    ready = []
+    for entity in entities:
+        if entity._handle.ready():
+            ready.append(entity)  # noqa: PERF401  # a comprehension is one more call
+    if arrivals is not None and not ready:
+        arrivals.seen = last
+    return ready
 
 
 def is_ready(waitable: Any, context: Any) -> bool:
@@ -97,16 +114,15 @@ def take_timer(executor: ExecutorLike, timer: Any) -> Callable[[], Any] | None:
 
 def take_subscription(executor: ExecutorLike, subscription: Any) -> Callable[[], Any] | None:
     """Take the next message of a subscription."""
-    try:
-        with subscription.handle:
-            taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
-    except InvalidHandle:
+    handle = subscription._handle
+    if handle._unwanted:
         return None
+    taken = handle.take_sample(subscription.msg_type, subscription.raw)
     if taken is None:
         return None
-    if subscription._callback_type is Subscription.CallbackType.MessageOnly:
-        return partial(run, subscription.callback, taken[0])
-    return partial(run, subscription.callback, *taken)
+    if subscription._callback_type is MESSAGE_ONLY:
+        return partial(run, subscription._callback, taken[0])
+    return partial(run, subscription._callback, taken[0], handle.info_of(taken))
 
 
 def take_guard_condition(executor: ExecutorLike, guard: Any) -> Callable[[], Any] | None:
@@ -173,6 +189,10 @@ def take_waitable(executor: ExecutorLike, waitable: Any) -> Callable[[], Any] | 
 def run(callback: Callable[..., Any], *args: Any) -> Any:
     """Call `callback`; return a coroutine only if it is a coroutine function, as in rclpy."""
     result = callback(*args)
-    if inspect.iscoroutine(result) and not inspect.iscoroutinefunction(callback):
+    if (
+        result is not None
+        and inspect.iscoroutine(result)
+        and not inspect.iscoroutinefunction(callback)
+    ):
         return None
     return result

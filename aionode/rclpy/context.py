@@ -114,7 +114,7 @@ class Context:
     def ok(self) -> bool:
         """Return whether it is initialised and not shut down."""
         handle = self._handle
-        return handle is not None and handle.ok()
+        return handle is not None and not handle.is_shut_down
 
     def _cleanup(self) -> None:
         handle = self._handle

@@ -110,8 +110,9 @@ class Executor:
         if self._context.handle is None:
             raise RuntimeError("Context must be initialized a GuardCondition can be created")
         self._context.handle.refuse_if_over("guard_condition")
-        self._context.handle.signal.add(self._wakeup)
-        self._io = self._context.handle.io
+        self._context_handle = self._context.handle
+        self._context_handle.signal.add(self._wakeup)
+        self._io = self._context_handle.io
         self._context.on_shutdown(self.wake)
 
     @property
@@ -183,8 +184,7 @@ class Executor:
         self.wake()
         for node in self.get_nodes():
             self.remove_node(node)
-        if self._context.handle is not None:
-            self._context.handle.signal.remove(self._wakeup)
+        self._context_handle.signal.remove(self._wakeup)
         self._cb_iter = None
         return True
 
@@ -220,29 +220,41 @@ class Executor:
             left.timeout = left_ns / 1e9
 
     def _goes_on(self, future: Future[Any]) -> bool:
-        return (
-            self._context.ok()
-            and not future.done()
-            and not future.cancelled()
-            and not self._is_shutdown
+        return not (
+            self._context_handle.is_shut_down
+            or future.done()
+            or future.cancelled()
+            or self._is_shutdown
         )
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Wait for one callback and call it. Only one thread may do this at a time.
+        """Wait for one callback and call it, or have a thread call it. One thread at a time may.
 
         Args:
             timeout_sec: The longest wait in seconds; None or negative for ever.
+
+        Raises:
+            NotImplementedError: it is an executor of one's own that does not define this.
+            Exception: what the callback raised, or an earlier one that a thread has called.
         """
-        raise NotImplementedError
+        self._spin_once_impl(timeout_sec)
 
     def spin_once_until_future_complete(
         self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
     ) -> None:
-        """Wait for one callback and call it, but no longer than until `future` is done."""
-        raise NotImplementedError
+        """As `spin_once`, but no longer than until `future` is done."""
+        future.add_done_callback(lambda _: self.wake())
+        self._spin_once_until_future_complete(future, timeout_sec)
 
     def _spin_once_until_future_complete(
         self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
+    ) -> None:
+        self._spin_once_impl(timeout_sec, future.done)
+
+    def _spin_once_impl(
+        self,
+        timeout_sec: float | TimeoutObject | None = None,
+        condition: Callable[[], bool] = never,
     ) -> None:
         raise NotImplementedError
 
@@ -321,43 +333,48 @@ class Executor:
             ends_ns = steady_ns() + int(timeout_sec * 1e9)
         yielded = False
         while not yielded:
+            self._wakeup.take(False)  # whatever it was for is looked at now
             self._raise_if_over(condition)
             used = self.get_nodes() if nodes is None else nodes
-            for work in self._unfinished(used):
-                yielded = True
-                yield work
-            ready = ready_callbacks(used, self.can_execute, self._context.handle)
+            if self._tasks:
+                for work in self._unfinished(used):
+                    yielded = True
+                    yield work
+            ready = ready_callbacks(used, self.can_execute, self._context_handle)
             if not ready and not yielded:
-                left_ns = None if ends_ns is None else ends_ns - steady_ns()
-                if left_ns is None or left_ns > 0:
-                    self._wait(used, left_ns)
-                    self._raise_if_over(never)
-                    ready = ready_callbacks(used, self.can_execute, self._context.handle)
+                ready = self._ready_after_wait(used, ends_ns)
             # Before the calls, which may take longer than the limit.
             over = ends_ns is not None and (timeout_sec == 0 or steady_ns() >= ends_ns)
             for found in ready:
                 # A call of this round may have begun another one, of the same group.
-                if self.can_execute(found[0]):
+                if found is ready[0] or self.can_execute(found[0]):
                     yielded = True
                     yield found
             if over:
                 raise TimeoutException
 
-    def _raise_if_over(self, condition: Callable[[], bool]) -> None:
+    def _raise_if_over(self, condition: Callable[[], bool] = never) -> None:
         if self._is_shutdown:
             self.wake()  # another thread may wait, too
             raise ShutdownException
-        if not self._context.ok():
+        if self._context_handle.is_shut_down:
             self.wake()
             raise ExternalShutdownException
         if condition():
             raise ConditionReachedException
 
+    def _ready_after_wait(self, nodes: list[NodeLike], ends_ns: int | None) -> list[Ready]:
+        left_ns = None if ends_ns is None else ends_ns - steady_ns()
+        if left_ns is not None and left_ns <= 0:
+            return []
+        self._wait(nodes, left_ns)
+        if self._is_shutdown or self._context_handle.is_shut_down:
+            self._raise_if_over()
+        return ready_callbacks(nodes, self.can_execute, self._context_handle)
+
     def _unfinished(self, nodes: list[NodeLike]) -> Iterable[Work]:
         """Yield the tasks that can go on, and forget those that are done."""
         with self._tasks_lock:
-            if not self._tasks:
-                return
             self._tasks = [
                 work for work in self._tasks if not (work[0].done() or work[0].cancelled())
             ]
@@ -384,7 +401,7 @@ class Executor:
                     if due_ns is not None:
                         waits.append(due_ns)
         waitables = [each for node in nodes for each in node._waitables if self.can_execute(each)]
-        wait_set = wait_set_of(waitables, self._context.handle) if waitables else None
+        wait_set = wait_set_of(waitables, self._context_handle) if waitables else None
         if wait_set is not None:
             due_ns = wait_set.due_in_ns()
             if due_ns is not None:
@@ -498,22 +515,6 @@ class SingleThreadedExecutor(Executor):
         if exception is not None:
             raise exception
 
-    def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Wait for one callback and call it."""
-        self._spin_once_impl(timeout_sec)
-
-    def _spin_once_until_future_complete(
-        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
-    ) -> None:
-        self._spin_once_impl(timeout_sec, future.done)
-
-    def spin_once_until_future_complete(
-        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
-    ) -> None:
-        """Wait for one callback and call it, but no longer than until `future` is done."""
-        future.add_done_callback(lambda _: self.wake())
-        self._spin_once_until_future_complete(future, timeout_sec)
-
 
 class MultiThreadedExecutor(Executor):
     """Calls callbacks in a pool of threads.
@@ -569,22 +570,6 @@ class MultiThreadedExecutor(Executor):
         finally:
             task._scheduled = False
             self.wake()
-
-    def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Wait for one callback and hand it to a thread; raise what an earlier one has raised."""
-        self._spin_once_impl(timeout_sec)
-
-    def _spin_once_until_future_complete(
-        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
-    ) -> None:
-        self._spin_once_impl(timeout_sec, future.done)
-
-    def spin_once_until_future_complete(
-        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
-    ) -> None:
-        """Wait for one callback, but no longer than until `future` is done; see `spin_once`."""
-        future.add_done_callback(lambda _: self.wake())
-        self._spin_once_until_future_complete(future, timeout_sec)
 
     def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool = True) -> bool:
         """Begin no more callbacks, wait for those that run, and end the threads."""

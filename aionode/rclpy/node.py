@@ -343,7 +343,7 @@ class Node(NodeParameters, NodeGraph):
             raise
         group.add_entity(subscription)
         self._subscriptions.append(subscription)
-        self._wake_executor()
+        self._handle.messages.note()  # some may wait already
         self._add_event_handlers(subscription)
         return subscription
 
@@ -370,7 +370,7 @@ class Node(NodeParameters, NodeGraph):
         )
         group.add_entity(client)
         self._clients.append(client)
-        self._wake_executor()
+        self._handle.responses.note()
         return client
 
     def create_service(
@@ -397,7 +397,7 @@ class Node(NodeParameters, NodeGraph):
         )
         group.add_entity(service)
         self._services.append(service)
-        self._wake_executor()
+        self._handle.requests.note()
         return service
 
     def create_timer(

@@ -4,14 +4,19 @@ A thread appends to a `ThreadsafeQueue` and, unless that was done already, wakes
 then empties all queues in turn, a slice at a time, so that timers and other callbacks run in
 between. This handles a burst several times as fast as `call_soon_threadsafe` for each item, because
 a wake-up is a system call and most items need none.
+
+Zenoh's threads are not started by Python, which makes a thread state for each of their calls and
+frees it at the end. Its memory is mapped and unmapped, which costs several times as much as the
+item does. So the state of such a thread is kept from its first item on.
 """
 
 from __future__ import annotations
 
+import ctypes
 import os
 import threading
 from collections import deque
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, ClassVar, Final, Generic, TypeVar
 
 from aionode._concurrency import SLICE_NS
 from aionode.clock import perf_ns
@@ -27,6 +32,33 @@ T = TypeVar("T")
 
 SLICE_ITEMS = 32
 """How many items of one queue are handled before it is the next queue's turn."""
+
+KEPT_LIMIT: Final = 64
+"""In how many of Zenoh's threads the thread state is kept. Those that receive are few, and last as
+long as the process; others might come and go."""
+
+
+class ThreadState(threading.local):
+    """Python's state of the calling thread.
+
+    Attributes:
+        is_known: Whether `keep` was called. A new state begins without.
+    """
+
+    kept: ClassVar[int] = 0  # in all threads
+    is_known = False
+
+    def keep(self) -> None:
+        """Keep the state until the process ends, unless the thread was started by Python."""
+        self.is_known = True
+        ident = threading.get_ident()
+        if ThreadState.kept < KEPT_LIMIT and all(t.ident != ident for t in threading.enumerate()):
+            ThreadState.kept += 1
+            # One call more than there will be of PyGILState_Release, which frees it after the last.
+            ctypes.pythonapi.PyGILState_Ensure()
+
+
+thread_state = ThreadState()
 
 
 class LoopWaker:
@@ -71,6 +103,8 @@ class LoopWaker:
     def ready(self, queue: ThreadsafeQueue[object]) -> None:
         """Schedule `queue`, which has an item. May be called from any thread."""
         self._ready.append(queue)
+        if not thread_state.is_known:
+            thread_state.keep()
         if not self._armed:
             self._armed = True
             self._wake()

@@ -270,7 +270,8 @@ class WriterHistory:
     def _write_slowly(self, entry: tuple[int, bytes, bytes, int]) -> None:
         """Send a message after a jump of sequence numbers, or as the window allows."""
         sequence = entry[0]
-        if self._window_end < 0:
+        has_readers_changed = self._window_end < 0
+        if has_readers_changed:
             self._update_window()
         if sequence != self._last + 1:
             self._jumped_to = sequence
@@ -279,10 +280,9 @@ class WriterHistory:
         self._last = sequence
         self._end = entry[3]
         self.entries.append(entry)
-        if not self._unsent and self._admits(entry):
-            self._send(entry)
-        else:
-            self._unsent.append(entry)
+        self._unsent.append(entry)
+        # Behind a message that waits, only an acknowledgement opens the window, and that pumps too.
+        if len(self._unsent) == 1 or has_readers_changed or self.has_other_readers:
             self.pump()
         while len(self.entries) > self._limit:
             oldest = self.entries.popleft()[0]
@@ -326,22 +326,21 @@ class WriterHistory:
                 return is_open  # KEEP_LAST waits only if all lag, KEEP_ALL if one does
         return self._keep_all or not is_read
 
-    def _send(self, entry: tuple[int, bytes, bytes, int]) -> None:
-        self.sent, payload, extra, self._sent_end = entry
-        self._sent_ns = self._now_ns()
-        self._put(payload, extra)
-
     def pump(self) -> None:
         """Send waiting messages as far as the window is open."""
         unsent = self._unsent
         if self._pumping or not unsent:
             return
         self._pumping = True
+        sent = self.sent
         try:
-            while unsent and self._admits(unsent[0]):
-                self._send(unsent.popleft())
+            while unsent and (unsent[0][3] <= self._window_end or self._admits(unsent[0])):
+                self.sent, payload, extra, self._sent_end = unsent.popleft()
+                self._put(payload, extra)
         finally:
             self._pumping = False
+        if self.sent != sent:
+            self._sent_ns = self._now_ns()
         if not self.readers:
             self._trim()
 

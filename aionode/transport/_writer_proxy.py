@@ -19,8 +19,9 @@ __all__ = ["ReaderSide", "WriterProxy"]
 ACK_BYTES: Final = 64 * 1024
 """A reader acknowledges unasked after so many bytes."""
 
-ACK_OVERHEAD_BYTES: Final = 1024
-"""What each message counts besides its payload: 64 small messages make one acknowledgement."""
+ACK_OVERHEAD_BYTES: Final = 256
+"""What each message counts besides its payload: 256 messages without any make one acknowledgement,
+and a writer's window is more than ten times that."""
 
 NACK_NS: Final = 5_000_000
 """A reader asks for missing messages no more often than this, unless it gets a heartbeat."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode.errors import ServiceError
 from aionode.message import snapshotter
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = ["LocalTransport"]
 
+MemberT = TypeVar("MemberT", "LocalWriter", "LocalReader")
+
 Deliver = Callable[[Any, bytes, int, int], None]
 """Takes a message, its publisher's gid, its number and its time, as `Reader.deliver` does."""
 
@@ -29,7 +31,9 @@ class LocalTransport(Transport):
     """The transport of a context to itself."""
 
     def __init__(self) -> None:
-        self._topics: dict[str, _Topic] = {}
+        # By name, in the order in which they were created.
+        self._writers: dict[str, dict[LocalWriter, None]] = {}
+        self._readers: dict[str, dict[LocalReader, None]] = {}
         self._servers: dict[str, list[LocalServer]] = {}
 
     async def open(self, graph: Graph) -> None:
@@ -44,10 +48,9 @@ class LocalTransport(Transport):
 
     def create_writer(self, endpoint: EndpointInfo, msg_type: type[Any]) -> Writer:
         """Connect a publisher with the subscriptions of its topic."""
-        topic = self._topic(endpoint.name)
-        writer = LocalWriter(endpoint, msg_type, topic)
-        topic.writers[writer] = None
-        for reader in topic.readers:
+        writer = LocalWriter(endpoint, msg_type, self._writers)
+        self._writers.setdefault(endpoint.name, {})[writer] = None
+        for reader in self._readers.get(endpoint.name, ()):
             writer.meet(reader)
         return writer
 
@@ -55,10 +58,9 @@ class LocalTransport(Transport):
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
     ) -> Registration:
         """Connect a subscription with the publishers of its topic; late ones get the history."""
-        topic = self._topic(endpoint.name)
-        local_reader = LocalReader(endpoint, msg_type, reader, topic)
-        topic.readers[local_reader] = None
-        for writer in topic.writers:
+        local_reader = LocalReader(endpoint, msg_type, reader, self._readers, self._writers)
+        self._readers.setdefault(endpoint.name, {})[local_reader] = None
+        for writer in self._writers.get(endpoint.name, ()):
             writer.meet(local_reader)
         return local_reader
 
@@ -71,12 +73,6 @@ class LocalTransport(Transport):
     def create_requester(self, endpoint: EndpointInfo, srv_type: Any) -> Requester:
         """Connect a client with the servers of its service."""
         return LocalRequester(endpoint, srv_type, self._servers)
-
-    def _topic(self, name: str) -> _Topic:
-        topic = self._topics.get(name)
-        if topic is None:
-            topic = self._topics[name] = _Topic(lambda: self._topics.pop(name, None))
-        return topic
 
 
 def _in_class(msg: Any, msg_type: type[Any]) -> Any:
@@ -99,23 +95,13 @@ class _Nothing(Registration):
 # Topics
 
 
-class _Topic:
-    """The two sides of one topic; forgotten when the last has left."""
-
-    __slots__ = ("_forget", "readers", "writers")
-
-    def __init__(self, forget: Callable[[], object]) -> None:
-        self.writers: dict[LocalWriter, None] = {}  # ordered sets
-        self.readers: dict[LocalReader, None] = {}
-        self._forget = forget
-
-    def leave(self, member: LocalWriter | LocalReader) -> None:
-        """Remove one of either side; twice is the same as once."""
-        side: dict[Any, None] = self.writers if isinstance(member, LocalWriter) else self.readers
-        if member in side:
-            del side[member]
-            if not self.writers and not self.readers:
-                self._forget()
+def _leave(side: dict[str, dict[MemberT, None]], member: MemberT) -> None:
+    """Remove an endpoint from those of its name; twice is the same as once."""
+    members = side.get(member.endpoint.name)
+    if members is not None:
+        members.pop(member, None)
+        if not members:
+            del side[member.endpoint.name]
 
 
 class LocalReader(Registration):
@@ -125,12 +111,18 @@ class LocalReader(Registration):
     """
 
     def __init__(
-        self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader, topic: _Topic
+        self,
+        endpoint: EndpointInfo,
+        msg_type: type[Any],
+        reader: Reader,
+        readers: dict[str, dict[LocalReader, None]],
+        writers: dict[str, dict[LocalWriter, None]],
     ) -> None:
         self.endpoint = endpoint
         self.msg_type = msg_type
         self.reader = reader
-        self._topic = topic
+        self._readers = readers
+        self._writers = writers
         self.bounded = keeps_all(endpoint.qos)
 
     def delivery_from(self, msg_type: type[Any]) -> Deliver:
@@ -147,18 +139,23 @@ class LocalReader(Registration):
 
     def close(self) -> None:
         """Leave every publisher."""
-        self._topic.leave(self)
-        for writer in self._topic.writers:
+        _leave(self._readers, self)
+        for writer in self._writers.get(self.endpoint.name, ()):
             writer.part(self)
 
 
 class LocalWriter(Writer):
     """A publisher as its subscriptions in the same context see it."""
 
-    def __init__(self, endpoint: EndpointInfo, msg_type: type[Any], topic: _Topic) -> None:
+    def __init__(
+        self,
+        endpoint: EndpointInfo,
+        msg_type: type[Any],
+        writers: dict[str, dict[LocalWriter, None]],
+    ) -> None:
         self.endpoint = endpoint
         self._msg_type = msg_type
-        self._topic = topic
+        self._writers = writers
         self._snapshot = snapshotter(msg_type)
         self._gid = endpoint.gid
         self._matched: dict[LocalReader, Deliver] = {}
@@ -226,7 +223,7 @@ class LocalWriter(Writer):
 
     def close(self) -> None:
         """Leave every subscription."""
-        self._topic.leave(self)
+        _leave(self._writers, self)
         self._matched.clear()
         self._history = None
         self._update()

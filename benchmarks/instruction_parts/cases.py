@@ -290,7 +290,7 @@ async def link_publish(count: Count) -> AsyncIterator[Callable[[], Any]]:
 async def link_receive(count: Count) -> AsyncIterator[Callable[[], Any]]:
     """Read frames from a link's socket, and call a callback."""
     async with linked_pair(count) as (publisher, _):
-        gid = publisher._graph_entry.endpoint.gid  # noqa: SLF001  # for its frames
+        gid = publisher._endpoint.gid  # noqa: SLF001  # for its frames
         (sender,) = publisher._writers[1]._send_queues  # noqa: SLF001  # its end of the link
         sock = sender._sock  # noqa: SLF001  # to write past it
         payload = cdr.encode(String(data=TEXT))
@@ -340,7 +340,7 @@ async def zenoh_publish(count: Count) -> AsyncIterator[Callable[[], Any]]:
         publisher = node.create_publisher(String, "topic", qos_profile_sensor_data)
         graph = transport.state.graph
         assert graph is not None  # noqa: S101  # open
-        own = publisher._graph_entry.endpoint  # noqa: SLF001  # for a match
+        own = publisher._endpoint  # noqa: SLF001  # for a match
         theirs = NodeInfo("cd", 1, "other", "/")
         graph.add_endpoint(
             EndpointInfo(

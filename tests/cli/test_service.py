@@ -129,6 +129,19 @@ async def test_list_prints_names_and_types(tool: Node, server: Node, screen: Any
     )
 
 
+async def test_a_service_that_only_has_clients_is_listed(
+    tool: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """As `ros2 service list` lists it; `info` says that nobody serves it."""
+    asking = node_factory("asking", start_parameter_services=False)
+    asking.create_client(AddTwoInts, "/add_two_ints")
+
+    await info(tool, "/add_two_ints", output=screen.output)
+
+    assert SERVICE.types_by_name(tool)["/add_two_ints"] == [ADD]
+    assert screen.text == f"Type: {ADD}\nClients count: 1\nServices count: 0\n"
+
+
 async def test_info_prints_type_and_counts(tool: Node, server: Node, screen: Any) -> None:
     """The command's own client does not count."""
     tool.create_client(AddTwoInts, "/add_two_ints")

@@ -96,7 +96,7 @@ async def test_metadata_says_which_request_and_when(bench: Bench) -> None:
         ServiceEventInfo.RESPONSE_RECEIVED,
     ]
     assert {event.info.sequence_number for event in events} == {1}
-    gid = bench.client._graph_entry.endpoint.gid
+    gid = bench.client._endpoint.gid
     assert {bytes(event.info.client_gid) for event in events} == {gid}
     assert all(len(event.request) == len(event.response) == 0 for event in events)
     now = bench.node.get_clock().now().to_msg()

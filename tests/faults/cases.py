@@ -24,10 +24,11 @@ from tests.faults.roles import Hear, Output, Publish, Role
 __all__ = ["all_cases"]
 
 WAYS = {"link": "on", "Zenoh": "off"}
-FREEZES_S = (5, 14, 70)
+PAST_LEASE_S = 14
+FREEZES_S = (5, PAST_LEASE_S, 70)
 """Shorter than the lease of 10 s, longer, and longer than that of ROS 2 nodes, which is 60 s."""
 
-RETURNS_S = (5, 14, 33, 70)
+RETURNS_S = (5, PAST_LEASE_S, 33, 70)
 """And between the two: a peer of ROS 2 nodes is gone for itself, but not yet for them."""
 
 LEASE_S = 10.0
@@ -83,6 +84,9 @@ ACTING = (
 )
 
 
+MANY = 5
+"""How many processes there are where all but one are frozen."""
+
 CROWD = 30
 """How many processes start at the same moment."""
 
@@ -110,7 +114,7 @@ def freezes(way: str) -> Iterator[Case]:
                 yield Case(
                     f"{way}: {kind} {name} frozen {seconds} s",
                     on(way, *talk(keep_all=keep_all, period_s=0.02 if short else 0.1)),
-                    freeze(name, seconds),
+                    freeze((name,), seconds),
                     (name,),
                     loss="none" if keep_all else "told",
                     lasts_s=seconds,
@@ -136,14 +140,14 @@ def freezes(way: str) -> Iterator[Case]:
         yield Case(
             f"{way}: KEEP_ALL reader frozen {seconds} s, transient local",
             on(way, *talk(keep_all=True, transient=True, period_s=0.02 if short else 0.1)),
-            freeze("reader", seconds),
+            freeze(("reader",), seconds),
             ("reader",),
             lasts_s=seconds,
         )
         yield Case(
             f"{way}: large calls, server frozen {seconds} s",
             on(way, *LARGE_CALLING),
-            freeze("server", seconds),
+            freeze(("server",), seconds),
             ("server",),
             loss="told",
             lasts_s=seconds,
@@ -151,7 +155,7 @@ def freezes(way: str) -> Iterator[Case]:
         yield Case(
             f"{way}: KEEP_ALL talker ended after its reader was frozen {seconds} s",
             on(way, *talk(keep_all=True, period_s=0.02 if short else 0.1)),
-            end_beside_frozen("talker", "reader", seconds),
+            end_beside_frozen("talker", ("reader",), seconds),
             ("reader",),
             loss="told",
             lasts_s=seconds,
@@ -161,7 +165,7 @@ def freezes(way: str) -> Iterator[Case]:
                 yield Case(
                     f"{way}: {kind}, {name} frozen {seconds} s",
                     on(way, *roles),
-                    freeze(name, seconds),
+                    freeze((name,), seconds),
                     (name,),
                     loss="told",
                     lasts_s=seconds,
@@ -171,10 +175,24 @@ def freezes(way: str) -> Iterator[Case]:
         yield Case(
             f"{way}: one of three frozen {seconds} s, all hear all",
             on(way, *members(3)),
-            freeze("member1", seconds),
+            freeze(("member1",), seconds),
             ("member1",),
             loss="any",
             lasts_s=seconds,
+        )
+    first, *others = (role.name for role in members(MANY))
+    frozen = tuple(others)
+    for what, fault in (
+        ("all hear all", freeze(frozen, PAST_LEASE_S)),
+        ("the other one ends", end_beside_frozen(first, frozen, PAST_LEASE_S)),
+    ):
+        yield Case(
+            f"{way}: {len(frozen)} of {MANY} frozen {PAST_LEASE_S} s, {what}",
+            on(way, *members(MANY)),
+            fault,
+            frozen,
+            loss="any",
+            lasts_s=PAST_LEASE_S,
         )
 
 
@@ -338,7 +356,7 @@ def routers() -> Iterator[Case]:
         yield Case(
             f"router, one of three frozen {seconds} s, all hear all",
             (ROUTER, *on("Zenoh", *members(3))),
-            freeze("member2", seconds),
+            freeze(("member2",), seconds),
             ("member2",),
             loss="any",
             lasts_s=seconds,
@@ -347,7 +365,7 @@ def routers() -> Iterator[Case]:
             yield Case(
                 f"router and two ROS 2 nodes, {name[:-1]} frozen {seconds} s, all hear all",
                 (ROUTER, *members(3, ros=2)),
-                freeze(name, seconds),
+                freeze((name,), seconds),
                 (name,),
                 loss="any",
                 lasts_s=seconds,

@@ -33,25 +33,29 @@ def wait(seconds: float) -> Fault:
     return strike
 
 
-def freeze(name: str, seconds: float) -> Fault:
-    """Stop a process for some time, as a debugger or a closed laptop does."""
+def freeze(names: Iterable[str], seconds: float) -> Fault:
+    """Stop some processes for some time, as a debugger or a closed laptop does."""
 
     async def strike(stage: Stage) -> None:
-        stage.children[name].send(signal.SIGSTOP)
+        for name in names:
+            stage.children[name].send(signal.SIGSTOP)
         await asyncio.sleep(seconds)
-        stage.children[name].send(signal.SIGCONT)
+        for name in names:
+            stage.children[name].send(signal.SIGCONT)
 
     return strike
 
 
-def end_beside_frozen(name: str, frozen: str, seconds: float) -> Fault:
-    """End a process with SIGTERM while another has been frozen for some time."""
+def end_beside_frozen(name: str, frozen: Iterable[str], seconds: float) -> Fault:
+    """End a process with SIGTERM while others have been frozen for some time."""
 
     async def strike(stage: Stage) -> None:
-        stage.children[frozen].send(signal.SIGSTOP)
+        for each in frozen:
+            stage.children[each].send(signal.SIGSTOP)
         await asyncio.sleep(seconds)
         await stage.children[name].end()
-        stage.children[frozen].send(signal.SIGCONT)
+        for each in frozen:
+            stage.children[each].send(signal.SIGCONT)
 
     return strike
 

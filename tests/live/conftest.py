@@ -59,6 +59,7 @@ def environment() -> dict[str, str]:
         "ROS_DOMAIN_ID": str(1 + secrets.randbelow(99)),
         "RMW_IMPLEMENTATION": "rmw_zenoh_cpp",
         "PYTHONUNBUFFERED": "1",
+        "RUST_LOG": "error",  # Zenoh writes its warnings to the standard output
     }
 
 
@@ -92,7 +93,9 @@ def router(environment: dict[str, str]) -> Iterator[None]:
         if probe.connect_ex(("127.0.0.1", ROUTER_PORT)) == 0:
             yield
             return
-    with running([*ROS2, "run", "rmw_zenoh_cpp", "rmw_zenohd"], environment):
+    with running([*ROS2, "run", "rmw_zenoh_cpp", "rmw_zenohd"], environment) as process:
+        assert process.stdout is not None
+        assert any(line.startswith("Started Zenoh router") for line in process.stdout)
         yield
 
 
@@ -101,7 +104,7 @@ def peer(environment: dict[str, str], router: None) -> Iterator[subprocess.Popen
     """The node of ROS 2 that all tests share."""
     with running([*PYTHON, str(PEER)], environment) as process:
         assert process.stdout is not None
-        assert process.stdout.readline() == "running\n"
+        assert "running\n" in process.stdout
         yield process
 
 

@@ -287,7 +287,8 @@ async def test_half_a_node_does_not_stay_in_its_context(refused: str) -> None:
             Node("robot", context=context)
         assert not context._nodes
         assert not context.graph.nodes()
-        assert not first._topics
+        assert not first._writers
+        assert not first._readers
 
         transport.refused = ""
         async with Node("robot", context=context) as robot:

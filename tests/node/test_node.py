@@ -380,6 +380,16 @@ async def test_the_graph_shows_nodes_topics_and_services(context: Context) -> No
         assert len(info.endpoint_gid) == 16
 
 
+async def test_a_service_with_clients_only_is_among_the_services(context: Context) -> None:
+    """As in ROS 2, on each middleware; how many servers there are, `count_services` says."""
+    async with Node("arm", context=context) as node:
+        node.create_client(AddTwoInts, "/add")
+
+        types = dict(node.get_service_names_and_types())
+        assert types["/add"] == ["example_interfaces/srv/AddTwoInts"]
+        assert (node.count_services("/add"), node.count_clients("/add")) == (0, 1)
+
+
 async def test_asking_about_an_unknown_node_is_an_error(node: Node) -> None:
     """An empty list would say that the node exists and does nothing."""
     with pytest.raises(NodeNameNonExistentError, match="/ghost: no such node"):

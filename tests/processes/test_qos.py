@@ -54,6 +54,7 @@ async def test_a_frozen_process_is_not_alive_within_its_lease(link: bool) -> Non
 
 async def until_asserted(subscription: Subscription[Int32]) -> None:
     """Wait until the only publisher has asserted its liveliness."""
+    assert subscription._monitor is not None
     known = subscription._monitor._liveliness
     assert known is not None
     (lease,) = known._leases.values()

@@ -828,6 +828,7 @@ def graph_answers(trace: Trace) -> None:
     trace(str(info.topic_type_hash), info.qos_profile.reliability.name)
     trace(dict(node.get_client_names_and_types_by_node("graph", "/here")))
     trace(node.count_clients("asked"), node.count_services("asked"))
+    trace(dict(node.get_service_names_and_types()).get("/here/asked"))
     services = dict(node.get_service_names_and_types_by_node("graph", "/here"))
     trace(sorted(services))
     publishers = dict(node.get_publisher_names_and_types_by_node("graph", "/here"))

@@ -183,6 +183,20 @@ def test_a_managed_publisher_is_silent_until_its_node_is_active() -> None:
 
 
 @pytest.mark.usefixtures("initialised")
+def test_a_transition_that_is_not_possible_is_warned_of_in_the_words_of_rcl(
+    caplog: pytest.LogCaptureFixture, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Programs and people look for these lines in a log."""
+    node = LifecycleNode("managed")
+
+    assert node.trigger_activate() is TransitionCallbackReturn.ERROR
+
+    logged = caplog.text + capsys.readouterr().err
+    assert "No transition matching 3 found for current state unconfigured" in logged
+    node.destroy_node()
+
+
+@pytest.mark.usefixtures("initialised")
 async def test_an_async_node_needs_no_executor() -> None:
     """Its callbacks run in the loop that awaits it."""
     async with AsyncNode("awaited") as node, asyncio.timeout(LIMIT_S):

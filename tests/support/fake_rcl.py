@@ -220,7 +220,7 @@ class Entity(Handle):
     def put(self, item: object) -> None:
         """Add something to be taken."""
         self.queue.append(item)
-        if self.fd is not None:
+        if self.fd is not None and (self.rcl.is_fast_dds or len(self.queue) == 1):
             os.eventfd_write(self.fd, 1)
 
     def others(self, kind: type[Entity]) -> list[Any]:
@@ -324,6 +324,10 @@ class FakeRcl:
         refuses: Why publishing fails; empty if it does not.
         numbers: Whether messages come with a number, as over Fast DDS.
         silent: How many questions for services of a node fail before they are answered.
+        hides_changes: Whether nothing tells of changes of the graph.
+        takes: How many times a subscription was asked for a message.
+        published: How many messages were published.
+        is_fast_dds: Whether it tells of each message; if not, of the first of several.
     """
 
     version = "9.9.9"
@@ -337,6 +341,9 @@ class FakeRcl:
         self.refuses = ""
         self.numbers = True
         self.silent = 0
+        self.hides_changes = False
+        self.takes = self.published = 0
+        self.is_fast_dds = True
         self._ids = itertools.count(1)
         self.take_freely, self.publish_freely = self.take, self.publish
         self.set_service_callback = self.set_client_callback = self.set_subscription_callback
@@ -373,6 +380,8 @@ class FakeRcl:
 
     def note_change(self) -> None:
         """Tell all nodes of a change of the graph."""
+        if self.hides_changes:
+            return
         for node in self.of(NodeHandle):
             node.guard.trigger_guard_condition()
 
@@ -435,8 +444,10 @@ class FakeRcl:
         """Publish a serialized message."""
         if self.refuses:
             return REFUSED
+        self.published += 1
         publisher: Any = self.handles[pointer]
-        payload = ctypes.string_at(array._obj.buffer, array._obj.length)
+        view = array._obj
+        payload = ctypes.string_at(ctypes.c_void_p.from_buffer(view).value or 0, view.length)
         item = (payload, publisher.gid, next(publisher.sequence), perf_ns())
         if publisher.qos.durability is DurabilityPolicy.TRANSIENT_LOCAL:
             publisher.queue.append(item)
@@ -446,6 +457,7 @@ class FakeRcl:
 
     def take(self, pointer: int, array: Any, info: Any, _: None) -> int:
         """Take a serialized message."""
+        self.takes += 1
         reader: Any = self.handles[pointer]
         if not reader.queue:
             return NOTHING
@@ -495,6 +507,12 @@ class FakeRcl:
         """Return whether a client has a server."""
         client: Any = self.handles[pointer]
         found._obj.value = bool(client.others(ServiceHandle))
+        return 0
+
+    def count_subscriptions(self, pointer: int, count: Any) -> int:
+        """Return how many subscriptions a publisher has."""
+        publisher: Any = self.handles[pointer]
+        count._obj.value = len(publisher.others(SubscriptionHandle))
         return 0
 
     def assert_liveliness(self, pointer: int) -> int:

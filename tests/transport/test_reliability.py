@@ -269,6 +269,22 @@ def test_what_was_dropped_before_it_was_sent_does_not_fill_the_window() -> None:
     assert wire.lost_count == 19
 
 
+@pytest.mark.parametrize("acknowledges", [True, False])
+def test_what_waits_for_a_frozen_reader_is_sent_to_a_new_one(*, acknowledges: bool) -> None:
+    """No acknowledgement opens the window then."""
+    wire = Wire(1, keep_all=False, depth=1000)
+    topic = wire.topic[wire.names[0]]
+    for _ in range(100):
+        wire.publish(10_000)
+    waiting = len(topic)
+    if acknowledges:
+        wire.history.add(b"n" * 16, "")
+    else:
+        wire.history.has_other_readers = True
+    wire.publish(10_000)
+    assert len(topic) > waiting
+
+
 def test_a_lagging_reader_holds_up_no_other_of_a_keep_last_writer() -> None:
     """One laptop that left the network must not silence the robot."""
     wire = Wire(2, keep_all=False, depth=10)

@@ -105,7 +105,7 @@ async def test_a_subscription_of_another_context_costs_the_same_beside_many() ->
         state = transport_of(nodes.a).zenoh.session_state  # type: ignore[attr-defined]  # Zenoh's
         state.acknowledgements.participants.add("f00")
         other = NodeInfo("f00", 0, "other", "/")
-        endpoint = publisher._graph_entry.endpoint
+        endpoint = publisher._endpoint
         readers = [
             replace(
                 endpoint,

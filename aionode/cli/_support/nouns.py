@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from aionode._node.graph import actions_among
 from aionode.cli._support import lookup
 from aionode.errors import CommandError
-from aionode.graph import TOPIC_KINDS, EndpointKind
+from aionode.graph import SERVICE_KINDS, TOPIC_KINDS
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
@@ -41,7 +41,7 @@ class Noun:
             # An action consists of hidden topics and services; its topics show both ends.
             topics = lookup.names_and_types(node, *TOPIC_KINDS, hidden=True)
             return dict(actions_among(list(topics.items())))
-        kinds = (EndpointKind.SERVER,) if self is SERVICE else TOPIC_KINDS
+        kinds = SERVICE_KINDS if self is SERVICE else TOPIC_KINDS
         return lookup.names_and_types(node, *kinds, hidden=hidden)
 
     def unknown(self, node: Node, name: str) -> CommandError:

@@ -12,7 +12,7 @@ from aionode.cli._support.diagnosis import Finding, diagnose
 from aionode.cli._support.routes import link_findings, pairs_of, query_links
 from aionode.clock import perf_ns
 from aionode.errors import FAST_DDS_REMEDY, FAST_DDS_SILENCE
-from aionode.graph import EndpointKind
+from aionode.graph import SERVICE_KINDS, TOPIC_KINDS, EndpointKind
 from aionode.transport._zenoh_config import DiscoveryRange, unheard_middleware
 
 if TYPE_CHECKING:
@@ -71,8 +71,8 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
         "bridges": len(bridges),
         "participants": len({one.participant for one in nodes}),
         "nodes": len(nodes),
-        "topics": count(endpoints, EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION),
-        "services": count(endpoints, EndpointKind.SERVER, EndpointKind.CLIENT),
+        "topics": count(endpoints, *TOPIC_KINDS),
+        "services": count(endpoints, *SERVICE_KINDS),
         "links": len(links.pairs),
         "pairs": [pair.record() for pair in pairs],
     }

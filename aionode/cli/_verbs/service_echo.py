@@ -10,7 +10,7 @@ from aionode.cli._support.formatting import PrintOptions, csv_line, yaml_text
 from aionode.cli._support.nouns import SERVICE
 from aionode.endpoints.service_introspection import TOPIC_SUFFIX
 from aionode.errors import CommandError
-from aionode.graph import EndpointKind
+from aionode.graph import SERVICE_KINDS, EndpointKind
 from aionode.interfaces.service_msgs.msg import ServiceEventInfo
 from aionode.qos import qos_profile_services_default
 
@@ -93,7 +93,7 @@ async def service_class(node: Node, name: str, given: str | None) -> Any:
     Raises:
         CommandError: the service is unknown, or has several types.
     """
-    users = lookup.endpoints(node, EndpointKind.SERVER, EndpointKind.CLIENT, name=name)
+    users = lookup.endpoints(node, *SERVICE_KINDS, name=name)
     types = sorted({user.type_name for user in users})
     if given is not None:
         types = [given]

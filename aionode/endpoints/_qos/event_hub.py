@@ -12,15 +12,22 @@ from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints.events import EVENTS_KEPT, EventStream
 from aionode.endpoints.stats import CallbackStats
 from aionode.errors import brief
+from aionode.qos import is_unlimited
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine, Mapping
 
+    from aionode.clock import Duration
     from aionode.endpoints._core.callback_runner import Callbacks
-    from aionode.endpoints._core.graph_entry import GraphEntry
+    from aionode.endpoints._core.endpoint import Endpoint
     from aionode.endpoints.events import PublisherEventCallbacks, SubscriptionEventCallbacks
 
-__all__ = ["EventHandler", "EventHub"]
+__all__ = ["EventHandler", "EventHub", "is_limited"]
+
+
+def is_limited(*durations: Duration) -> bool:
+    """Return whether a policy sets a limit, so that its endpoint has to be watched."""
+    return not all(map(is_unlimited, durations))
 
 
 class EventHandler(Entity):
@@ -78,7 +85,7 @@ class EventHub:
     """Hands the events of one endpoint on, and remembers the newest of each kind.
 
     Args:
-        graph_entry: The endpoint.
+        entity: The endpoint.
         event_callbacks: What the program gave for its events.
         wanted: The class of that.
 
@@ -98,7 +105,7 @@ class EventHub:
 
     def __init__(
         self,
-        graph_entry: GraphEntry,
+        entity: Endpoint,
         event_callbacks: PublisherEventCallbacks | SubscriptionEventCallbacks | None,
         wanted: type[PublisherEventCallbacks | SubscriptionEventCallbacks],
     ) -> None:
@@ -108,8 +115,7 @@ class EventHub:
         self._ended = False
         if event_callbacks is None:
             return
-        endpoint = graph_entry.endpoint
-        subject = f"{endpoint.kind.value} of {endpoint.name}"
+        subject = entity._subject
         if not isinstance(event_callbacks, wanted):
             raise TypeError(
                 f"{subject}: event_callbacks is {brief(event_callbacks)}; give a "
@@ -121,12 +127,12 @@ class EventHub:
             if callback is not None and name != "use_default_callbacks"
         }
         if given:
-            self.handler = EventHandler(subject, given, graph_entry.callbacks)
+            self.handler = EventHandler(subject, given, entity._callbacks)
         silent = not event_callbacks.use_default_callbacks
         handled = {"qos"} if silent or "incompatible_qos" in given else set()
         if silent or "incompatible_type" in given:
             handled.update(("type", "definition"))
-        graph_entry.leave_unreported(handled)
+        entity._leave_unreported(handled)
 
     def calls(self, name: str) -> bool:
         """Return whether a callback was given for the events called `name`."""

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from aionode.clock import TimeBase
     from aionode.clock._time_base import Alarm
-    from aionode.endpoints._core.graph_entry import GraphEntry
+    from aionode.endpoints._core.endpoint import Endpoint
     from aionode.endpoints.events import EventStream
 
 __all__ = ["PublisherMonitor", "SignOfLife"]
@@ -63,12 +63,9 @@ class PublisherMonitor(EventHub):
     """Watches one publisher, and tells of its events.
 
     Args:
-        graph_entry: The publisher.
+        entity: The publisher.
         time_base: The time.
         event_callbacks: What the program gave for its events.
-
-    Attributes:
-        writers: The counterparts of the publisher in the transports.
 
     Raises:
         TypeError: `event_callbacks` is of another class, or a function in it takes other arguments.
@@ -76,7 +73,7 @@ class PublisherMonitor(EventHub):
 
     __slots__ = (
         "_alarms",
-        "_graph_entry",
+        "_entity",
         "_heartbeat",
         "_lease_alarm",
         "_lease_ns",
@@ -85,22 +82,22 @@ class PublisherMonitor(EventHub):
         "_missed",
         "_time_base",
         "_watches_matches",
-        "writers",
+        "_writers",
     )
 
     def __init__(
         self,
-        graph_entry: GraphEntry,
+        entity: Endpoint,
         time_base: TimeBase,
         event_callbacks: PublisherEventCallbacks | None,
     ) -> None:
-        super().__init__(graph_entry, event_callbacks, PublisherEventCallbacks)
-        self._graph_entry = graph_entry
+        super().__init__(entity, event_callbacks, PublisherEventCallbacks)
+        self._entity = entity
         self._time_base = time_base
-        self.writers: Sequence[Writer] = ()
+        self._writers: Sequence[Writer] = ()  # its counterparts in the transports
         self._missed = 0
         self._lost = 0
-        qos = graph_entry.endpoint.qos
+        qos = entity.qos_profile
         self._manual = qos.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
         lease = qos.liveliness_lease_duration
         self._lease_ns = 0 if is_unlimited(lease) else lease.nanoseconds
@@ -133,19 +130,18 @@ class PublisherMonitor(EventHub):
         self._watch_matches()
         return self.stream()
 
-    def start(self) -> None:
-        """Begin to watch: the node runs now."""
+    def start(self, writers: Sequence[Writer]) -> None:
+        """Begin to watch, and to assert AUTOMATIC liveliness by `writers`: the node runs now."""
+        self._writers = writers
         for alarm in self._alarms:
             alarm.start()
         if self._lease_ns and not self._manual:
             self._beat()
 
-    def assert_liveliness(self) -> None:
-        """Renew the lease, and tell the subscriptions that the publisher is alive."""
+    def renew_lease(self) -> None:
+        """Take the program's assertion that the publisher is alive."""
         if self._lease_alarm is not None:
             self._lease_alarm.note()
-        for writer in self.writers:
-            writer.assert_liveliness()
 
     def close(self) -> None:
         """Watch nothing more."""
@@ -158,11 +154,12 @@ class PublisherMonitor(EventHub):
     def _watch_matches(self) -> None:
         if not self._watches_matches:
             self._watches_matches = True
-            self._graph_entry.watch(Matching(self._graph_entry.endpoint, self.emit).note)
+            self._entity._watch(Matching(self._entity._endpoint, self.emit).note)
 
     def _beat(self) -> None:
         """Assert AUTOMATIC liveliness, again and again."""
-        self.assert_liveliness()
+        for writer in self._writers:
+            writer.assert_liveliness()
         due_ns = self._time_base.steady_ns() + self._lease_ns // ASSERTIONS_IN_LEASE
         self._heartbeat = self._time_base.call_at(due_ns, self._beat)
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from aionode.clock import Duration, TimeBase
     from aionode.clock._time_base import Alarm
-    from aionode.endpoints._core.graph_entry import GraphEntry
+    from aionode.endpoints._core.endpoint import Endpoint
     from aionode.endpoints.events import EventStream
     from aionode.endpoints.stats import CallbackStats
     from aionode.graph import EndpointInfo
@@ -54,7 +54,7 @@ class SubscriptionMonitor(EventHub):
     deadline, lease or lifespan, or the lifespan of a publisher.
 
     Args:
-        graph_entry: The subscription.
+        entity: The subscription.
         reader: Its queue.
         time_base: The time.
         event_callbacks: What the program gave for its events.
@@ -66,7 +66,7 @@ class SubscriptionMonitor(EventHub):
     __slots__ = (
         "_deadline",
         "_endpoint",
-        "_graph_entry",
+        "_entity",
         "_items",
         "_lifespans_ns",
         "_liveliness",
@@ -82,14 +82,14 @@ class SubscriptionMonitor(EventHub):
 
     def __init__(
         self,
-        graph_entry: GraphEntry,
+        entity: Endpoint,
         reader: MonitoredReader,
         time_base: TimeBase,
         event_callbacks: SubscriptionEventCallbacks | None,
     ) -> None:
-        super().__init__(graph_entry, event_callbacks, SubscriptionEventCallbacks)
-        self._graph_entry = graph_entry
-        self._endpoint = graph_entry.endpoint
+        super().__init__(entity, event_callbacks, SubscriptionEventCallbacks)
+        self._entity = entity
+        self._endpoint = entity._endpoint
         self._reader = reader
         self._time_base = time_base
         self._now_ns = time_base.system_ns
@@ -115,7 +115,7 @@ class SubscriptionMonitor(EventHub):
         self._matching: Matching | None = None
         if self.has_listeners:
             self._watch_matches()
-        graph_entry.watch(self._note_publisher)
+        entity._watch(self._note_publisher)
         if self._deadline is not None or not is_unlimited(qos.liveliness_lease_duration):
             reader.on_arrival = self._on_arrival
 
@@ -124,7 +124,7 @@ class SubscriptionMonitor(EventHub):
         self._watch_matches()
         if self._liveliness is None:
             self._watch_liveliness()
-            for publisher in self._graph_entry.matched():
+            for publisher in self._entity._matched():
                 self._note_publisher(publisher, present=True)
         return self.stream()
 
@@ -162,7 +162,7 @@ class SubscriptionMonitor(EventHub):
     def _watch_matches(self) -> None:
         if self._matching is None:
             self._matching = Matching(self._endpoint, self.emit)
-            self._graph_entry.watch(self._matching.note)
+            self._entity._watch(self._matching.note)
             self._reader.on_lost = self._on_lost
             if self._reader.stats.lost:
                 self._on_lost(self._reader.stats.lost)

@@ -58,6 +58,7 @@ class ContextHandle(Destroyable):
     Attributes:
         io: The thread that works for it.
         arguments: Its ROS arguments.
+        is_shut_down: Whether it is shut down.
 
     Raises:
         UnknownROSArgsError: an argument between ``--ros-args`` and ``--`` is unknown.
@@ -67,7 +68,7 @@ class ContextHandle(Destroyable):
 
     def __init__(self, args: Sequence[str], domain_id: int | None) -> None:
         super().__init__()
-        self._shut_down = False
+        self.is_shut_down = False
         self._closed = False
         self._signalled = False
         arguments = parsed(args)
@@ -80,7 +81,7 @@ class ContextHandle(Destroyable):
 
     def ok(self) -> bool:
         """Return whether it is not shut down."""
-        return not self._shut_down
+        return not self.is_shut_down
 
     def get_domain_id(self) -> int:
         """Return the ROS domain."""
@@ -95,7 +96,7 @@ class ContextHandle(Destroyable):
         """
         if not self.is_valid:
             raise InvalidHandle("cannot use Destroyable because destruction was requested")
-        if self._shut_down:
+        if self.is_shut_down:
             raise RCLError(
                 f"failed to create {wanted}: the given context is not valid, either rcl_init() "
                 "was not called or rcl_shutdown() was called."
@@ -111,12 +112,12 @@ class ContextHandle(Destroyable):
         Raises:
             RCLError: it is shut down.
         """
-        if self._shut_down:
+        if self.is_shut_down:
             raise RCLError(f"{failure}: {user}'s context is invalid")
 
     def mark_shut_down(self) -> None:
         """Shut down as far as a signal handler may: no lock is taken, nothing is waited for."""
-        self._shut_down = True
+        self.is_shut_down = True
         self.signal.notify()
 
     def interrupt(self) -> None:
@@ -141,7 +142,7 @@ class ContextHandle(Destroyable):
         self.io.stop()
 
     def _destroy(self) -> None:
-        self._shut_down = True
+        self.is_shut_down = True
         if hasattr(self, "io"):
             self.io.stop()
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from types import TracebackType
 
-__all__ = ["Destroyable", "Signal", "Wakeup"]
+__all__ = ["Arrivals", "Destroyable", "Signal", "Wakeup"]
 
 LONGEST_WAIT_S = 3600.0
 """A lock cannot be waited for much longer than a month; who waits asks again then."""
@@ -24,14 +24,16 @@ class Wakeup:
 
     Attributes:
         rouse: Wakes the thread if it waits for something else meanwhile.
+        take: ``take(False)`` returns whether a wake-up has come, without waiting.
     """
 
-    __slots__ = ("_lock", "rouse")
+    __slots__ = ("_lock", "rouse", "take")
 
     def __init__(self) -> None:
         self.rouse: Callable[[], None] | None = None
         self._lock = allocate_lock()
         self._lock.acquire()
+        self.take: Callable[[bool], bool] = self._lock.acquire
 
     def wake(self) -> None:
         """Wake the thread that waits, or the next one that will."""
@@ -84,6 +86,31 @@ class Signal:
     def notify(self) -> None:
         """Wake all."""
         for wakeup in self._wakeups:
+            wakeup.wake()
+
+
+class Arrivals:
+    """Whether anything has come for a node's handles of one kind since none of them was ready.
+
+    With it, an executor looks at the handles of those kinds only for which something has come.
+
+    Attributes:
+        last: Stands for what has come last.
+        seen: What had come last when an executor looked at all of them, and none was ready.
+    """
+
+    __slots__ = ("_signal", "last", "seen")
+
+    def __init__(self, signal: Signal) -> None:
+        self._signal = signal
+        self.last: object = None
+        self.seen: object = None
+
+    def note(self) -> None:
+        """Wake those who wait for the node, after something was put into a handle."""
+        # A new object each time, as threads would lose count: executors compare it with `seen`.
+        self.last = object()
+        for wakeup in self._signal._wakeups:
             wakeup.wake()
 
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import Future
-from contextlib import contextmanager
 from threading import Event, Lock, Thread, current_thread, get_ident, local, main_thread
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -67,16 +66,10 @@ def postpone(action: Callable[[], object]) -> bool:
     return borrowing.active
 
 
-@contextmanager
-def undisturbed() -> Iterator[None]:
-    """Have handlers of signals in this thread wait until the end."""
-    borrowing.active = True
-    try:
-        yield
-    finally:
-        borrowing.active = False
-        while postponed and current_thread() is main_thread():
-            postponed.pop(0)()
+def call_postponed() -> None:
+    """Call what `postpone` has kept, in the thread that handles signals."""
+    while postponed and current_thread() is main_thread():
+        postponed.pop(0)()
 
 
 class IoThread:
@@ -155,7 +148,8 @@ class IoThread:
         In this thread and at once if the context's thread sleeps, and in the latter soon if not.
         """
         loop = self._loop
-        with undisturbed():
+        borrowing.active = True
+        try:
             if self._work or loop is None or not loop.borrow():
                 self.post(action)
                 return
@@ -165,6 +159,10 @@ class IoThread:
                 logger.exception("in the input and output of a context")
             finally:
                 loop.give_back()
+        finally:
+            borrowing.active = False
+            if postponed:
+                call_postponed()
 
     def wait(self, wakeup: Wakeup, timeout_sec: float | None) -> bool:
         """Wait for a wake-up, and meanwhile read what comes in, so that no other thread has to.
@@ -183,13 +181,18 @@ class IoThread:
             try:
                 while left_s is None or left_s > PRECISE_S:
                     wakeup.rouse = readers.rouse
-                    if wakeup.wait(0):
+                    if wakeup.take(False):
                         return True
                     readable = readers.wait(None if left_s is None else left_s - PRECISE_S)
                     wakeup.rouse = None
-                    with undisturbed():
+                    borrowing.active = True
+                    try:
                         may_go_on = readers.call(readable)
-                    if wakeup.wait(0):
+                    finally:
+                        borrowing.active = False
+                        if postponed:
+                            call_postponed()
+                    if wakeup.take(False):
                         return True
                     if not may_go_on:
                         break

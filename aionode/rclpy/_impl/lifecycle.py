@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from aionode.lifecycle.states import STATES, TRANSITIONS, StateMachine, TransitionCallbackReturn
+from aionode.logging import get_logger
 from aionode.rclpy._impl import messages as msg
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._impl.services import ServiceHandle
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
     from aionode.rclpy._impl.node import NodeHandle
 
 __all__ = ["LifecycleStateMachine", "TransitionCallbackReturn"]
+
+logger = get_logger("rcl_lifecycle")
 
 Description = tuple[int, str, int, str, int, str]
 
@@ -96,18 +99,21 @@ class LifecycleStateMachine:
         """All transitions."""
         return [described(each) for each in TRANSITIONS]
 
+    def _possible(self, transition: Transition | None, wanted: str | int) -> Transition:
+        """Return a transition that was found; without one warn as rcl does, and raise."""
+        if transition is None:
+            state = self._machine.state
+            logger.warning(f"No transition matching {wanted} found for current state {state.label}")
+            raise RCLError(f"Transition {wanted!r} is not possible in state {state}")
+        return transition
+
     def get_transition_by_label(self, label: str) -> int:
         """Return the number of the transition of this name that is possible now.
 
         Raises:
             RCLError: there is none.
         """
-        transition = self._machine.find(label)
-        if transition is None:
-            raise RCLError(
-                f"Transition with label '{label}' is not possible in state {self._machine.state}"
-            )
-        return transition.transition_id
+        return self._possible(self._machine.find(label), label).transition_id
 
     def trigger_transition_by_id(self, transition_id: int, publish: bool) -> None:
         """Change the state.
@@ -115,11 +121,8 @@ class LifecycleStateMachine:
         Raises:
             RCLError: the transition is not possible now.
         """
-        transition = self._machine.find(transition_id=transition_id)
-        if transition is None:
-            raise RCLError(
-                f"Transition {transition_id} is not possible in state {self._machine.state}"
-            )
+        found = self._machine.find(transition_id=transition_id)
+        transition = self._possible(found, transition_id)
         self._machine.state = transition.goal
         if publish:
             event = msg.TransitionEvent()

@@ -10,11 +10,11 @@ from aionode.arguments import Arguments
 from aionode.bare_node import BareNode
 from aionode.clock import MachineTime, Time
 from aionode.errors import NodeNameNonExistentError
-from aionode.graph import TOPIC_KINDS, EndpointKind
+from aionode.graph import SERVICE_KINDS, TOPIC_KINDS, EndpointKind
 from aionode.interfaces.rcl_interfaces.msg import Log
 from aionode.logging import get_logger
 from aionode.rclpy._impl.context import parsed
-from aionode.rclpy._impl.destroyable import Destroyable
+from aionode.rclpy._impl.destroyable import Arrivals, Destroyable
 from aionode.rclpy._impl.qos import profile_of
 
 if TYPE_CHECKING:
@@ -47,6 +47,9 @@ class NodeHandle(Destroyable):
         context_handle: Its context.
         io: The thread that works for it.
         bare: The node in the core; used in that thread only.
+        messages: Whether messages have come for its subscriptions.
+        requests: Whether requests have come for its service servers.
+        responses: Whether responses have come for its clients.
     """
 
     def __init__(
@@ -60,6 +63,9 @@ class NodeHandle(Destroyable):
         rosout_qos_profile: Any = None,
     ) -> None:
         super().__init__()
+        self.messages = Arrivals(self.signal)
+        self.requests = Arrivals(self.signal)
+        self.responses = Arrivals(self.signal)
         self._stop_rosout: Callable[[], None] | None = None
         names.validate_node_name(node_name)
         namespace = names.normalize_namespace(namespace)
@@ -164,10 +170,10 @@ class NodeHandle(Destroyable):
         return found
 
     def service_names_and_types(self) -> NamesAndTypes:
-        """Return every service that has a server, with its types."""
+        """Return every service that has a server or a client, with its types."""
         found: NamesAndTypes = self.ask(
             "failed to get service names and types",
-            lambda graph: graph.names_and_types(EndpointKind.SERVER),
+            lambda graph: graph.names_and_types(*SERVICE_KINDS),
         )
         return found
 

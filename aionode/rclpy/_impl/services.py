@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from aionode.bare_node import BareClient, BareEndpoint
     from aionode.errors import ServiceError
     from aionode.graph import EndpointInfo
-    from aionode.rclpy._impl.destroyable import Signal
+    from aionode.rclpy._impl.destroyable import Arrivals
     from aionode.rclpy._impl.introspection import ServiceIntrospectionState
     from aionode.rclpy._impl.node import NodeHandle
     from aionode.rclpy._impl.timers import ClockHandle
@@ -54,17 +54,17 @@ class rmw_service_info_t(NamedTuple):  # noqa: N801  # rclpy's name
 class Requests:
     """The requests that wait for a server; filled by the thread of the context."""
 
-    def __init__(self, limit: int, signal: Signal) -> None:
+    def __init__(self, limit: int, arrivals: Arrivals) -> None:
         self.items: deque[tuple[Request, int]] = deque()
         self._limit = limit
-        self._signal = signal
+        self._arrivals = arrivals
 
     def serve(self, request: Request, inline_deadline_ns: int = 0) -> None:
         """Take one request; the oldest makes room, and its client learns that."""
         if len(self.items) >= self._limit:
             self.items.popleft()[0].drop()
         self.items.append((request, now_ns()))
-        self._signal.notify()
+        self._arrivals.note()
 
 
 class ServiceHandle(Destroyable):
@@ -78,7 +78,7 @@ class ServiceHandle(Destroyable):
         self.srv_type = srv_type
         node.context_handle.refuse_after_shutdown("failed to create service")
         profile = profile_of(qos_profile)
-        self._requests = Requests(profile.depth or MOST_REQUESTS, node.signal)
+        self._requests = Requests(profile.depth or MOST_REQUESTS, node.requests)
         self._taken: dict[rmw_request_id_t, Request] = {}
         self._name = node.resolve(srv_name, is_service=True)
         self._introspection = Introspection(node, srv_type, self._name)
@@ -182,10 +182,10 @@ class ServiceHandle(Destroyable):
 class Replies:
     """The replies that wait for a client; filled by the thread of the context."""
 
-    def __init__(self, signal: Signal) -> None:
+    def __init__(self, arrivals: Arrivals) -> None:
         self.items: deque[tuple[int, Any, int]] = deque()
         self.blocked: dict[int, Callable[[Any], None]] = {}
-        self._signal = signal
+        self._arrivals = arrivals
 
     def take(self, sequence: int, response: Any) -> None:
         """Take a response: a thread that waits for it gets it at once."""
@@ -194,7 +194,7 @@ class Replies:
             waiting(response.data)
             return
         self.items.append((sequence, response.data, now_ns()))
-        self._signal.notify()
+        self._arrivals.note()
 
 
 class ClientHandle(Destroyable):
@@ -207,7 +207,7 @@ class ClientHandle(Destroyable):
         self.srv_type = srv_type
         self._support = service_support(srv_type)
         node.context_handle.refuse_after_shutdown("failed to create client")
-        self._replies = Replies(node.signal)
+        self._replies = Replies(node.responses)
         self._calls: dict[int, Any] = {}
         self._sequence = 0
         self._name = node.resolve(srv_name, is_service=True)

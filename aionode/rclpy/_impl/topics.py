@@ -23,13 +23,16 @@ if TYPE_CHECKING:
     from aionode.bare_node import BareEndpoint, BarePublisher
     from aionode.graph import EndpointInfo
     from aionode.qos import QoSProfile
-    from aionode.rclpy._impl.destroyable import Signal
+    from aionode.rclpy._impl.destroyable import Arrivals
     from aionode.rclpy._impl.node import NodeHandle
 
 __all__ = ["PublisherHandle", "SubscriptionHandle"]
 
 Feed = list["Callable[[SampleInfo | None], None]"]
 """What is told of each message, in the thread of the context, by those who watch for events."""
+
+Sample = tuple[Any, SampleInfo, int, int]
+"""A message, where it comes from, when it arrived, and its number among those that were taken."""
 
 logger = logging.getLogger("aionode.rclpy")
 
@@ -75,7 +78,8 @@ class PublisherHandle(Destroyable):
         Raises:
             RCLError: the context is shut down, or a KEEP_ALL subscription of it is full.
         """
-        self._refuse_after_shutdown("Failed to publish")
+        if self._node.context_handle.is_shut_down:
+            self._refuse_after_shutdown("Failed to publish")
         msg = self._support.wire_type(data)
         io = self.io
         io.pace()
@@ -155,7 +159,7 @@ class Inbox:
     endpoint: EndpointInfo
 
     def __init__(
-        self, profile: Any, signal: Signal, post: Callable[[Callable[[], object]], None]
+        self, profile: Any, arrivals: Arrivals, post: Callable[[Callable[[], object]], None]
     ) -> None:
         keep_all = profile.resolved().history.name == "KEEP_ALL"
         self.limit = KEEP_ALL_DEPTH if keep_all else (profile.depth or DEFAULT_DEPTH)
@@ -168,7 +172,7 @@ class Inbox:
         self.accept: Callable[[bytes], bool] | None = None
         self.feed: Feed = []
         self.assertions: list[Callable[[bytes], None]] = []
-        self._signal = signal
+        self._arrivals = arrivals
         self._post = post
         self._room_waiters: list[Callable[[], None]] = []
 
@@ -183,17 +187,18 @@ class Inbox:
     ) -> None:
         """Take one message."""
         sample_info = SampleInfo(gid, sequence, source_ns, arrived_ns)
+        data = msg.data
         if self.feed:
             self._post(partial(self._tell_feed, sample_info))
-        if self.accept is not None and not self.accept(msg.data):
+        if self.accept is not None and not self.accept(data):
             return
         items = self.items
         if len(items) == self.limit:
             self.dropped += 1
             if self.keep_all:
                 return
-        items.append((msg.data, sample_info, sample_info.arrived_ns or now_ns()))
-        self._signal.notify()
+        items.append((data, sample_info, arrived_ns or now_ns()))
+        self._arrivals.note()
 
     def note_alive(self, gid: bytes) -> None:
         """Take the assertion of a publisher that it is alive."""
@@ -244,7 +249,7 @@ class SubscriptionHandle(Destroyable):
         self._support = message_support(msg_type)
         self._filter_options = content_filter_options
         profile = profile_of(qos_profile)
-        self.inbox = Inbox(profile, node.signal, node.io.post)
+        self.inbox = Inbox(profile, node.messages, node.io.post)
         self.feed = self.inbox.feed
         self.assertions = self.inbox.assertions
         if content_filter_options is not None:
@@ -275,6 +280,11 @@ class SubscriptionHandle(Destroyable):
 
     def take_message(self, msg_type: Any, raw: bool) -> tuple[Any, dict[str, Any]] | None:
         """Return the oldest message that waits and where it comes from, or None."""
+        taken = self.take_sample(msg_type, raw)
+        return None if taken is None else (taken[0], self.info_of(taken))
+
+    def take_sample(self, msg_type: Any, raw: bool) -> Sample | None:
+        """Return the oldest message that waits, for `info_of`, or None."""
         inbox = self.inbox
         while inbox.items:
             try:
@@ -284,7 +294,8 @@ class SubscriptionHandle(Destroyable):
             if inbox.keep_all:
                 for waiter in inbox.made_room():
                     self.io.post(waiter)
-            if self._has_expired(sample_info):
+            # 0 for the messages of most publishers, which do not expire.
+            if self._lifespans.get(sample_info.gid) != 0 and self._has_expired(sample_info):
                 continue
             message = data
             if not raw:
@@ -295,17 +306,22 @@ class SubscriptionHandle(Destroyable):
                     self._complain(error)
                     continue
             self._received += 1
-            return message, {
-                "source_timestamp": sample_info.source_ns,
-                "received_timestamp": arrived_ns,
-                "publication_sequence_number": sample_info.sequence,
-                "reception_sequence_number": self._received,
-                "publisher_gid": {
-                    "implementation_identifier": "rmw_zenoh_cpp",
-                    "data": sample_info.gid,
-                },
-            }
+            return message, sample_info, arrived_ns, self._received
         return None
+
+    def info_of(self, taken: Sample) -> dict[str, Any]:
+        """Return where a message comes from, as rclpy's callbacks get it."""
+        _, sample_info, arrived_ns, received = taken
+        return {
+            "source_timestamp": sample_info.source_ns,
+            "received_timestamp": arrived_ns,
+            "publication_sequence_number": sample_info.sequence,
+            "reception_sequence_number": received,
+            "publisher_gid": {
+                "implementation_identifier": "rmw_zenoh_cpp",
+                "data": sample_info.gid,
+            },
+        }
 
     def _complain(self, error: DecodeError) -> None:
         self.inbox.rejected += 1

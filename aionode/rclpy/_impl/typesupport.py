@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from aionode.message import ActionType, Message, ServiceType, serialized, type_name
@@ -24,20 +24,27 @@ __all__ = [
 ]
 
 
-class MessageSupport(NamedTuple):
+class MessageSupport:
     """How to send messages of one class.
 
     Attributes:
-        msg_type: The class.
         wire_type: The class of its encoded messages, for the core.
-        encode: Returns a message as bytes.
-        decode: Returns the message in bytes.
     """
 
-    msg_type: type[Any]
-    wire_type: Any
-    encode: Callable[[Any], bytes]
-    decode: Callable[[bytes], Any]
+    def __init__(self, msg_type: type[Any], wire_type: Any) -> None:
+        self.wire_type = wire_type
+        self._msg_type = msg_type
+
+    @cached_property
+    def encode(self) -> Callable[[Any], bytes]:
+        """Returns a message as bytes."""
+        return cdr.encoder(self._msg_type) if is_own(self._msg_type) else _rosidl.encode
+
+    @cached_property
+    def decode(self) -> Callable[[bytes], Any]:
+        """Returns the message in bytes."""
+        cls = self._msg_type
+        return cdr.decoder(cls) if is_own(cls) else _rosidl.decoder_of(cls)
 
 
 class ServiceSupport(NamedTuple):
@@ -76,14 +83,7 @@ def message_like(cls: Any, name: str) -> Any:
 @cache
 def message_support(cls: Any) -> MessageSupport:
     """Return how to send messages of `cls`."""
-    return support(cls, serialized(aionode_class(cls)))
-
-
-def support(cls: Any, wire_type: Any) -> MessageSupport:
-    """Return how to send messages of `cls` as `wire_type`."""
-    if is_own(cls):
-        return MessageSupport(cls, wire_type, cdr.encoder(cls), cdr.decoder(cls))
-    return MessageSupport(cls, wire_type, _rosidl.encode, lambda data: _rosidl.decode(cls, data))
+    return MessageSupport(cls, serialized(aionode_class(cls)))
 
 
 @cache
@@ -92,8 +92,8 @@ def service_support(cls: Any) -> ServiceSupport:
     wire_type = serialized(aionode_class(cls))
     return ServiceSupport(
         wire_type,
-        support(cls.Request, wire_type.Request),
-        support(cls.Response, wire_type.Response),
+        MessageSupport(cls.Request, wire_type.Request),
+        MessageSupport(cls.Response, wire_type.Response),
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from aionode.rclpy._rosidl._classes import module_name
-from aionode.rclpy._rosidl._codec import decode, encode, from_aionode, to_aionode
+from aionode.rclpy._rosidl._codec import decode, decoder_of, encode, from_aionode, to_aionode
 from aionode.rclpy._rosidl._names import (
     action_class,
     aionode_class,
@@ -21,6 +21,7 @@ __all__ = [
     "aionode_class",
     "classes_of",
     "decode",
+    "decoder_of",
     "encode",
     "from_aionode",
     "has_interfaces",

@@ -11,7 +11,7 @@ from aionode.rclpy._rosidl._classes import aionode_class, python_class
 from aionode.rclpy._rosidl._field_types import TYPE_CODES, is_numeric
 from aionode.wire.cdr import Data, MessageFamily, decoder, encoder
 
-__all__ = ["decode", "encode", "from_aionode", "to_aionode"]
+__all__ = ["decode", "decoder_of", "encode", "from_aionode", "to_aionode"]
 
 ENCODERS: dict[type[Any], Callable[[Any], bytes]] = {}
 DECODERS: dict[type[Any], Callable[[Data], Any]] = {}
@@ -45,10 +45,19 @@ def decode(cls: type[Any], data: Data) -> Any:
         DecodeError: `data` does not hold such a message.
         TypeError: `cls` is not a message class.
     """
+    return decoder_of(cls)(data)
+
+
+def decoder_of(cls: type[Any]) -> Callable[[Data], Any]:
+    """Return the function that decodes messages of one class, as `decode` does.
+
+    Raises:
+        TypeError: `cls` is not a message class.
+    """
     function = DECODERS.get(cls)
     if function is None:
         function = DECODERS[cls] = new_decoder(cls)
-    return function(data)
+    return function
 
 
 def new_encoder(cls: type[Any]) -> Callable[[Any], bytes]:

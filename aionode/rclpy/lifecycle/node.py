@@ -90,6 +90,7 @@ class LifecycleNodeMixin(ManagedEntity):
             )
             group.add_entity(made)
             self._services.append(made)
+            self.handle.requests.note()
             return made
 
         self._service_change_state = service(

@@ -15,6 +15,7 @@ from aionode.clock import perf_ns
 from aionode.errors import FrameError
 from aionode.transport.ipc import _protocol as protocol
 from aionode.transport.ipc._protocol import (
+    HEADER_SIZE,
     BufferRef,
     Forget,
     FrameParser,
@@ -93,8 +94,8 @@ class WriteWaiter(Protocol):
         """The topic, for log messages."""
 
     @property
-    def waiting(self) -> int:
-        """How many messages wait."""
+    def unsent(self) -> int:
+        """How many messages the operating system has not taken, or not to their end."""
 
     def on_writable(self) -> None:
         """Write until `Connection.write` refuses, and then call `when_writable` again."""
@@ -148,7 +149,7 @@ class Connection:
         self._fd = sock.fileno()
         self._owner = owner
         self._parser = FrameParser()
-        self._max_held = protocol.HEADER_SIZE - 1  # a Hello is a header without payload
+        self._max_held = HEADER_SIZE - 1  # a Hello is a header without payload
         # Descriptors that were received before the rest of their frames.
         self._descriptors: deque[int] = deque()
         self._ancillary = socket.CMSG_SPACE(DESCRIPTORS * array.array("i").itemsize)
@@ -368,6 +369,18 @@ class Connection:
     def idle(self) -> bool:
         """Whether everything was handed to the operating system."""
         return not (self._batch or self._full)
+
+    def unsent(self, gid: bytes) -> int:
+        """Return how many messages of a publisher are left in what the socket took a part of."""
+        batch = bytes(self._rest.obj)  # whole, as `_rest` is a view of its end
+        left = len(self._rest)
+        unsent = 0
+        for frame in reversed(FrameParser().feed(batch) if left else ()):
+            if left <= 0:
+                break
+            left -= HEADER_SIZE + len(frame.payload)
+            unsent += frame.kind == DATA and frame.gid == gid
+        return unsent
 
     @property
     def queues(self) -> list[WriteWaiter]:

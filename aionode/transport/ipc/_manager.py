@@ -587,12 +587,12 @@ async def flush(connection: Connection) -> None:
                 await connection.progress()
     except TimeoutError:
         for queue in connection.queues:
-            if queue.waiting:
+            if unsent := queue.unsent:
                 logger.warning(
                     "%s: the last %d messages to the process %s were given up: it has read nothing "
                     "for %g s",
                     queue.name,
-                    queue.waiting,
+                    unsent,
                     connection.participant,
                     STALLED_S,
                 )

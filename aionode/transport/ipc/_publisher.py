@@ -204,6 +204,7 @@ class IpcWriter(Writer):
         send_queue = self._send_queues.get(connection)
         if send_queue is None:
             send_queue = IpcSendQueue(
+                self._gid,
                 self.endpoint.name,
                 connection,
                 depth_of(self.endpoint.qos),

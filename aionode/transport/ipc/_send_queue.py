@@ -57,6 +57,13 @@ class IpcSendQueue:
     used up; a KEEP_LAST publisher drops the oldest beyond its depth. What was sent is kept until it
     is confirmed.
 
+    Args:
+        gid: The publisher.
+        name: The topic.
+        connection: The link.
+        depth: How many messages may wait.
+        keep_all: Whether none is dropped.
+
     Attributes:
         name: The topic.
         connection: The link.
@@ -68,6 +75,7 @@ class IpcSendQueue:
 
     __slots__ = (
         "_depth",
+        "_gid",
         "_keep_all",
         "_limited",
         "_sent",
@@ -81,13 +89,16 @@ class IpcSendQueue:
         "wants",
     )
 
-    def __init__(self, name: str, connection: Connection, depth: int, *, keep_all: bool) -> None:
+    def __init__(
+        self, gid: bytes, name: str, connection: Connection, depth: int, *, keep_all: bool
+    ) -> None:
         self.name = name
         self.connection = connection
         self.readers: dict[bytes, RemoteSubscription] = {}
         self.dropped = 0
         self.wants: Callable[[Any], bool] | None = None
         self.confirmed = False
+        self._gid = gid
         self._depth = depth
         self._keep_all = keep_all
         self._limited = False  # whether a subscription has a window
@@ -223,9 +234,10 @@ class IpcSendQueue:
         self.on_writable()  # the queue may have waited for a window
 
     @property
-    def waiting(self) -> int:
-        """How many messages wait."""
-        return sum(sequence > 0 for sequence, _, _ in self._waiting)
+    def unsent(self) -> int:
+        """How many messages wait here, or have not been taken to their end by the socket."""
+        waiting = sum(sequence > 0 for sequence, _, _ in self._waiting)
+        return waiting + self.connection.unsent(self._gid)
 
     @property
     def settled(self) -> bool:

@@ -100,6 +100,17 @@ class ByteArray(ctypes.Structure):
     )
 
 
+class ByteView(ctypes.Structure):
+    """A `ByteArray` that rcl reads: it shows a bytes object of Python, and keeps it."""
+
+    _fields_ = (
+        ("buffer", c_char_p),
+        ("length", c_size_t),
+        ("capacity", c_size_t),
+        ("allocator", Allocator),
+    )
+
+
 class ErrorString(ctypes.Structure):
     """An ``rcutils_error_string_t``."""
 
@@ -115,6 +126,8 @@ class Rcl:
     Attributes:
         module: rclpy's extension module.
         middleware: The name of the middleware, such as ``rmw_fastrtps_cpp``.
+        is_fast_dds: Whether that is Fast DDS: its gids are those of DDS, and its callbacks tell of
+            each item.
         notify: libc's ``eventfd_write`` as an ``rcl_event_callback_t``, which it fits.
     """
 
@@ -122,6 +135,7 @@ class Rcl:
         self.module = module
         self.version = version
         self.middleware: str = module.rclpy_get_rmw_implementation_identifier()
+        self.is_fast_dds = self.middleware.startswith("rmw_fastrtps")
         # The functions of rmw and rcutils are found in the libraries that this one needs, whose
         # names differ between installations.
         rcl = rmw = rcutils = ctypes.PyDLL("librcl.so")
@@ -129,16 +143,16 @@ class Rcl:
         libc = ctypes.CDLL(None)
         self.notify = ctypes.cast(libc.eventfd_write, c_void_p)
 
-        array, nothing = POINTER(ByteArray), c_void_p
+        array, shown, nothing = POINTER(ByteArray), POINTER(ByteView), c_void_p
         self.take = function(
             rcl.rcl_take_serialized_message, nothing, array, POINTER(MessageInfo), nothing
         )
         self.take_freely = function(
             freely.rcl_take_serialized_message, nothing, array, POINTER(MessageInfo), nothing
         )
-        self.publish = function(rcl.rcl_publish_serialized_message, nothing, array, nothing)
+        self.publish = function(rcl.rcl_publish_serialized_message, nothing, shown, nothing)
         self.publish_freely = function(
-            freely.rcl_publish_serialized_message, nothing, array, nothing
+            freely.rcl_publish_serialized_message, nothing, shown, nothing
         )
         self.take_request = function(
             rcl.rcl_take_request_with_info, nothing, POINTER(ServiceInfo), nothing
@@ -150,6 +164,9 @@ class Rcl:
         )
         self.is_available = function(
             rcl.rcl_service_server_is_available, nothing, nothing, POINTER(ctypes.c_bool)
+        )
+        self.count_subscriptions = function(
+            rcl.rcl_publisher_get_subscription_count, nothing, POINTER(c_size_t)
         )
         self.assert_liveliness = function(rcl.rcl_publisher_assert_liveliness, nothing)
         # These wait for callbacks that are being called, which need no GIL.
@@ -167,7 +184,7 @@ class Rcl:
             rcl.rcl_node_get_graph_guard_condition, nothing, returns=nothing
         )
         self.serialize = function(rmw.rmw_serialize, nothing, nothing, array)
-        self.deserialize = function(rmw.rmw_deserialize, array, nothing, nothing)
+        self.deserialize = function(rmw.rmw_deserialize, shown, nothing, nothing)
         self._publisher_rmw = function(rcl.rcl_publisher_get_rmw_handle, nothing, returns=nothing)
         self._client_rmw = function(rcl.rcl_client_get_rmw_handle, nothing, returns=nothing)
         self._publisher_gid = function(rmw.rmw_get_gid_for_publisher, nothing, POINTER(Gid))
@@ -224,10 +241,10 @@ def function(symbol: Any, *arguments: Any, returns: Any = c_int) -> Any:
     return symbol
 
 
-def view(payload: bytes) -> ByteArray:
-    """Return an array that shows `payload`, which must outlive it."""
+def view(payload: bytes) -> ByteView:
+    """Return an array that shows `payload`, and keeps it."""
     size = len(payload)
-    return ByteArray(ctypes.cast(c_char_p(payload), c_void_p), size, size)
+    return ByteView(payload, size, size)
 
 
 @functools.cache

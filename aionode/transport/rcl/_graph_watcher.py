@@ -16,7 +16,7 @@ from aionode import names
 from aionode._concurrency import SLICE_NS
 from aionode.clock import perf_ns
 from aionode.errors import AionodeError
-from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
+from aionode.graph import SERVICE_KINDS, EndpointInfo, EndpointKind, NodeInfo
 from aionode.qos import qos_profile_services_default
 from aionode.transport.rcl._qos import profile_from
 from aionode.transport.rcl._types import hash_text
@@ -178,7 +178,7 @@ class RclGraphWatcher:
                 incomplete |= not self._ask_topic(rcl, asker, kind, topic, by_name, found)
             yield
         for node in nodes:
-            for kind in (EndpointKind.SERVER, EndpointKind.CLIENT):
+            for kind in SERVICE_KINDS:
                 incomplete |= not self._ask_services(rcl, asker, kind, node, found)
             yield
         self._enter(graph, nodes, found)

@@ -132,9 +132,7 @@ class RclServer(RclDeclaration):
             return
         self._handle = self.make(rcl.module.Service, exchanges.ros_class, DEPTH)
         self._exchanges = exchanges
-        self._wake = Wake(
-            loop, rcl.set_service_callback, self._handle.pointer, rcl.notify, self._take
-        )
+        self._wake = Wake(loop, rcl, rcl.set_service_callback, self._handle.pointer, self._take)
 
     def undeclare(self) -> None:
         """Destroy it; requests that were not answered never will be."""
@@ -264,9 +262,7 @@ class RclRequester(RclDeclaration, Requester):
         self.state.note_own(gid)
         self.identify(gid)
         self._unwatch = graph.watch(EndpointKind.SERVER, self.endpoint.name, self._note_server)
-        self._wake = Wake(
-            loop, rcl.set_client_callback, self._handle.pointer, rcl.notify, self._take
-        )
+        self._wake = Wake(loop, rcl, rcl.set_client_callback, self._handle.pointer, self._take)
 
     def undeclare(self) -> None:
         """Destroy it, and end the calls under way."""

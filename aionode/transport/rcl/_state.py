@@ -8,6 +8,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import TransportError
+from aionode.graph import EndpointKind
 from aionode.qos import QoSProfile
 from aionode.transport._loop_waker import LoopWaker
 from aionode.transport._send_thread import SendThread
@@ -27,9 +28,6 @@ logger = logging.getLogger("aionode.transport.rcl")
 
 PREFIX_BYTES: Final = 12
 """How many bytes of a gid identify the participant over DDS (RTPS 2.5, 9.3.1.1)."""
-
-WITH_PREFIX: Final = "rmw_fastrtps"
-"""Middlewares whose gids are those of DDS."""
 
 
 class RclState:
@@ -169,10 +167,19 @@ class RclState:
             except TypeError:  # Jazzy's has no profile for /rosout
                 return rcl.module.Node(*arguments)
 
+    def count_own_readers(self, writer: EndpointInfo) -> int:
+        """Return how many subscriptions of this context match a publisher of it."""
+        return sum(
+            one.endpoint.kind is EndpointKind.SUBSCRIPTION
+            and one.endpoint.name == writer.name
+            and writer.matches(one.endpoint)
+            for one in self._declarations
+        )
+
     def note_own(self, gid: bytes) -> None:
         """Record the gid of a publisher or client of this context."""
         self.own_gids.add(gid)
-        if self.rcl is not None and self.rcl.middleware.startswith(WITH_PREFIX):
+        if self.rcl is not None and self.rcl.is_fast_dds:
             self._prefixes.add(gid[:PREFIX_BYTES])
 
     def is_own(self, gid: bytes) -> bool:

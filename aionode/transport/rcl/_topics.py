@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import ctypes
 from collections import deque
-from ctypes import byref
+from ctypes import byref, c_size_t, string_at
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -13,7 +12,7 @@ from aionode.graph import EndpointKind
 from aionode.qos import DurabilityPolicy, depth_of, keeps_all
 from aionode.transport._send_thread import SendQueue, SendThread
 from aionode.transport.base import Writer
-from aionode.transport.rcl._bindings import UNNUMBERED, MessageInfo, load, view
+from aionode.transport.rcl._bindings import UNNUMBERED, ByteArray, MessageInfo, load, view
 from aionode.transport.rcl._state import RclDeclaration
 from aionode.transport.rcl._types import rosidl_class
 from aionode.transport.rcl._wake import Wake
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
 
     from aionode.graph import EndpointInfo
     from aionode.transport.base import Reader
-    from aionode.transport.rcl._bindings import ByteArray, Rcl
+    from aionode.transport.rcl._bindings import Rcl
     from aionode.transport.rcl._state import RclState
 
 __all__ = ["RclReader", "RclWriter"]
@@ -58,11 +57,12 @@ class RclWriter(RclDeclaration, Writer):
         self._queue: SendQueue = (self._patient or state.bulk).send_queue(
             depth_of(endpoint.qos), keep_all=self.bounded
         )
+        self._queued = self.bounded  # whether messages go through the queue
         self._readers: set[EndpointInfo] = set()
+        self._matched = c_size_t()
         self._unwatch: Callable[[], None] | None = None
         self._closing = False
         self._refused = 0
-        self.active = self._transient
         state.add(self)
 
     def declare(self, rcl: Rcl) -> None:
@@ -80,14 +80,28 @@ class RclWriter(RclDeclaration, Writer):
                 EndpointKind.SUBSCRIPTION, self.endpoint.name, self._note_reader
             )
         while self._early:
-            self._send(self._early.popleft())
+            self._put(self._early.popleft())
 
     def _note_reader(self, reader: EndpointInfo, present: bool) -> None:
         if present and reader.node.over_rcl and self.endpoint.matches(reader):
             self._readers.add(reader)
         else:
             self._readers.discard(reader)
-        self.active = self._transient or bool(self._readers)
+
+    @property
+    def active(self) -> bool:  # type: ignore[override]  # it is asked for
+        """Whether a reader is known: to the graph, or, which may be earlier, to the middleware."""
+        return self._transient or bool(self._readers) or self._is_matched()
+
+    def _is_matched(self) -> bool:
+        """Return whether the middleware knows of more readers than those of this context."""
+        rcl, matched = self.state.rcl, self._matched
+        if rcl is None or self._handle is None:
+            return False
+        if rcl.count_subscriptions(self._pointer, byref(matched)):
+            rcl.forget_error()
+            return False
+        return matched.value > 0 and matched.value > self.state.count_own_readers(self.endpoint)
 
     def undeclare(self) -> None:
         """Destroy the publisher, after the messages that wait for a thread."""
@@ -98,7 +112,6 @@ class RclWriter(RclDeclaration, Writer):
             self._unwatch()
             self._unwatch = None
         self._readers.clear()
-        self.active = self._transient
         if handle is None:
             return
         if not len(self._queue):
@@ -113,17 +126,24 @@ class RclWriter(RclDeclaration, Writer):
     def write(self, msg: Any, sequence: int, source_ns: int) -> None:  # noqa: ARG002  # DDS numbers them
         """Send `msg`."""
         payload = self._encode(msg)
-        if self._publish is None:
+        publish = self._publish
+        if publish is None:
             if self._transient:
                 self._early.append(payload)
-        else:
-            self._send(payload)
-
-    def _send(self, payload: bytes) -> None:
-        if self.bounded or len(payload) >= BULK_BYTES or len(self._queue):
-            self._queue.put(partial(self._send_freely, self._handle, self._pointer, payload))
-        elif self._publish is not None and self._publish(self._pointer, byref(view(payload)), None):
+        elif len(payload) >= BULK_BYTES or (self._queued and self._is_queueing()):
+            self._put(payload)
+        elif publish(self._pointer, byref(view(payload)), None):
             self._note_refused()
+
+    def _put(self, payload: bytes) -> None:
+        """Have a thread send a message that may take long, or that comes after such ones."""
+        self._queue.put(partial(self._send_freely, self._handle, self._pointer, payload))
+        self._queued = True
+
+    def _is_queueing(self) -> bool:
+        """Return whether the next message has to wait for those before it."""
+        self._queued = self.bounded or len(self._queue) > 0
+        return self._queued
 
     def _send_freely(self, handle: Any, pointer: int, payload: bytes) -> None:  # noqa: ARG002
         """Send a message in a thread; `handle` keeps the publisher alive meanwhile."""
@@ -179,15 +199,17 @@ class RclReader(RclDeclaration):
     ) -> None:
         super().__init__(state, endpoint)
         self._reader = reader
-        self._decode: Callable[[bytes], Any] = cdr.decoder(msg_type)
-        self._raw = reader.raw
+        self._decode: Callable[[bytes], Any] = bytes if reader.raw else cdr.decoder(msg_type)
         self._keep_all = keeps_all(endpoint.qos)
         self._handle: Any = None
         self._pointer = 0
         self._wake: Wake | None = None
-        self._array: ByteArray | None = None
+        self._array = ByteArray()  # where the middleware writes messages
+        self._to_array = byref(self._array)
         self._info = MessageInfo()
+        self._to_info = byref(self._info)
         self._take_it: Callable[..., int] | None = None
+        self._other = b""  # gid of the publisher of the last message, which is no own one
         self._waits_for_room = False
         self._counts: dict[bytes, int] = {}  # where the middleware does not number messages
         state.add(self)
@@ -201,13 +223,12 @@ class RclReader(RclDeclaration):
         self._handle = self.make(rcl.module.Subscription, ros_class)
         self._pointer = self._handle.pointer
         self._array = rcl.new_array()
+        self._to_array = byref(self._array)
         self._take_it = rcl.take
         gid = self._find_gid(rcl)
         if gid is not None:
             self.identify(gid)
-        self._wake = Wake(
-            loop, rcl.set_subscription_callback, self._pointer, rcl.notify, self._take
-        )
+        self._wake = Wake(loop, rcl, rcl.set_subscription_callback, self._pointer, self._take)
 
     def _find_gid(self, rcl: Rcl) -> bytes | None:
         """Return the gid of this subscription: the one of its node that is not known yet."""
@@ -232,52 +253,51 @@ class RclReader(RclDeclaration):
         """Destroy the subscription."""
         wake, self._wake = self._wake, None
         handle, self._handle = self._handle, None
-        array, self._array = self._array, None
+        array, self._array = self._array, ByteArray()
+        self._take_it = None
         if wake is not None:
             wake.close()
         if handle is not None:
             handle.destroy_when_not_in_use()
-        if array is not None and self.state.rcl is not None:
-            self.state.rcl.free_array(array)
+            if self.state.rcl is not None:
+                self.state.rcl.free_array(array)
 
     def _take(self, inline_deadline_ns: int) -> bool:
-        """Take one message; return whether there may be more."""
-        array, take, reader = self._array, self._take_it, self._reader
-        if array is None or take is None:
+        """Take one message; return whether there was one that could be taken."""
+        rcl, take = self.state.rcl, self._take_it
+        if rcl is None or take is None:
             return False
-        if self._keep_all and not reader.has_room():
+        if self._keep_all and not self._reader.has_room():
             self._wait_for_room()
             return False
-        info = self._info
-        if take(self._pointer, byref(array), byref(info), None):
-            if self.state.rcl is not None:
-                self.state.rcl.forget_error()
+        if take(self._pointer, self._to_array, self._to_info, None):
+            rcl.forget_error()
             return False
-        gid = bytes(info.gid)
-        if self.state.is_own(gid):
-            return True
-        self._deliver(array, gid, inline_deadline_ns)
+        gid = bytes(self._info.gid)
+        if gid != self._other:
+            if self.state.is_own(gid):
+                return True
+            self._other = gid
+        self._deliver(rcl, gid, inline_deadline_ns)
         return True
 
-    def _deliver(self, array: ByteArray, gid: bytes, inline_deadline_ns: int) -> None:
-        info, reader = self._info, self._reader
+    def _deliver(self, rcl: Rcl, gid: bytes, inline_deadline_ns: int) -> None:
+        """Hand on the message that was taken."""
+        info, array = self._info, self._array
         size = array.length
-        if size >= BULK_BYTES and self.state.rcl is not None:
-            self._take_it = self.state.rcl.take_freely
-        payload = ctypes.string_at(array.buffer, size)
+        if size >= BULK_BYTES:
+            self._take_it = rcl.take_freely
+        payload = string_at(array.buffer, size)
         sequence = info.sequence
         if sequence == UNNUMBERED:
             sequence = self._counts[gid] = self._counts.get(gid, 0) + 1
-        if self._raw:
-            reader.deliver(payload, gid, sequence, info.source_ns, inline_deadline_ns)
-            return
         try:
             msg = self._decode(payload)
         except DecodeError as error:
             self.state.note_malformed(self.endpoint.name, str(error))
-            reader.reject(error)
+            self._reader.reject(error)
         else:
-            reader.deliver(msg, gid, sequence, info.source_ns, inline_deadline_ns)
+            self._reader.deliver(msg, gid, sequence, info.source_ns, inline_deadline_ns)
 
     def _wait_for_room(self) -> None:
         """Leave messages in the middleware, which holds their publishers back."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from aionode.graph import EndpointKind
-from aionode.qos import DurabilityPolicy, ReliabilityPolicy
+from aionode.qos import ReliabilityPolicy
 
 if TYPE_CHECKING:
     from aionode.graph import EndpointInfo, Graph
@@ -27,8 +27,7 @@ class MatchedReaders:
     Attributes:
         gids: All of them.
         acknowledging: Those that acknowledge, each with its context.
-        others: Those that must lose nothing, and do not acknowledge. Transient local ones of
-            contexts that do get Zenoh's own history.
+        others: Those that must lose nothing, and do not acknowledge.
     """
 
     def __init__(self, endpoint: EndpointInfo, state: SessionState) -> None:
@@ -61,7 +60,4 @@ class MatchedReaders:
         if participant not in self._state.acknowledgements.participants:
             self.others.add(reader.gid)
         elif reader.qos.resolved().reliability is ReliabilityPolicy.RELIABLE:
-            if reader.qos.durability is DurabilityPolicy.TRANSIENT_LOCAL:
-                self.others.add(reader.gid)
-            else:
-                self.acknowledging[reader.gid] = participant
+            self.acknowledging[reader.gid] = participant

@@ -101,12 +101,13 @@ class ZenohWriter(Declaration, Writer):
         if self._transient and self._lifespan_ns:
             self._expiry = SilenceAlarm(state.time_base, self._lifespan_ns, self._forget_expired)
         # Messages for late readers that were published before the session is open.
-        self._early: deque[tuple[bytes, bytes]] = deque(maxlen=self._depth)
+        self._early: deque[tuple[int, bytes, bytes]] = deque(maxlen=self._depth)
         self.active = self._transient
         self.bounded = keeps_all(qos)
-        # A transient local publisher has none: there Zenoh sends lost messages again.
+        # A transient local KEEP_LAST publisher has none: there Zenoh sends lost messages again, but
+        # for good not those that were coming again when a connection was lost.
         self._history: WriterHistory | None = None
-        if self._reliable and not self._transient and self.recovers:
+        if self._reliable and self.recovers and (self.bounded or not self._transient):
             self._history = WriterHistory(
                 self._depth, keep_all=self.bounded, side=self, now_ns=perf_ns
             )
@@ -141,13 +142,15 @@ class ZenohWriter(Declaration, Writer):
     def declare_data(self, session: zenoh.Session) -> None:
         """Declare the publisher, and send what was published before."""
         self._is_watched = False
+        history = self._history
         if self._transient:
             self._publisher = self._declare_keeping(session)
             if self._expiry is not None:
                 self._expiry.start()
             while self._early:
-                payload, extra = self._early.popleft()
-                self._unless_expired(extra, partial(self.put, payload, extra))()
+                sequence, payload, extra = self._early.popleft()
+                put = self.put if history is None else partial(history.write, sequence)
+                self._unless_expired(extra, partial(put, payload, extra))()
                 if self._expiry is not None:
                     self._expiry.note()
         else:
@@ -264,21 +267,18 @@ class ZenohWriter(Declaration, Writer):
             reader: The only one that may have changed; None for all of them.
             present: Whether it exists.
         """
-        if self._transient:
-            if self._encode is None:
-                self._encode = cdr.encoder(self._msg_type)
-            return
         history, graph = self._history, self.state.graph
-        self.active = False
+        self.active = self._transient
         self._wants = None
         if graph is not None and self._publisher is not None:
             self._matched.update(graph, reader, present=present)
             # The token of a reader can arrive before Zenoh has told of a match, or has a route to
             # it; what is lost until then is sent again.
-            self.active = self._is_matching or bool(self._matched.gids)
+            self.active = self.active or self._is_matching or bool(self._matched.gids)
             if history is not None:
                 self._update_readers(history, None if reader is None else reader.gid)
-            self._wants = self._filter()
+            if not self._transient:  # a late reader may want what all others do not
+                self._wants = self._filter()
         if self.active and self._encode is None:
             self._encode = cdr.encoder(self._msg_type)
 
@@ -330,7 +330,7 @@ class ZenohWriter(Declaration, Writer):
         history = self._history
         if self._publisher is None:
             if self._transient:
-                self._early.append((payload, extra))
+                self._early.append((sequence, payload, extra))
         elif history is None:
             self.put(payload, extra)
             if self._expiry is not None:
@@ -384,9 +384,10 @@ class ZenohWriter(Declaration, Writer):
         """Find out whether small messages may be put at once, and dropped by Zenoh if need be.
 
         Not if a reader may lose none of them and does not acknowledge: then a thread sends them
-        when they are many, and always for KEEP_ALL.
+        when they are many, and always for KEEP_ALL. A transient local publisher is declared before
+        there are readers, so it counts as having such a one.
         """
-        others = self._history is None or self._history.has_other_readers
+        others = self._transient or self._history is None or self._history.has_other_readers
         self._is_direct = (
             self._patient is None
             and not self._bulk_only
@@ -405,6 +406,8 @@ class ZenohWriter(Declaration, Writer):
                 self._patient_publisher = declare_plain(
                     self.state.session, self._key, PATIENT_PRIORITY, reliable=True, waits=True
                 )
+        if self._expiry is not None:
+            self._expiry.note()
         patient = self._patient_publisher or publisher
         send = partial(self._send_patiently, patient, payload, extra)
         self._patient.put(self._unless_expired(extra, send))

@@ -59,10 +59,12 @@ DECLARED_S: Final = 1.0
 """How long after a participant has returned its tokens may take; they take some milliseconds."""
 
 FEW: Final = 3
-"""If more participants than that have declared nothing, they are slow, and not silent for good."""
+"""If more participants than that have declared nothing, they may be slow, and have more time."""
 
 POSTPONED_S: Final = 3.0
-"""For so long a look waits for connections that go on being made or lost."""
+"""For so long a look waits for connections that go on being made or lost, and many that are silent
+are waited for after the last of these.
+"""
 
 AGAIN_S: Final = 3.0
 """The interval of further looks: a process that was frozen returns without a sign."""
@@ -133,6 +135,9 @@ class Recovery:
         self._suspected: set[str] = set()
         # How often the connection was cut for each missing participant.
         self._attempts: dict[str, int] = {}
+        # Participants whose connection was made anew, until it is known that they have declared.
+        self._returned: set[str] = set()
+        self._check: asyncio.TimerHandle | None = None
         # How often the connection to each participant was cut that declared nothing.
         self._cuts: Counter[str] = Counter()
 
@@ -152,9 +157,10 @@ class Recovery:
         listener, self._listener = self._listener, None
         if listener is not None:
             listener.undeclare()
-        if self._timer is not None:
-            self._timer.cancel()
-            self._timer = None
+        for timer in (self._timer, self._check):
+            if timer is not None:
+                timer.cancel()
+        self._timer = self._check = None
         for queue in (self._changes, self._looks):
             queue.clear()
         self._looking = False
@@ -162,6 +168,7 @@ class Recovery:
         self._attempts.clear()
         self._cuts.clear()
         self._lost.clear()
+        self._returned.clear()
 
     def _take_change(self, event: zenoh.TransportEvent) -> None:
         if event.transport.whatami == zenoh.WhatAmI.CLIENT:
@@ -173,10 +180,12 @@ class Recovery:
                 self._lost.clear()  # the looks for those have ended
             self._until_s = now_s + WATCH_S
             self._lost.add(zid)
+            self._returned.discard(zid)
         else:
             if zid in self._lost:
-                asyncio.get_running_loop().call_later(DECLARED_S, self._check_returned, zid)
-            self._lost.discard(zid)
+                self._lost.discard(zid)
+                self._returned.add(zid)
+                self._check_in(DECLARED_S)
             if now_s >= self._until_s:
                 return  # nothing was lost
         self._checks = CHECKS
@@ -185,22 +194,37 @@ class Recovery:
         if now_s - self._changing_since_s < POSTPONED_S:
             self._look_in(FIRST_S)
 
-    def _check_returned(self, zid: str) -> None:
-        """Cut the connection to a participant that has returned, but has not declared anything."""
+    def _check_in(self, delay_s: float) -> None:
+        if self._check is None:
+            self._check = asyncio.get_running_loop().call_later(delay_s, self._check_returned)
+
+    def _check_returned(self) -> None:
+        """Cut the connections to participants that have returned, but have not declared anything.
+
+        All of them at once, as each cut is a change, which the others would be waited for again.
+        """
+        self._check = None
         session, acknowledgements = self._session, self._state.acknowledgements
-        loop = asyncio.get_running_loop()
         if session is None:
             return
-        connected = {str(each.zid) for each in session.info.transports()} - self._lost
-        silent = connected & (acknowledgements.participants - acknowledgements.present)
-        if loop.time() - self._changed_s < DECLARED_S / 2 or len(silent) > FEW:
-            # Where many connect at once, tokens take longer, and a cut makes all take longer still.
-            loop.call_later(DECLARED_S, self._check_returned, zid)
-        elif zid in silent and self._cuts[zid] < ATTEMPTS:
-            self._cuts[zid] += 1
-            logger.info("process %s is connected, but declares nothing: connected anew", zid)
+        self._returned &= acknowledgements.participants - acknowledgements.present
+        # Where many connect at once, tokens take longer, and a cut makes all take longer still.
+        wait_s = DECLARED_S / 2 if len(self._returned) <= FEW else POSTPONED_S
+        if self._returned and asyncio.get_running_loop().time() - self._changed_s < wait_s:
+            self._check_in(DECLARED_S / 2)
+            return
+        silent = {zid for zid in self._returned if self._cuts[zid] < ATTEMPTS}
+        self._returned.clear()
+        if silent:
+            self._cuts.update(silent)
+            logger.info(
+                "processes %s are connected, but declare nothing: connected anew",
+                ", ".join(sorted(silent)[:5]),
+            )
             start_thread(
-                threading.Thread(target=cut_participant, args=(session, zid), name="aionode-zenoh")
+                threading.Thread(
+                    target=cut_participants, args=(session, silent), name="aionode-zenoh"
+                )
             )
 
     def _look_in(self, delay_s: float) -> None:
@@ -372,10 +396,10 @@ def addresses_of(endpoint: str) -> Iterator[tuple[str, int]]:
                 yield str(found[0]), int(found[1])
 
 
-def cut_participant(session: zenoh.Session, zid: str) -> None:
-    """Cut the connections to a participant."""
+def cut_participants(session: zenoh.Session, zids: set[str]) -> None:
+    """Cut the connections to some participants."""
     with suppress(zenoh.ZError):  # the session was closed meanwhile
-        cut(connections_to(session, {zid}))
+        cut(connections_to(session, zids))
 
 
 def cut(connections: Iterable[Connection]) -> None:

@@ -115,7 +115,7 @@ class ZenohReader(Declaration, ReaderRegistration):
         self._has_lease = not is_unlimited(endpoint.qos.liveliness_lease_duration)
         if self._has_lease:
             state.assertions.listen(reader.note_alive)
-        self._acknowledges = reliable and not transient and bool(token) and self.recovers
+        self._acknowledges = reliable and bool(token) and self.recovers
         if self._acknowledges:
             state.acknowledgements.readers[self.gid] = self
         state.add(self)
@@ -192,6 +192,8 @@ class ZenohReader(Declaration, ReaderRegistration):
         proxy = self._proxies.get(gid)
         if proxy is None:
             if self._acknowledges:
+                if self._transient and 0 < sequence <= self._last.get(gid, 0):
+                    return  # its publisher has sent it again
                 self._note_last(gid, sequence)
             if self._keep_all:
                 self._accept_or_wait(payload, SampleInfo(gid, sequence, source_ns), None)
@@ -312,6 +314,8 @@ class ZenohReader(Declaration, ReaderRegistration):
         """Handle a HEARTBEAT, GAP or DATA of one of its writers."""
         proxy = self._proxies.get(submessage.writer)
         if submessage.kind is SubmessageKind.HEARTBEAT:
+            if self._transient:
+                proxy = self._leave_to_history(proxy, submessage)
             if proxy is None:
                 proxy = self._add_proxy(submessage)
                 if proxy is None:
@@ -329,8 +333,23 @@ class ZenohReader(Declaration, ReaderRegistration):
         if proxy.next <= proxy.last:
             self.state.acknowledgements.watch(self)
 
+    def _leave_to_history(
+        self, proxy: WriterProxy | None, heartbeat: Submessage
+    ) -> WriterProxy | None:
+        """Return the proxy of a writer, unless the writer has forgotten this subscription.
+
+        Then what was published meanwhile comes as it does to a late subscription, from Zenoh.
+        """
+        if proxy is None or proxy.next >= heartbeat.first or proxy.lacks:
+            return proxy
+        del self._proxies[proxy.gid]
+        self._note_last(proxy.gid, proxy.next - 1)
+        return None
+
     def _add_proxy(self, heartbeat: Submessage) -> WriterProxy | None:
         """Return a new proxy for the sender of a HEARTBEAT; None if that is malformed."""
+        if self._transient and self._last.get(heartbeat.writer, 0) < heartbeat.first - 1:
+            return None  # the history is still to come
         participant = heartbeat.rest.decode(errors="replace")
         if not participant.isalnum():  # it becomes part of a key
             self.state.note_malformed(self._key, "an acknowledgement")

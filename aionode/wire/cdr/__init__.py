@@ -10,6 +10,7 @@ import copy
 import struct
 from collections.abc import Callable, Sequence
 from functools import cache
+from operator import attrgetter
 from typing import Any, TypeAlias, TypeVar
 
 from aionode.errors import MessageError
@@ -155,7 +156,7 @@ def new_encoder(
     """Return a new encoder of a class; arguments as for `generate_encoder`."""
     fields(cls)  # raises TypeError for a service class
     if unserialized(cls) is not cls:
-        return lambda msg: finish((msg.data,))
+        return attrgetter("data") if finish is JOIN else lambda msg: finish((msg.data,))
     if family is not OWN:
         own = new_encoder(cls, finish, OWN)
         return generate_encoder(cls, lambda msg: own(family.adopt(msg)), finish, family)

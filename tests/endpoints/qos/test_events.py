@@ -198,5 +198,6 @@ async def test_a_message_that_does_not_fit_is_no_sign_of_life(node: Node) -> Non
     publisher = node.create_publisher(Int32, "n", profile)
     with pytest.raises(ValueError, match="data"):
         publisher.publish(Int32(data="no"))  # type: ignore[arg-type]  # the mistake
+    assert publisher._monitor is not None
     assert publisher._monitor._alarms[0]._since_ns is None
     assert waiting(publisher.events, QoSOfferedDeadlineMissedInfo) == []

@@ -31,6 +31,7 @@ AUTOMATIC = MANUAL.replace(liveliness=LivelinessPolicy.AUTOMATIC)
 
 async def until_asserted(pair: Pair, subscription: Subscription[Int32]) -> None:
     """Wait for an assertion that is at most 0.4 s old, in real time."""
+    assert subscription._monitor is not None
     liveliness = subscription._monitor._liveliness
     assert liveliness is not None
     (lease,) = liveliness._leases.values()
@@ -110,6 +111,7 @@ async def test_a_process_that_hangs_is_not_alive(pair: Pair) -> None:
     assert await next_of(changed, QoSLivelinessChangedInfo) == ALIVE
     await pair.clock.advance(0.5)
     await until_asserted(pair, subscription)
+    assert publisher._monitor is not None
     heartbeat = publisher._monitor._heartbeat
     assert heartbeat is not None
     heartbeat.cancel()

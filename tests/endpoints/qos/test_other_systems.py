@@ -271,6 +271,7 @@ async def test_a_malformed_assertion_is_counted_and_renews_nothing(
     while not malformed.total():
         ros_node.put(f"@aionode/{DOMAIN_ID}/{'a' * 32}/alive", b"no gid")
         await checkpoint()
+    assert subscription._monitor is not None
     liveliness = subscription._monitor._liveliness
     assert liveliness is not None
     assert [lease.asserts for lease in liveliness._leases.values()] == [False]

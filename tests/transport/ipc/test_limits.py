@@ -116,8 +116,11 @@ def test_the_sockets_of_contexts_that_live_are_not_dialled_at_the_start(folder: 
         living.close()
 
 
-async def test_a_long_frame_in_place_of_the_hello_is_refused(folder: Path) -> None:
-    """An unknown client must not make a process hold megabytes."""
+async def test_a_long_frame_in_place_of_the_hello_is_refused(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An unknown client must not make a process hold megabytes, as long as a Hello may take."""
+    monkeypatch.setattr(manager, "HELLO_S", 3600.0)
     async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
         with closing(await dialled(folder, node.context)) as sock:
             head = protocol.HEADER.pack(1 << 26, Kind.HELLO, 0, protocol.MARK, 1, 1, bytes(16))
@@ -318,6 +321,34 @@ async def test_each_part_of_a_large_frame_that_the_socket_takes_is_progress() ->
                 other._on_readable()
                 await checkpoint()
         assert not link.idle
+        loop.add_reader(other._fd, other._on_readable)
+
+
+async def test_what_the_socket_took_a_part_of_counts_among_what_is_given_up(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """The reader does not get its last message, nor those that were to go in the same batch."""
+    monkeypatch.setattr(manager, "STALLED_S", 0.01)
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes, 20_000)
+        await numbers.until_linked()
+        link, other = link_of(nodes.a), link_of(nodes.b)
+        loop = asyncio.get_running_loop()
+        loop.remove_reader(other._fd)
+        numbers.publish(20_000)
+        assert link._rest
+
+        await manager.flush(link)
+
+        (warning,) = [each for each in caplog.records if "were given up" in each.message]
+        assert isinstance(warning.args, tuple)
+        loop.remove_writer(link._fd)  # nothing more is sent, as after the end of the process
+        while other._on_readable():
+            pass
+        numbers.subscription.destroy()
+        got = [msg.data async for msg in numbers.subscription]
+        assert got[-1] == numbers.next - int(str(warning.args[1])) - 1
+        loop.add_writer(link._fd, link._on_writable)
         loop.add_reader(other._fd, other._on_readable)
 
 

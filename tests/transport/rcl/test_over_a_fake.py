@@ -154,6 +154,52 @@ async def test_messages_without_numbers_are_not_taken_for_lost(pair: Pair, rcl: 
     assert reader.stats.lost == 0
 
 
+async def test_no_message_is_asked_for_in_vain(pair: Pair, rcl: FakeRcl) -> None:
+    """That would wait for the middleware's lock, which it holds while it receives the next."""
+    reader = pair.right.create_subscription(Int32, "numbers", None, 10)
+    publisher = pair.left.create_publisher(Int32, "numbers", 10)
+    await publisher.wait_for_subscribers()
+    before = rcl.takes
+    for number in range(3):
+        publisher.publish(Int32(data=number))
+    assert [(await reader.receive()).data for _ in range(3)] == [0, 1, 2]
+    publisher.publish(Int32(data=3))
+    assert (await reader.receive()).data == 3
+    assert rcl.takes - before == 4
+
+
+async def test_a_middleware_may_tell_of_several_messages_once(pair: Pair, rcl: FakeRcl) -> None:
+    """All of them are taken."""
+    rcl.is_fast_dds = False
+    reader = pair.right.create_subscription(Int32, "numbers", None, 10)
+    publisher = pair.left.create_publisher(Int32, "numbers", 10)
+    await publisher.wait_for_subscribers()
+    for number in range(3):
+        publisher.publish(Int32(data=number))
+    assert [(await reader.receive()).data for _ in range(3)] == [0, 1, 2]
+
+
+async def test_a_subscription_that_the_graph_does_not_show_yet_gets_messages(
+    pair: Pair, rcl: FakeRcl
+) -> None:
+    """The middleware knows of it first, and the answer to its first message must not be lost."""
+    publisher = pair.left.create_publisher(Int32, "numbers", 10)
+    rcl.hides_changes = True
+    reader = pair.right.create_subscription(Int32, "numbers", None, 10)
+    publisher.publish(Int32(data=1))
+    assert (await reader.receive()).data == 1
+
+
+async def test_nothing_is_sent_for_subscriptions_of_this_context(pair: Pair, rcl: FakeRcl) -> None:
+    """They get the messages as objects, although the middleware counts them."""
+    reader = pair.left.create_subscription(Int32, "numbers", None, 10)
+    publisher = pair.left.create_publisher(Int32, "numbers", 10)
+    before = rcl.published
+    publisher.publish(Int32(data=1))
+    assert (await reader.receive()).data == 1
+    assert rcl.published == before
+
+
 async def test_bytes_in_no_known_form_are_counted(pair: Pair, rcl: FakeRcl) -> None:
     """And what comes next arrives."""
     reader = pair.right.create_subscription(String, "text", None, 10)

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from functools import partial
 from typing import Any
 
 import pytest
 
+from aionode.clock import perf_ns
 from aionode.graph import EndpointKind
 from aionode.interfaces.std_msgs.msg import Int32, String
-from aionode.qos import QoSProfile, ReliabilityPolicy
+from aionode.node import Node
+from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from aionode.transport._reliability import WINDOW_BYTES
 from aionode.transport._writer_proxy import WriterProxy
+from aionode.transport.zenoh import _session_state as session_state
 from aionode.transport.zenoh._acknowledgements import Acknowledgements
 from aionode.transport.zenoh._publisher import ZenohWriter
 from aionode.transport.zenoh._subscription import GONE_TICKS, ZenohReader
@@ -25,6 +32,8 @@ from tests.support.peers import (
     two_contexts,
 )
 from tests.support.waiting import until
+
+TRANSIENT = QoSProfile(history=HistoryPolicy.KEEP_ALL, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 @pytest.fixture(autouse=True)
@@ -56,9 +65,18 @@ async def acknowledged(publisher: Any) -> None:
         await changed.wait()
 
 
-@pytest.mark.parametrize("qos", [QoSProfile(depth=1000), KEEP_ALL], ids=["last", "all"])
+@pytest.mark.parametrize(
+    ("qos", "theirs"),
+    [
+        (QoSProfile(depth=1000), QoSProfile(depth=1000)),
+        (KEEP_ALL, KEEP_ALL),
+        (TRANSIENT, TRANSIENT),
+        (TRANSIENT, KEEP_ALL),
+    ],
+    ids=["last", "all", "all transient local", "all transient local to volatile"],
+)
 async def test_what_is_lost_on_the_way_is_sent_again(
-    qos: QoSProfile, monkeypatch: pytest.MonkeyPatch
+    qos: QoSProfile, theirs: QoSProfile, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Every third message here, the last one included."""
     put, count = ZenohWriter.put, 0
@@ -76,7 +94,7 @@ async def test_what_is_lost_on_the_way_is_sent_again(
         quiet_node("b", second) as b,
     ):
         publisher = a.create_publisher(Int32, "n", qos)
-        subscription = b.create_subscription(Int32, "n", None, qos)
+        subscription = b.create_subscription(Int32, "n", None, theirs)
         await publisher.wait_for_subscribers()
         for number in range(300):
             publisher.publish(Int32(data=number))
@@ -88,26 +106,108 @@ async def test_what_is_lost_on_the_way_is_sent_again(
         assert publisher.stats.dropped == 0
 
 
+@asynccontextmanager
+async def without_acknowledgements(
+    monkeypatch: pytest.MonkeyPatch,
+) -> AsyncIterator[tuple[Node, Node]]:
+    """Two nodes, of which each takes the other for an older aionode, or a ROS 2 node."""
+    monkeypatch.setattr(Acknowledgements, "_take_token", lambda *_: None)
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        yield a, b
+
+
 async def test_a_peer_that_does_not_acknowledge_still_hears_everything(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """An older aionode; as a ROS 2 node, it is left to Zenoh."""
-    async with two_contexts() as (first, second):
-        for context in (first, second):
-            transport: Any = context.transports[1]
-            transport._state.acknowledgements.participants.clear()
-        monkeypatch.setattr(Acknowledgements, "_take_token", lambda *_: None)
-        async with quiet_node("a", first) as a, quiet_node("b", second) as b:
-            publisher = a.create_publisher(String, "n", KEEP_ALL)
-            subscription = b.create_subscription(String, "n", None, KEEP_ALL)
-            await publisher.wait_for_subscribers()
-            for number in range(5000):
-                if not writer_of(publisher).has_room():
-                    await publisher.drain()
-                publisher.publish(String(data=str(number)))
-            heard = [(await subscription.receive()).data for _ in range(5000)]
+    async with without_acknowledgements(monkeypatch) as (a, b):
+        publisher = a.create_publisher(String, "n", KEEP_ALL)
+        subscription = b.create_subscription(String, "n", None, KEEP_ALL)
+        await publisher.wait_for_subscribers()
+        for number in range(5000):
+            if not writer_of(publisher).has_room():
+                await publisher.drain()
+            publisher.publish(String(data=str(number)))
+        heard = [(await subscription.receive()).data for _ in range(5000)]
 
     assert heard == [str(number) for number in range(5000)]
+
+
+@pytest.mark.parametrize("depth", [5000, 100], ids=["fits", "does not fit"])
+async def test_of_a_burst_that_no_reader_acknowledges_only_what_is_beyond_the_depth_is_dropped(
+    depth: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Zenoh would drop what it has no room for, and tell nobody: a thread waits for it instead."""
+    in_thread: list[bytes] = []
+    send_patiently = ZenohWriter._send_patiently
+
+    def note(self: ZenohWriter, publisher: Any, payload: bytes, extra: bytes) -> None:
+        in_thread.append(extra)
+        send_patiently(self, publisher, payload, extra)
+
+    monkeypatch.setattr(ZenohWriter, "_send_patiently", note)
+    monkeypatch.setattr(session_state, "BURST_BYTES", 4096)  # else the machine would decide
+    monkeypatch.setattr(session_state, "BURST_NS", 1 << 62)
+    async with without_acknowledgements(monkeypatch) as (a, b):
+        publisher = a.create_publisher(String, "n", depth)
+        subscription = b.create_subscription(String, "n", None, 5000)
+        await publisher.wait_for_subscribers()
+        for number in range(5000):
+            publisher.publish(String(data=str(number)))
+        heard = []
+        while "4999" not in heard:
+            heard.append((await subscription.receive()).data)
+
+        assert heard == sorted(set(heard), key=int)
+        assert len(heard) + publisher.stats.dropped == 5000
+        assert (publisher.stats.dropped == 0) is (depth == 5000)
+        assert in_thread
+
+
+async def test_a_keep_all_reader_that_takes_nothing_is_sent_no_more_than_a_window(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Nothing on the way has to wait for it, least of all the thread that reads keep-alives."""
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        publisher = a.create_publisher(String, "n", KEEP_ALL)
+        subscription: Any = b.create_subscription(String, "n", None, KEEP_ALL)
+        await publisher.wait_for_subscribers()
+        reader: Any = next(
+            each for each in subscription._registrations if isinstance(each, ZenohReader)
+        )
+        full = True
+        has_room = type(reader._reader).has_room
+        monkeypatch.setattr(
+            type(reader._reader), "has_room", lambda self: not full and has_room(self)
+        )
+        history: Any = writer_of(publisher)._history
+        for number in range(1000):
+            publisher.publish(String(data=f"{number:01000}"))
+        answers = 0
+        take_acknack = history.acknack
+
+        def count(*args: Any) -> None:
+            nonlocal answers
+            answers += 1
+            take_acknack(*args)
+
+        monkeypatch.setattr(history, "acknack", count)
+        await until(lambda: answers >= 3)  # it says again and again that it has used nothing
+
+        assert history.unsent
+        assert history.entries[history.sent - 1][3] <= WINDOW_BYTES
+        full = False
+        reader._use_room()
+        heard = [int((await subscription.receive()).data) for _ in range(1000)]
+        assert heard == list(range(1000))
 
 
 @pytest.mark.parametrize(
@@ -202,12 +302,11 @@ async def test_an_idle_keep_all_publisher_hears_of_its_readers(
         await until(lambda: writer._history.readers)
         (reader,) = writer._history.readers.values()
 
-        async def until_heard() -> None:
-            before_ns = reader.heard_ns
-            await until(lambda: reader.heard_ns != before_ns)
+        def is_heard_since(before_ns: int) -> bool:
+            return bool(reader.heard_ns != before_ns)
 
         for _ in range(3):
-            await until_heard()
+            await until(partial(is_heard_since, reader.heard_ns))
 
 
 async def test_what_is_published_while_a_frozen_reader_is_away_is_sent_on_its_return() -> None:
@@ -249,5 +348,52 @@ async def test_what_is_published_while_a_frozen_reader_is_away_is_sent_on_its_re
         graph.add_endpoint(info)
         writer._update()
         assert [(await subscription.receive()).data for _ in range(3)] == [1, 2, 3]
+        assert subscription.stats.lost == 0
+        assert publisher.stats.dropped == 0
+
+
+@pytest.mark.parametrize("is_forgotten", [True, False], ids=["forgotten", "waited for"])
+async def test_a_transient_local_reader_that_returns_gets_each_message_once(
+    is_forgotten: bool,
+) -> None:
+    """From Zenoh's history if its publisher took it for ended, and else from both."""
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        publisher = a.create_publisher(Int32, "n", TRANSIENT)
+        publisher.publish(Int32(data=0))
+        subscription: Any = b.create_subscription(Int32, "n", None, TRANSIENT)
+        await publisher.wait_for_subscribers()
+        publisher.publish(Int32(data=1))
+        assert [(await subscription.receive()).data for _ in range(2)] == [0, 1]
+        await acknowledged(publisher)
+
+        writer: Any = writer_of(publisher)
+        graph = writer.state.graph
+        reader: Any = next(
+            each for each in subscription._registrations if isinstance(each, ZenohReader)
+        )
+        for subscriber in reader._subscribers:
+            subscriber.undeclare()
+        reader._subscribers.clear()
+        writer._history.readers[reader.gid].heard_ns = perf_ns() if is_forgotten else 0
+        info = next(iter(graph.endpoints(EndpointKind.SUBSCRIPTION, name="/n")))
+        graph.remove_endpoint(info)
+        writer._update()
+        assert (reader.gid not in writer._history.readers) is is_forgotten
+        for number in (2, 3):
+            publisher.publish(Int32(data=number))
+        await publisher.drain()
+
+        graph.add_endpoint(info)
+        writer._update()
+        reader.declare_data(reader.state.session)
+        assert [(await subscription.receive()).data for _ in range(2)] == [2, 3]
+        publisher.publish(Int32(data=4))
+        assert (await subscription.receive()).data == 4
+        await acknowledged(publisher)
+        assert subscription.stats.received == 5
         assert subscription.stats.lost == 0
         assert publisher.stats.dropped == 0

@@ -12,8 +12,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from aionode.action import CancelResponse
 from aionode.clock import Duration
 from aionode.errors import AionodeError
+from aionode.interfaces.action_msgs.srv import CancelGoal
+from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.rcl_interfaces.srv import GetParameters
 from aionode.interfaces.sensor_msgs.msg import Image
@@ -38,6 +41,15 @@ PROFILES = {
 }
 TOPICS: tuple[Any, ...] = (Empty, String, UInt8MultiArray, Image)
 SERVICES: tuple[Any, ...] = (NoRequest, AddTwoInts, GetParameters)
+
+ACTION = "example_interfaces/action/Fibonacci"
+PARTS: dict[str, Any] = {
+    "send_goal": Fibonacci.Impl.SendGoalService,
+    "cancel_goal": CancelGoal,
+    "get_result": Fibonacci.Impl.GetResultService,
+}
+"""The services of an action."""
+OUTCOMES = ("succeed", "abort", "no end", "error")
 
 Step: TypeAlias = tuple[Any, ...]
 
@@ -66,6 +78,28 @@ SERVE = st.sampled_from(SERVICES).flatmap(
         messages(cls.Response) | st.sampled_from([None, ValueError("no"), cls.Response]),
     )
 )
+GOAL = st.tuples(
+    st.just("goal"),
+    messages(Fibonacci.Goal),
+    st.fixed_dictionaries(
+        {name: messages(cls.Response).map(cdr.encode) for name, cls in PARTS.items()}
+    ),
+    st.sampled_from(["waits", "cancels", "gives up"]),
+)
+EXECUTE = st.tuples(
+    st.just("execute"),
+    st.lists(
+        st.sampled_from(list(PARTS)).flatmap(
+            lambda name: st.tuples(
+                st.just(name),
+                messages(PARTS[name].Request).map(cdr.encode) | st.binary(max_size=12),
+            )
+        ),
+        max_size=3,
+    ),
+    st.lists(messages(Fibonacci.Feedback), max_size=3),
+    st.sampled_from(OUTCOMES),
+)
 
 
 def answered(response: bytes, _: bytes) -> bytes:
@@ -85,7 +119,15 @@ class Robot:
         for cls in SERVICES:
             response = cdr.encode(cls.Response())
             bridge.serve(f"/{cls.__name__}", type_name(cls), partial(answered, response))
+        self.answers: dict[str, bytes] = {}
+        for part in PARTS:
+            bridge.serve(f"/fib/_action/{part}", "", partial(self._answer, part), kind="")
+        self.token = bridge.announce("AS", "/fib", ACTION)
         self.marks = bridge.subscribe("/mark")
+
+    def _answer(self, part: str, _: bytes) -> bytes:
+        """Answer as the action server of DDS."""
+        return self.answers[part]
 
     async def run(self, steps: list[Step]) -> None:
         """Have a node do something, and wait until what it sent has passed the bridge."""
@@ -139,6 +181,51 @@ class Robot:
             assert answer[:2] in {b"\0\0", b"\0\1"}
             cdr.decode(cls.Response, answer)
 
+    async def goal(self, node: Node, goal: Any, answers: dict[str, bytes], how: str) -> None:
+        """Send a goal to a server of DDS, which may refuse it or answer with nonsense."""
+        self.answers = answers
+        client = node.create_action_client(Fibonacci, "/fib")
+        await client.wait_for_server()
+        with suppress(AionodeError, TimeoutError):
+            async with asyncio.timeout(0.5):
+                handle = await client.send_goal(goal)
+                if how == "cancels":
+                    await handle.cancel()
+                if how != "gives up":
+                    await handle.result()
+        client.destroy()
+
+    async def execute(
+        self, node: Node, requests: list[tuple[str, bytes]], feedback: list[Any], outcome: str
+    ) -> None:
+        """Serve an action for a client of DDS, whose requests may be none."""
+
+        async def run(goal: Any) -> Any:
+            for one in feedback:
+                goal.publish_feedback(one)
+            if outcome == "error":
+                raise ValueError("no")
+            if outcome in {"succeed", "abort"}:
+                getattr(goal, outcome)()
+            return Fibonacci.Result()
+
+        self.served += 1
+        name = f"served_{self.served}"
+        node.create_action_server(
+            Fibonacci, f"/{name}", run, cancel_callback=lambda _: CancelResponse.ACCEPT
+        )
+        token = f"/AS/{name}/"
+        await until(lambda: any(token in one for one in list(self.bridge.announced)))
+        client = self.bridge.announce("AC", f"/{name}", ACTION)
+        for part, request in requests:
+            answers = await asyncio.to_thread(
+                self.bridge.call, f"/{name}/_action/{part}", request, 0.5
+            )
+            for answer in answers:
+                assert answer[:2] in {b"\0\0", b"\0\1"}
+                cdr.decode(PARTS[part].Response, answer)
+        client.undeclare()
+
 
 @pytest.fixture
 def runner() -> Iterator[asyncio.Runner]:
@@ -154,7 +241,7 @@ def robot() -> Iterator[Robot]:
         yield Robot(bridge)
 
 
-@given(st.lists(PUBLISH | CALL | SERVE, min_size=1, max_size=4))
+@given(st.lists(PUBLISH | CALL | SERVE | GOAL | EXECUTE, min_size=1, max_size=4))
 @settings(max_examples=20, suppress_health_check=list(HealthCheck))
 def test_nothing_that_goes_to_a_bridge_ends_it(
     robot: Robot, runner: asyncio.Runner, steps: list[Step]

@@ -6,6 +6,7 @@ import asyncio
 import os
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager, closing, suppress
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -374,32 +375,111 @@ def test_a_look_is_known_by_its_id() -> None:
         assert not is_look(str(session.zid()))
 
 
+@asynccontextmanager
+async def silent_after_return(ours: ZenohTransport, *names: str) -> AsyncIterator[None]:
+    """Others that run, have returned, and have not declared anything, as `ours` sees it."""
+    acknowledgements = ours._state.acknowledgements
+    async with AsyncExitStack() as stack:
+        for name in names:
+            await stack.enter_async_context(context(name))
+        await until(lambda: acknowledgements.present.issuperset(names))
+        acknowledgements.present.clear()
+        ours._recovery._returned.update(names)
+        yield
+
+
+def change(kind: zenoh.SampleKind, zid: str) -> Any:
+    """Return what Zenoh says of a connection that was made or lost."""
+    transport = SimpleNamespace(zid=zid, whatami=zenoh.WhatAmI.PEER)
+    return SimpleNamespace(kind=kind, transport=transport)
+
+
+async def test_a_participant_is_checked_that_was_lost_and_has_returned() -> None:
+    """Not one that is new, and not while it is lost once more."""
+    put, delete = zenoh.SampleKind.PUT, zenoh.SampleKind.DELETE
+    async with context("a1") as first:
+        watch = first._recovery
+        watch._take_change(change(put, "new"))
+        watch._take_change(change(delete, "b2"))
+        assert not watch._returned
+        watch._take_change(change(put, "b2"))
+        assert watch._returned == {"b2"}
+        assert watch._check is not None
+        watch._take_change(change(delete, "b2"))
+        assert not watch._returned
+
+
 async def test_no_connection_is_cut_while_others_are_being_made() -> None:
     """Of 100 contexts that started at once, each cut others that were merely slow."""
-    async with asyncio.timeout(4 * LIMIT_S), context("a1") as first, context("b2"):
-        acknowledgements = first._state.acknowledgements
-        await until(lambda: "b2" in acknowledgements.present)
-        acknowledgements.present.clear()
+    async with (
+        asyncio.timeout(4 * LIMIT_S),
+        context("a1") as first,
+        silent_after_return(first, "b2"),
+    ):
         first._recovery._changed_s = asyncio.get_running_loop().time()
-        first._recovery._check_returned("b2")
+        first._recovery._check_returned()
 
         assert not first._recovery._cuts
+        assert first._recovery._returned == {"b2"}
 
 
-async def test_a_participant_that_is_connected_and_declares_nothing_is_connected_anew(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Zenoh took its new connection for another link of the one that is lost."""
-    monkeypatch.setattr(recovery, "DECLARED_S", 0.05)
-    async with asyncio.timeout(3 * LIMIT_S), context("a1") as first, context("b2"):
-        acknowledgements = first._state.acknowledgements
-        await until(lambda: "b2" in acknowledgements.present)
+async def test_one_that_has_declared_itself_is_not_connected_anew() -> None:
+    """Its tokens came a moment after its connection."""
+    async with (
+        asyncio.timeout(4 * LIMIT_S),
+        context("a1") as first,
+        silent_after_return(first, "b2"),
+    ):
+        first._state.acknowledgements.present.add("b2")
         first._recovery._changed_s = 0.0
-        first._recovery._check_returned("b2")
-        assert not first._recovery._cuts
+        first._recovery._check_returned()
 
-        acknowledgements.present.clear()
-        first._recovery._check_returned("b2")
-        await until(lambda: "b2" in acknowledgements.present)
+        assert not first._recovery._cuts
+        assert not first._recovery._returned
+
+
+async def test_a_participant_that_is_connected_and_declares_nothing_is_connected_anew() -> None:
+    """Zenoh took its new connection for another link of the one that is lost."""
+    async with (
+        asyncio.timeout(4 * LIMIT_S),
+        context("a1") as first,
+        silent_after_return(first, "b2"),
+    ):
+        first._recovery._changed_s = 0.0
+        first._recovery._check_returned()
+        await until(lambda: "b2" in first._state.acknowledgements.present)
 
         assert first._recovery._cuts == {"b2": 1}
+
+
+async def test_many_that_declare_nothing_are_connected_anew_too() -> None:
+    """Laptops that were closed in one room: more than a few, and none of them is merely slow."""
+    names = {f"{number}b" for number in range(1, recovery.FEW + 2)}
+    async with (
+        asyncio.timeout(4 * LIMIT_S),
+        context("a1") as first,
+        silent_after_return(first, *names),
+    ):
+        first._recovery._changed_s = 0.0
+        first._recovery._check_returned()
+        assert first._recovery._cuts == dict.fromkeys(names, 1)
+
+        await until(lambda: first._state.acknowledgements.present == names)
+
+
+async def test_many_that_declare_nothing_are_waited_for_longer() -> None:
+    """They are slow, as long as connections go on being made."""
+    names = [f"{number}b" for number in range(1, recovery.FEW + 2)]
+    async with (
+        asyncio.timeout(4 * LIMIT_S),
+        context("a1") as first,
+        silent_after_return(first, *names),
+    ):
+        first._recovery._changed_s = asyncio.get_running_loop().time() - recovery.DECLARED_S
+        first._recovery._check_returned()
+        assert not first._recovery._cuts
+        assert first._recovery._check is not None
+
+        first._recovery._returned.discard(names[0])
+        first._recovery._check_returned()
+        assert len(first._recovery._cuts) == recovery.FEW

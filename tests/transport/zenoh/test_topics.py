@@ -24,6 +24,8 @@ from aionode.interfaces.std_msgs.msg import Int32, String, UInt8MultiArray
 from aionode.message import from_builtins
 from aionode.node import Node
 from aionode.qos import QoSProfile
+from aionode.transport._loop_waker import ThreadsafeQueue
+from aionode.transport.zenoh import _session_state as session_state
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
 from aionode.wire._key_expression import buffer_key, data_key
@@ -98,6 +100,35 @@ async def test_published_samples_are_those_of_rmw_zenoh() -> None:
             assert len(sample.attachment.to_bytes()) == 33
             assert extra is not None
             assert extra.sequence == 1
+
+
+async def test_a_thread_of_zenoh_keeps_its_state(monkeypatch: pytest.MonkeyPatch) -> None:
+    """To make one anew for each message would cost more than the message."""
+    local = threading.local()
+    new_states: list[int] = []
+
+    class Watched(ThreadsafeQueue[Any]):
+        __slots__ = ()
+
+        def put(self, item: Any) -> None:
+            if not hasattr(local, "is_old"):
+                local.is_old = True
+                new_states.append(threading.get_native_id())
+            super().put(item)
+
+    async with quiet_node("listener") as node:
+        with monkeypatch.context() as patch:
+            patch.setattr(session_state, "ThreadsafeQueue", Watched)
+            subscription = node.create_subscription(String, "chatter")
+        with raw_session() as session:
+            await known(session, f"@ros2_lv/{DOMAIN_ID}/**/MS/**", 1)
+            for number in range(20):
+                session.put(
+                    CHATTER, cdr.encode(String()), attachment=attachment.pack(number, 0, bytes(16))
+                )
+                await subscription.receive()
+
+    assert len(new_states) == len(set(new_states))
 
 
 async def test_samples_of_rmw_zenoh_are_heard() -> None:

@@ -1,0 +1,120 @@
+"""What publishers, subscriptions, services and clients have in common: their place in the graph."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, NamedTuple
+
+from aionode.endpoints._core.entity import EndStage, Entity
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from collections.abc import Set as AbstractSet
+
+    from aionode.endpoints._core.callback_runner import Callbacks
+    from aionode.endpoints._core.loop_affinity import LoopAffinity
+    from aionode.graph import EndpointInfo, Graph
+
+__all__ = ["Endpoint", "EndpointSetup"]
+
+
+class EndpointSetup(NamedTuple):
+    """What a node gives to an endpoint that it creates.
+
+    Attributes:
+        endpoint: The endpoint as the graph is to know it.
+        graph: The graph.
+        callbacks: How the node runs callbacks.
+        affinity: The event loop that the node runs in.
+    """
+
+    endpoint: EndpointInfo
+    graph: Graph
+    callbacks: Callbacks
+    affinity: LoopAffinity
+
+
+class Endpoint(Entity):
+    """An entity that others find in the graph, and that is matched with those of the opposite kind.
+
+    Args:
+        subject: What it is, for errors and logs, such as ``publisher of /chatter``.
+        setup: What its node gives to it.
+        stage: When it is destroyed as its node ends.
+
+    Attributes:
+        qos_profile: Its profile.
+    """
+
+    def __init__(
+        self, subject: str, setup: EndpointSetup, stage: EndStage = EndStage.CALLBACKS
+    ) -> None:
+        super().__init__(subject, stage)
+        self._endpoint, self._graph, self._callbacks, self._affinity = setup
+        self.qos_profile = self._endpoint.qos
+        # What `_until` waits for: changes of the graph, each until it is done.
+        self._waits: set[asyncio.Future[None]] = set()
+        self._unwatch: list[Callable[[], None]] = []
+        self._unreported: AbstractSet[str] = frozenset()
+
+    def _leave_unreported(self, aspects: AbstractSet[str]) -> None:
+        """Have no warning logged for these mismatches, as a `Mismatch` calls them."""
+        self._unreported = aspects
+
+    def _watch(self, watcher: Callable[[EndpointInfo, bool], None]) -> None:
+        """Call `watcher` with each opposite endpoint of its name, and whether it is present.
+
+        Until the endpoint is destroyed; what is known already comes at once.
+        """
+        if not self.destroyed:
+            opposite = self._endpoint.kind.opposite
+            self._unwatch.append(self._graph.watch(opposite, self._endpoint.name, watcher))
+
+    def _enter_graph(self) -> None:
+        """Add the endpoint to the graph. Called once it is announced to the transports."""
+        if self._unreported:
+            self._graph.unreported[self._endpoint] = self._unreported
+        self._graph.add_endpoint(self._endpoint)
+
+    def _leave_graph(self) -> None:
+        """Remove the endpoint from the graph, and cancel every `_until`. Part of `_close`."""
+        for wait in list(self._waits):  # first, since the change below wakes them
+            wait.cancel(f"{self._endpoint.kind.value} of {self._endpoint.name}: destroyed")
+        for unwatch in self._unwatch:
+            unwatch()
+        self._unwatch.clear()
+        self._graph.remove_endpoint(self._endpoint)
+
+    def _matched(self) -> list[EndpointInfo]:
+        """Return the endpoints of the opposite kind that this one reaches; none when destroyed."""
+        if self.destroyed:
+            return []
+        opposite = self._endpoint.kind.opposite
+        return [
+            other
+            for other in self._graph.endpoints(opposite, name=self._endpoint.name)
+            if self._endpoint.matches(other)
+        ]
+
+    def _count_matched(self) -> int:
+        """Return how many endpoints of the opposite kind are in the graph and fit."""
+        opposite = self._endpoint.kind.opposite
+        return sum(
+            self._endpoint.matches(other)
+            for other in self._graph.endpoints(opposite, name=self._endpoint.name)
+        )
+
+    async def _until(self, condition: Callable[[], bool]) -> None:
+        """Wait until `condition()` is true; it is checked again when endpoints of its name change.
+
+        Raises:
+            CancelledError: the endpoint was destroyed during the wait.
+        """
+        while not condition():
+            if self.destroyed:
+                # A change in the same iteration of the loop had ended the wait before `destroy`.
+                raise asyncio.CancelledError(f"{self._endpoint.name}: destroyed")
+            wait = self._graph.changed(self._endpoint.name)
+            self._waits.add(wait)
+            wait.add_done_callback(self._waits.discard)
+            await wait

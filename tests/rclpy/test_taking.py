@@ -1,0 +1,75 @@
+"""Which handles an executor looks at."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+from aionode.rclpy._impl.destroyable import Arrivals, Signal
+from aionode.rclpy._taking import ready_callbacks
+
+
+class Handles:
+    """A node with one subscription, whose readiness is that of a function."""
+
+    def __init__(self, ready: Callable[[], bool]) -> None:
+        self.messages = Arrivals(Signal())
+        self.looks = 0
+        self._ready = ready
+        others = [Arrivals(Signal()) for _ in range(2)]
+        self.node: Any = SimpleNamespace(
+            _waitables=[],
+            _timers=[],
+            _subscriptions=[SimpleNamespace(_handle=SimpleNamespace(ready=self._look))],
+            _guards=[],
+            _clients=[],
+            _services=[],
+            handle=SimpleNamespace(messages=self.messages, responses=others[0], requests=others[1]),
+        )
+
+    def _look(self) -> bool:
+        self.looks += 1
+        return self._ready()
+
+    def found(self) -> int:
+        """Return how many callbacks are ready."""
+        return len(ready_callbacks([self.node], lambda _: True, None))
+
+
+def test_subscriptions_are_looked_at_only_after_something_has_come() -> None:
+    """A look at each handle is what a round costs most."""
+    handles = Handles(lambda: False)
+
+    handles.found()
+    assert handles.looks == 0
+    handles.messages.note()
+    handles.found()
+    handles.found()
+
+    assert handles.looks == 1
+
+
+def test_a_subscription_is_looked_at_as_long_as_something_waits() -> None:
+    """One call of a round takes one message; others may wait behind it."""
+    waiting = [True, True, False]
+    handles = Handles(lambda: waiting.pop(0))
+
+    handles.messages.note()
+
+    assert [handles.found() for _ in range(4)] == [1, 1, 0, 0]
+
+
+def test_what_comes_during_a_look_is_found_by_the_next_one() -> None:
+    """Another thread may fill a handle right after it was looked at."""
+
+    def too_late() -> bool:
+        if handles.looks == 1:
+            handles.messages.note()
+            return False
+        return True
+
+    handles = Handles(too_late)
+    handles.messages.note()
+
+    assert [handles.found() for _ in range(2)] == [0, 1]

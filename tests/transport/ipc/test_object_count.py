@@ -1,0 +1,72 @@
+"""How many objects a subscription is made of: each is memory, and a place to look for a reader."""
+
+from __future__ import annotations
+
+import gc
+from collections import Counter
+from typing import TYPE_CHECKING, Any
+
+from aionode.interfaces.std_msgs.msg import Int32
+from tests.support.links import Counting, Two, folder, two_nodes, writer_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+__all__ = ["folder"]
+
+VALUES = {"Duration", "QoSProfile"}  # of the profile, which every endpoint has
+
+
+def own_objects(root: object, shared: Iterable[object]) -> Counter[str]:
+    """Return how many objects of aionode's classes only `root` leads to, by class."""
+    seen = {id(one) for one in shared}
+    found: Counter[str] = Counter()
+    ahead: list[Any] = [root]
+    while ahead:
+        one = ahead.pop()
+        if id(one) in seen or isinstance(one, type):
+            continue
+        seen.add(id(one))
+        kind = type(one)
+        if kind.__module__.partition(".")[0] == "aionode" and kind.__name__ not in VALUES:
+            found[kind.__name__] += 1
+        ahead.extend(gc.get_referents(one))
+    return found
+
+
+async def linked_subscription(nodes: Two) -> Counter[str]:
+    """Return what a subscription is made of that hears one publisher over a link."""
+    first = Counting(nodes, topic="first")  # for which the link is made
+    await first.until_linked()
+    publisher = nodes.a.create_publisher(Int32, "second", 10)
+    got: list[Int32] = []
+    gc.collect()
+    shared = gc.get_objects()
+    subscription = nodes.b.create_subscription(Int32, "second", got.append, 10)
+    await publisher.wait_for_subscribers()
+    while not (writer_of(publisher).linked and got):
+        publisher.publish(Int32())
+        await first.go()
+    return own_objects(subscription, shared)
+
+
+async def test_a_linked_subscription_is_made_of_few_objects() -> None:
+    """What a message does not need is made when it is needed.
+
+    There are no histograms before something is recorded, no monitor without a policy, and no entry
+    of the graph beside the endpoint. Zenoh's part is what the subscription has without a link.
+    """
+    async with two_nodes() as nodes:
+        found = await linked_subscription(nodes)
+
+    over_zenoh = {"ZenohReader": 1, "ThreadsafeQueue": 1, "WriterProxy": 1, "ReaderStub": 1}
+    assert found - Counter(over_zenoh) == {
+        "Subscription": 1,
+        "EndpointInfo": 1,
+        "CallbackStats": 1,
+        "CallbackRunner": 1,
+        "_Reader": 1,
+        "LocalReader": 1,
+        "IpcReader": 1,
+        "RemotePublisher": 1,
+    }
