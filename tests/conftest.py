@@ -82,12 +82,19 @@ BOTH_LOOPS = (
     "tests/test_concurrency.py",
     "tests/test_context.py",
     "tests/test_runner.py",
-    "tests/transport/",
+    "tests/transport/ipc/",
+    "tests/transport/rcl/",
+    "tests/transport/test_",
+    "tests/transport/zenoh/test_services.py",
+    "tests/transport/zenoh/test_session.py",
+    "tests/transport/zenoh/test_sockets.py",
+    "tests/transport/zenoh/test_topics.py",
 )
 """Files and folders whose tests always run on asyncio and on uvloop.
 
 They are about what differs between the two: alarms, sockets, threads, the order of callbacks, and
-the start and end of a loop. On uvloop, tests in other places have the mark `second_loop`.
+the start and end of a loop. Zenoh has threads of its own: how a loop is woken by them is the same
+for all that it brings. On uvloop, tests in other places have the mark `second_loop`.
 """
 
 
@@ -101,8 +108,8 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
 
 @pytest.hookimpl(optionalhook=True)  # of pytest-xdist
 def pytest_xdist_auto_num_workers() -> int:
-    """Use two workers more than there are processors: tests of processes mostly wait."""
-    return (os.cpu_count() or 1) + 2
+    """Use four workers more than there are processors: tests of processes and sessions wait."""
+    return (os.cpu_count() or 1) + 4
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -26,11 +26,23 @@ BLOCK = re.compile(
     r"(?P<note><!-- [^>]*-->\n+)?^```(?P<language>\w+)[^\n]*\n(?P<code>.*?)^```$",
     re.MULTILINE | re.DOTALL,
 )
-LINK = re.compile(r"\]\((?!https?:|#)(?P<target>[^)#\s]+)")
+FENCED = re.compile(r"^ *```.*?^ *```$", re.MULTILINE | re.DOTALL)
+LINK = re.compile(r"\]\((?!https?:|mailto:)(?P<page>[^)#\s]*)#?(?P<anchor>[^)\s]*)\)")
+HEADING = re.compile(r"^#+ (?P<text>.+)$", re.MULTILINE)
+TYPED = re.compile(r"^ *\$ (?P<command>.+)$", re.MULTILINE)
+NAMED = re.compile(r"`(?P<command>(?:aionode|make|python -m (?:aionode|tests)[\w.]*) [^`]+)`")
 HOP = re.compile(r"\| `(?P<file>aionode/[\w/]+\.py)` \| `(?P<name>[\w.]+)` \|")
 TERM = re.compile(r"^\| (?P<words>[^|`]+[^|]*) \| [^|]+ \| `(?P<place>[^`]+)` \|$", re.MULTILINE)
 NAME = re.compile(r"`([A-Z]\w+)`")
 PAGES = [str(page.relative_to(ROOT)) for page in pages()]
+TEXTS = [
+    *PAGES,
+    "CHANGELOG.md",
+    "SECURITY.md",
+    *(str(page.relative_to(ROOT)) for page in ROOT.glob("packages/*/README.md")),
+    *(str(page.relative_to(ROOT)) for page in ROOT.glob(".github/**/*.md")),
+]
+"""Every text for users and contributors."""
 
 
 @dataclass(frozen=True)
@@ -103,20 +115,23 @@ async def run_block(block: Block, names: dict[str, Any]) -> None:
         exec(code, names)  # noqa: S102 - the documentation's own code
 
 
-def commands() -> list[str]:
-    """Return every command line of the documentation."""
-    return [
-        line.removeprefix("$ ")
-        for page in PAGES
-        for block in blocks(page, "console")
-        for line in block.code.splitlines()
-        if line.startswith("$ ")
-    ]
+def commands(page: str) -> set[str]:
+    """Return every command line of a page, and those that its sentences name."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    typed = {line["command"] for line in TYPED.finditer(text)}
+    return typed | {line["command"] for line in NAMED.finditer(FENCED.sub("", text))}
 
 
 def test_a_command_of_the_documentation_exists() -> None:
     """Newcomers type what the page shows."""
-    assert [command for command in commands() if not command_line_exists(command)] == []
+    unknown = [
+        f"{page}: {command}"
+        for page in TEXTS
+        for command in sorted(commands(page))
+        if not command_line_exists(command)
+    ]
+
+    assert unknown == []
 
 
 def command_line_exists(command: str) -> bool:
@@ -125,6 +140,8 @@ def command_line_exists(command: str) -> bool:
     match words:
         case ["aionode", *arguments]:
             return command_exists(arguments)
+        case ["python", "-m", "build" | "twine", *_]:
+            return True  # a release needs them, and nothing else
         case ["python", "-m", module, *_]:
             return importlib.util.find_spec(module) is not None
         case ["python", path, *_] if path.endswith(".py"):
@@ -150,31 +167,58 @@ def command_exists(arguments: list[str]) -> bool:
     command: click.Command = root
     context = click.Context(command)
     words = list(arguments)
-    while isinstance(command, click.Group) and words and not words[0].startswith("-"):
-        found = command.get_command(context, words.pop(0))
-        if found is None:
-            return False
-        command = found
-    options = {name for option in command.params for name in [*option.opts, *option.secondary_opts]}
+    while isinstance(command, click.Group) and words:
+        word = words.pop(0)
+        if not word.startswith("-"):
+            found = command.get_command(context, word)
+            if found is None:
+                return False
+            command = found
+        elif word != "--help":
+            option = options_of(command).get(word)
+            if option is None:
+                return False
+            if not option.is_flag:
+                del words[:1]
     given = {word.partition("=")[0] for word in words if re.fullmatch(r"--?[a-z][a-z-]*.*", word)}
-    return given - {"--ros-args", "--help", "-p", "-r"} <= options
+    return given - {"--ros-args", "--help", "-p", "-r"} <= options_of(command).keys()
+
+
+def options_of(command: click.Command) -> dict[str, click.Option]:
+    """Return the options of a command by each of their names."""
+    return {
+        name: option
+        for option in command.params
+        if isinstance(option, click.Option)
+        for name in [*option.opts, *option.secondary_opts]
+    }
 
 
 def test_a_link_leads_somewhere() -> None:
-    """Links inside the repository name files that exist."""
+    """Links inside the repository name files that exist, and headings that they have."""
     dead = [
-        f"{page}: {link['target']}"
-        for page in PAGES
-        for link in LINK.finditer((ROOT / page).read_text(encoding="utf-8"))
-        if not exists((ROOT / page).parent / link["target"])
+        f"{page}: {link['page']}#{link['anchor']}"
+        for page in TEXTS
+        for link in LINK.finditer(FENCED.sub("", (ROOT / page).read_text(encoding="utf-8")))
+        if not exists(ROOT / page, link["page"], link["anchor"])
     ]
 
     assert dead == []
 
 
-def exists(target: Path) -> bool:
-    """Whether a link's target is a file here."""
-    return target.resolve().exists()
+def exists(page: Path, target: str, anchor: str) -> bool:
+    """Whether a link of a page leads to a file here, and to one of its headings if it names one."""
+    file = page.parent / target if target else page
+    return file.exists() and (not anchor or anchor in anchors(file))
+
+
+def anchors(page: Path) -> set[str]:
+    """Return the anchors of a page's headings, as GitHub and MyST make them."""
+    text = FENCED.sub("", page.read_text(encoding="utf-8"))
+    return {
+        re.sub(r"[^\w -]", "", heading["text"].lower()).replace(" ", "-")
+        for heading in HEADING.finditer(text)
+    }
 
 
 def test_a_page_has_one_sentence_for_each_line() -> None:

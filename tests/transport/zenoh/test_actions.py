@@ -20,6 +20,7 @@ from aionode.action import CancelResponse, GoalStatus
 from aionode.context import Context
 from aionode.errors import GoalLostError
 from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.wire import cdr
 from tests.support.actions import Goal, Worker, uuid_of
 from tests.support.peers import Collector, quiet_node, raw_session
 
@@ -152,7 +153,10 @@ async def until_asked(node: Node, feedback: Collector) -> None:
     while not feedback.items:
         publisher.publish(Fibonacci.Impl.FeedbackMessage())
         await asyncio.sleep(0.01)  # noqa: TID251  # a plain subscriber is not announced
-    await asyncio.sleep(0.05)  # noqa: TID251  # samples that are under way
+    last = Fibonacci.Impl.FeedbackMessage(feedback=Fibonacci.Feedback(sequence=[1]))
+    publisher.publish(last)  # after those that are under way
+    while feedback.items[-1] != cdr.encode(last):
+        await feedback.have(len(feedback.items) + 1)
     feedback.items.clear()
 
 
