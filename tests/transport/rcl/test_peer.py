@@ -292,6 +292,7 @@ async def test_it_sees_the_events_of_our_publisher(node: Node) -> None:
             missing.discard((await events.receive()).data)
 
     beat = node.create_publisher(String, "/ours/beat", offered)
+    await beat.wait_for_subscribers()
     await until_told("matched 1")
     beat.publish(String(data="one"))
     await until_told("alive 1", "message", "deadline", "alive 0")
