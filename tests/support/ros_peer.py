@@ -18,6 +18,8 @@ from rclpy.action import (  # noqa: TID251  # the same
     CancelResponse,
 )
 from rclpy.callback_groups import ReentrantCallbackGroup  # noqa: TID251  # the same
+from rclpy.duration import Duration  # noqa: TID251  # the same
+from rclpy.event_handler import SubscriptionEventCallbacks  # noqa: TID251  # the same
 from rclpy.executors import (  # noqa: TID251  # the same
     ExternalShutdownException,
     MultiThreadedExecutor,
@@ -25,11 +27,18 @@ from rclpy.executors import (  # noqa: TID251  # the same
 from rclpy.node import Node  # noqa: TID251  # the same
 from rclpy.parameter import Parameter  # noqa: TID251  # the same
 from rclpy.parameter_client import AsyncParameterClient  # noqa: TID251  # the same
-from rclpy.qos import DurabilityPolicy, QoSProfile  # noqa: TID251  # the same
+from rclpy.qos import (  # noqa: TID251  # the same
+    DurabilityPolicy,
+    LivelinessPolicy,
+    QoSProfile,
+)
 from rclpy.task import Future  # noqa: TID251  # the same
 from std_msgs.msg import String, UInt8MultiArray
 from test_msgs.action import Fibonacci
 from test_msgs.srv import BasicTypes
+from type_description_interfaces.srv import GetTypeDescription
+
+MOMENT = Duration(nanoseconds=100_000_000)
 
 
 class Peer(Node):  # type: ignore[misc]  # rclpy has no types here
@@ -51,6 +60,10 @@ class Peer(Node):  # type: ignore[misc]  # rclpy has no types here
             self.map.publish(String(data=str(number)))
         chatter = self.create_publisher(String, "chatter", 10)
         self.create_timer(0.05, lambda: chatter.publish(String(data="hello")))
+        self.hurried = self.create_publisher(
+            String, "hurried", QoSProfile(depth=1, deadline=MOMENT)
+        )
+        self.watch("ours/beat")
         self.create_service(BasicTypes, "add", add)
         self.create_service(BasicTypes, "silent", never, callback_group=group)
         self.client = self.create_client(BasicTypes, "ours/add", callback_group=group)
@@ -64,6 +77,29 @@ class Peer(Node):  # type: ignore[misc]  # rclpy has no types here
         )
         self.goals = ActionClient(self, Fibonacci, "ours/fibonacci", callback_group=group)
         self.parameters = AsyncParameterClient(self, "ours")
+
+    def watch(self, topic: str) -> None:
+        """Publish on ``/events`` what happens to a subscription that asks much of publishers."""
+        events = self.create_publisher(String, "events", 100)
+
+        def tell(event: str) -> None:
+            events.publish(String(data=event))
+
+        profile = QoSProfile(
+            depth=1,
+            deadline=MOMENT,
+            liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
+            liveliness_lease_duration=MOMENT,
+        )
+        callbacks = SubscriptionEventCallbacks(
+            deadline=lambda event: tell("deadline"),
+            liveliness=lambda event: tell(f"alive {event.alive_count}"),
+            incompatible_qos=lambda event: tell(f"incompatible {event.last_policy_kind.name}"),
+            matched=lambda event: tell(f"matched {event.current_count}"),
+        )
+        self.create_subscription(
+            String, topic, lambda message: tell("message"), profile, event_callbacks=callbacks
+        )
 
     async def obey(self, command: Any) -> None:
         """Do what a command says."""
@@ -101,6 +137,19 @@ class Peer(Node):  # type: ignore[misc]  # rclpy has no types here
         parameter = Parameter("speed", value=float(value)).to_parameter_msg()
         answer = await self.parameters.set_parameters([parameter])
         self.tell(answer.results[0].successful)
+
+    async def hurry(self, text: str) -> None:
+        """Publish once where a deadline is promised."""
+        self.hurried.publish(String(data=text))
+        self.tell(text)
+
+    async def described(self, type_name: str) -> None:
+        """Ask the test's node what a type is."""
+        client = self.create_client(GetTypeDescription, "ours/get_type_description")
+        client.wait_for_service()
+        answer = await client.call_async(GetTypeDescription.Request(type_name=type_name))
+        fields = [one.name for one in answer.type_description.type_description.fields]
+        self.tell((answer.successful, fields))
 
     async def knows(self, name: str) -> None:
         """Tell when a node has come."""

@@ -71,6 +71,16 @@ class RclGraphWatcher:
         """Whether a node of another context is known."""
         return bool(self._nodes)
 
+    @property
+    def is_complete(self) -> bool:
+        """Whether the last answer was complete."""
+        return not self._incomplete
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether nothing is being asked, or is to be asked again."""
+        return self._steps is None and (self.is_complete or self._incomplete >= TRIES)
+
     def start(self, rcl: Rcl) -> None:
         """Begin to watch."""
         loop = self._state.loop

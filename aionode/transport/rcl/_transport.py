@@ -28,6 +28,9 @@ KNOWN_S: Final = 0.25
 QUIET_S: Final = 0.06
 """After how much quiet `open` goes on early, if another node was found."""
 
+MAX_QUIETS: Final = 5
+"""For how many of its times of quiet `all_known` waits at most."""
+
 CLOSE_S: Final = 0.8
 """How long `close` waits for messages that a thread is sending."""
 
@@ -67,21 +70,26 @@ class RclTransport(Transport):
         self._state.open(asyncio.get_running_loop(), graph)
         if self._state.rcl is not None:
             self._watcher.start(self._state.rcl)
-        await self._until_quiet(QUIET_S, KNOWN_S)
+        await self._until_quiet(QUIET_S, KNOWN_S, KNOWN_S)
 
     async def all_known(self, quiet_s: float) -> bool:
-        """Wait until the graph has not changed for a quarter of `quiet_s`."""
-        await self._until_quiet(quiet_s / 4, quiet_s)
-        return True
+        """Wait until the graph has not changed for a quarter of `quiet_s`, and no part is missing.
 
-    async def _until_quiet(self, quiet_s: float, limit_s: float) -> None:
-        """Wait until others are known and nothing has changed for a while, or for `limit_s`."""
+        Without another node it waits for `quiet_s`, with changes that do not end for `MAX_QUIETS`
+        times as long.
+        """
+        await self._until_quiet(quiet_s / 4, quiet_s, quiet_s * MAX_QUIETS)
+        return self._watcher.is_complete
+
+    async def _until_quiet(self, quiet_s: float, alone_s: float, limit_s: float) -> None:
+        """Wait until nothing has changed for a while, a longer one if no others are known."""
+        watcher = self._watcher
         ended = asyncio.get_running_loop().create_future()
         with suppress(TimeoutError):
             async with asyncio.timeout(limit_s):
                 while True:
-                    quiet_ns = perf_ns() - self._watcher.changed_ns
-                    if self._watcher.has_foreign and quiet_ns >= quiet_s * 1e9:
+                    enough_s = quiet_s if watcher.has_foreign else alone_s
+                    if watcher.is_settled and perf_ns() - watcher.changed_ns >= enough_s * 1e9:
                         return
                     with suppress(TimeoutError):
                         async with asyncio.timeout(quiet_s / 2):

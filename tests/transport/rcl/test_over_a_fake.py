@@ -15,6 +15,7 @@ import pytest
 
 from aionode.context import Context
 from aionode.errors import ServiceUnavailableError, TransportError
+from aionode.graph import EndpointKind
 from aionode.interfaces.std_msgs.msg import Int32, String, UInt8MultiArray
 from aionode.interfaces.test_msgs.srv import BasicTypes
 from aionode.node import Node
@@ -277,6 +278,15 @@ async def test_an_answer_with_a_part_missing_is_asked_for_again(pair: Pair, rcl:
     async with asyncio.timeout(10):
         await client.wait_for_service()
     assert rcl.silent == 0
+
+
+async def test_tools_wait_for_what_is_missing(pair: Pair, rcl: FakeRcl) -> None:
+    """Else a command would say that there is no such service."""
+    rcl.silent = 3
+    pair.right.create_service(BasicTypes, "add", lambda request, response: response)
+    await until(lambda: rcl.silent < 3)
+    assert await pair.left.context.transports[1].all_known(0.2)
+    assert pair.left.graph.count(EndpointKind.SERVER, "/add")
 
 
 async def test_nodes_of_one_name_are_told_apart(pair: Pair) -> None:

@@ -9,15 +9,32 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from aionode.action import ActionServer, CancelResponse, GoalStatus, ServerGoalHandle
+from aionode.cli._support.type_discovery import fetch_type
+from aionode.clock import Duration
 from aionode.context import Context
+from aionode.endpoints.events import (
+    IncompatibleTypeInfo,
+    MatchedInfo,
+    QoSOfferedIncompatibleQoSInfo,
+    QoSRequestedDeadlineMissedInfo,
+    QoSRequestedIncompatibleQoSInfo,
+)
 from aionode.errors import ServiceUnavailableError
+from aionode.graph import EndpointKind
 from aionode.interfaces.std_msgs.msg import String, UInt8MultiArray
 from aionode.interfaces.test_msgs.action import Fibonacci
 from aionode.interfaces.test_msgs.srv import BasicTypes
 from aionode.node import Node
 from aionode.parameter import Parameter
 from aionode.parameter_client import AsyncParameterClient
-from aionode.qos import DurabilityPolicy, QoSProfile
+from aionode.qos import (
+    DurabilityPolicy,
+    LivelinessPolicy,
+    QoSPolicyKind,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+from aionode.wire.typehash import type_hash
 from tests.support.ros import ros_domain, ros_missing, ros_peer
 
 if TYPE_CHECKING:
@@ -25,6 +42,10 @@ if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Iterator
 
 pytestmark = pytest.mark.skipif(bool(ros_missing()), reason=ros_missing() or "there is a ROS 2")
+
+
+MOMENT = Duration(nanoseconds=100_000_000)
+"""A deadline and a lease that the peer knows too."""
 
 
 @pytest.fixture(scope="module")
@@ -195,6 +216,126 @@ async def test_its_endpoints_are_in_the_graph(node: Node) -> None:
     assert found.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
     while ("/add", ["test_msgs/srv/BasicTypes"]) not in node.get_service_names_and_types():
         await node.graph.changed()
+
+
+# QoS events
+
+
+async def event_of(stream: Any, kind: type[Any], **wanted: object) -> Any:
+    """Return the next event of a kind that has some values."""
+    async for event in stream:
+        if isinstance(event, kind) and all(
+            getattr(event, name) == value for name, value in wanted.items()
+        ):
+            return event
+    raise AssertionError("the stream has ended")
+
+
+async def test_a_publisher_hears_that_its_subscription_is_matched(node: Node) -> None:
+    """By the graph."""
+    publisher = node.create_publisher(String, "/to_echo", 10)
+    event = await event_of(publisher.events, MatchedInfo)
+    assert (event.current_count, event.current_count_change) == (1, 1)
+
+
+async def test_what_its_publisher_does_not_offer_is_an_event(node: Node) -> None:
+    """The policy is named, and nothing is matched."""
+    wanted = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    reader = node.create_subscription(String, "/chatter", None, wanted)
+    event = await event_of(reader.events, QoSRequestedIncompatibleQoSInfo)
+    assert event.last_policy_kind is QoSPolicyKind.DURABILITY
+    assert reader.get_publisher_count() == 0
+
+
+async def test_what_its_subscription_asks_in_vain_is_an_event(node: Node) -> None:
+    """The other way round."""
+    offered = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    publisher = node.create_publisher(String, "/to_echo", offered)
+    event = await event_of(publisher.events, QoSOfferedIncompatibleQoSInfo)
+    assert event.last_policy_kind is QoSPolicyKind.RELIABILITY
+    assert publisher.get_subscription_count() == 0
+
+
+async def test_another_type_is_an_event(node: Node) -> None:
+    """On the same topic."""
+    reader = node.create_subscription(UInt8MultiArray, "/chatter", None, 10)
+    event = await event_of(reader.events, IncompatibleTypeInfo)
+    assert event.total_count == 1
+
+
+async def test_a_deadline_that_it_misses_is_an_event(node: Node) -> None:
+    """Counted from its message on."""
+    wanted = QoSProfile(depth=1, deadline=MOMENT)
+    reader = node.create_subscription(String, "/hurried", None, wanted)
+    while not reader.get_publisher_count():
+        await node.graph.changed()
+    assert await told(node, "hurry once") == "once"
+    assert (await reader.receive()).data == "once"
+    await event_of(reader.events, QoSRequestedDeadlineMissedInfo)
+
+
+async def test_it_sees_the_events_of_our_publisher(node: Node) -> None:
+    """Matched, alive, the deadline, the end of a lease, an assertion, and the publisher's end."""
+    events = node.create_subscription(String, "/events", None, 1000)
+    while not events.get_publisher_count():
+        await node.graph.changed()
+    offered = QoSProfile(
+        depth=1,
+        deadline=MOMENT,
+        liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
+        liveliness_lease_duration=MOMENT,
+    )
+
+    async def until_told(*wanted: str) -> None:
+        missing = set(wanted)
+        while missing:
+            missing.discard((await events.receive()).data)
+
+    beat = node.create_publisher(String, "/ours/beat", offered)
+    await beat.wait_for_subscribers()
+    await until_told("matched 1")
+    beat.publish(String(data="one"))
+    await until_told("alive 1", "message", "deadline", "alive 0")
+    beat.assert_liveliness()
+    await until_told("alive 1")
+    beat.destroy()
+    await until_told("matched 0")
+
+
+async def test_it_is_told_of_a_publisher_that_offers_too_little(node: Node) -> None:
+    """As by a publisher of rclpy."""
+    events = node.create_subscription(String, "/events", None, 1000)
+    while not events.get_publisher_count():
+        await node.graph.changed()
+    node.create_publisher(String, "/ours/beat", 10)
+    while not (found := (await events.receive()).data).startswith("incompatible"):
+        pass
+    assert found.endswith(("_DEADLINE", "_LIVELINESS"))
+
+
+# Types
+
+
+async def test_it_describes_its_types(node: Node) -> None:
+    """A class made of the description has the hash that the graph shows."""
+    while not node.count_publishers("/chatter"):
+        await node.graph.changed()
+    (user,) = node.graph.endpoints(EndpointKind.PUBLISHER, name="/chatter")
+    while not node.graph.count(EndpointKind.SERVER, "/peer/get_type_description"):
+        await node.graph.changed()
+    made = await fetch_type(node, user)
+    assert made is not None
+    assert made is not String
+    assert type_hash(made) == type_hash(String)
+
+
+async def test_it_asks_for_our_types(node: Node) -> None:
+    """As tools do that lack them."""
+    node.create_publisher(String, "/ours/text", 10)
+    assert await told(node, "described std_msgs/msg/String") == "(True, ['data'])"
+
+
+# Ends
 
 
 @pytest.mark.one_loop
