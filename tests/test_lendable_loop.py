@@ -307,6 +307,10 @@ class Work:
         self.done[what] += count
         self._one.release()
 
+    def read(self, sock: socket.socket) -> None:
+        """Count what a socket has brought."""
+        self.do("read", len(sock.recv(64)))
+
     def counts(self, names: Iterable[str]) -> dict[str, int]:
         """Return how often these things were done so far."""
         return {name: self.done[name] for name in names}
@@ -370,7 +374,7 @@ def test_nothing_is_lost_while_threads_borrow_a_busy_loop(times: int) -> None:
     with running_loop() as loop:
         for here, _ in pairs:
             borrow(loop)
-            loop.add_reader(here, lambda sock: work.do("read", len(sock.recv(64))), here)
+            loop.add_reader(here, work.read, here)
             loop.give_back()
         loop.call_soon_threadsafe(work.tick, loop)
         jobs = [

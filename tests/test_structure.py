@@ -25,7 +25,6 @@ MAX_CHAIN = 14
 
 SHARED = {
     "aionode.arguments._parameter_yaml": "the command line reads and writes parameter files too",
-    "aionode.clock._silence": "deadlines and leases, and what Zenoh keeps of a publisher",
     "aionode.clock._time_base": "timers and goals have alarms, which users do not",
     "aionode.clock._timer_heap": "the manual clock of tests keeps its alarms in one",
     "aionode.clock._values": "QoS has durations, not clocks; the manual clock converts seconds",

@@ -12,6 +12,7 @@ from aionode.clock._clocks import (
     SteadyClock,
     TimeJump,
 )
+from aionode.clock._silence import SilenceAlarm
 from aionode.clock._time_base import Alarm, MachineTime, TimeBase, perf_ns
 from aionode.clock._values import CONST_INFINITE_NS, S_TO_NS, ClockType, Duration, Infinite, Time
 
@@ -28,6 +29,7 @@ __all__ = [
     "JumpThreshold",
     "MachineTime",
     "ROSClock",
+    "SilenceAlarm",
     "SteadyClock",
     "Time",
     "TimeBase",

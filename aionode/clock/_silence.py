@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.clock import TimeBase
-    from aionode.clock._time_base import Alarm
+    from aionode.clock._time_base import Alarm, TimeBase
 
 __all__ = ["SilenceAlarm"]
 

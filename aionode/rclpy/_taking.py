@@ -36,11 +36,12 @@ def ready_callbacks(
     """Return what is ready now, in the order of a round."""
     found: list[Ready] = []
     for node in nodes:
-        found += [
-            (waitable, node, take_waitable)
-            for waitable in node._waitables
-            if can_execute(waitable) and is_ready(waitable, context)
-        ]
+        if node._waitables:  # few have any
+            found += [
+                (waitable, node, take_waitable)
+                for waitable in node._waitables
+                if can_execute(waitable) and is_ready(waitable, context)
+            ]
     for node in nodes:
         handle = node.handle
         for entities, arrivals, take in (

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from aionode.clock import MachineTime
-from aionode.clock._silence import SilenceAlarm
+from aionode.clock import MachineTime, SilenceAlarm
 from aionode.testing import ManualClock
 
 if TYPE_CHECKING:

@@ -183,6 +183,26 @@ def test_a_managed_publisher_is_silent_until_its_node_is_active() -> None:
 
 
 @pytest.mark.usefixtures("initialised")
+def test_a_wake_up_from_before_a_round_begins_no_second_one() -> None:
+    """The done callback of a future wakes the executor that has just called it."""
+
+    class Counting(SingleThreadedExecutor):
+        rounds = 0
+
+        def get_nodes(self) -> list[Any]:
+            self.rounds += 1
+            return super().get_nodes()
+
+    executor = Counting()
+    executor.wake()
+
+    executor.spin_once(timeout_sec=0.01)
+
+    assert executor.rounds == 1
+    executor.shutdown()
+
+
+@pytest.mark.usefixtures("initialised")
 def test_a_transition_that_is_not_possible_is_warned_of_in_the_words_of_rcl(
     caplog: pytest.LogCaptureFixture, capsys: pytest.CaptureFixture[str]
 ) -> None:

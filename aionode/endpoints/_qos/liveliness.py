@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from aionode.clock._silence import SilenceAlarm
+from aionode.clock import SilenceAlarm
 from aionode.endpoints.events import QoSLivelinessChangedInfo
 from aionode.qos import LivelinessPolicy, is_unlimited
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from aionode.clock._silence import SilenceAlarm
+from aionode.clock import SilenceAlarm
 from aionode.endpoints._qos.event_hub import EventHub
 from aionode.endpoints._qos.matching import Matching
 from aionode.endpoints.events import (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Protocol
 
-from aionode.clock._silence import SilenceAlarm
+from aionode.clock import SilenceAlarm
 from aionode.endpoints._qos.event_hub import EventHub
 from aionode.endpoints._qos.lifespan import NEVER_NS, ExpiringItems
 from aionode.endpoints._qos.liveliness import PublisherLiveliness

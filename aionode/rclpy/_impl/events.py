@@ -10,6 +10,7 @@ from dataclasses import fields, replace
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
+from aionode.clock import SilenceAlarm
 from aionode.endpoints.events import (
     IncompatibleTypeInfo,
     MatchedInfo,
@@ -26,9 +27,9 @@ from aionode.rclpy._impl.destroyable import Destroyable
 from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle
 
 if TYPE_CHECKING:
-    import asyncio
     from collections.abc import Callable
 
+    from aionode.clock import Duration
     from aionode.graph import EndpointInfo
     from aionode.transport.base import SampleInfo
 
@@ -135,6 +136,12 @@ class Watch:
         self.changed = True
         self._notify()
 
+    def alarm(self, longest: Duration, on_silence: Callable[[int], bool]) -> SilenceAlarm:
+        """Return an alarm that runs: `on_silence` gets the periods that have passed."""
+        alarm = SilenceAlarm(self.io.context.time_base, longest.nanoseconds, on_silence)
+        alarm.start()
+        return alarm
+
     def take(self) -> Any:
         """Return the status, and reset its changes."""
         status = self.status
@@ -225,32 +232,6 @@ class IncompatibleTypeWatch(MismatchWatch):
     empty = IncompatibleTypeInfo(0, 0)
 
 
-class Alarm:
-    """Calls back a fixed time after the last `restart`, and again after each such time."""
-
-    def __init__(
-        self, loop: asyncio.AbstractEventLoop, period_s: float, miss: Callable[[], None]
-    ) -> None:
-        self._loop = loop
-        self._period_s = period_s
-        self._miss = miss
-        self._handle: asyncio.TimerHandle | None = None
-
-    def restart(self) -> None:
-        """Begin a new period."""
-        self.cancel()
-        self._handle = self._loop.call_later(self._period_s, self._fire)
-
-    def _fire(self) -> None:
-        self._handle = self._loop.call_later(self._period_s, self._fire)
-        self._miss()
-
-    def cancel(self) -> None:
-        """Call back no longer."""
-        if self._handle is not None:
-            self._handle.cancel()
-
-
 class DeadlineWatch(Watch):
     """Counts the periods without a message, from the first message on."""
 
@@ -259,21 +240,23 @@ class DeadlineWatch(Watch):
     def start(self) -> None:
         """Begin to watch."""
         deadline = self.endpoint.qos.deadline
-        self._alarm: Alarm | None = None
+        self._alarm: SilenceAlarm | None = None
         if not is_unlimited(deadline):
-            self._alarm = Alarm(
-                self.io.loop, deadline.nanoseconds / 1e9, lambda: self.count(total_count=1)
-            )
+            self._alarm = self.alarm(deadline, self._on_silence)
             self.feed.append(self._on_message)
 
     def _on_message(self, sample_info: SampleInfo | None) -> None:
         if self._alarm is not None:
-            self._alarm.restart()
+            self._alarm.note()
+
+    def _on_silence(self, periods: int) -> bool:
+        self.count(total_count=periods)
+        return True
 
     def stop(self) -> None:
         """Watch no longer."""
         if self._alarm is not None:
-            self._alarm.cancel()
+            self._alarm.stop()
             self.feed.remove(self._on_message)
 
 
@@ -291,28 +274,24 @@ class LivelinessLostWatch(Watch):
     def start(self) -> None:
         """Begin to watch."""
         qos = self.endpoint.qos
-        self._alarm: Alarm | None = None
+        self._alarm: SilenceAlarm | None = None
         if is_manual(self.endpoint):
-            lease_s = qos.liveliness_lease_duration.nanoseconds / 1e9
-            self._lost = False
-            self._alarm = Alarm(self.io.loop, lease_s, self._on_lapse)
-            self._alarm.restart()
+            self._alarm = self.alarm(qos.liveliness_lease_duration, self._on_lapse)
+            self._alarm.note()
             self.feed.append(self._on_sign)
 
     def _on_sign(self, sample_info: SampleInfo | None) -> None:
-        self._lost = False
         if self._alarm is not None:
-            self._alarm.restart()
+            self._alarm.note()
 
-    def _on_lapse(self) -> None:
-        if not self._lost:
-            self._lost = True
-            self.count(total_count=1)
+    def _on_lapse(self, periods: int) -> bool:
+        self.count(total_count=1)
+        return False  # once, until the next sign
 
     def stop(self) -> None:
         """Watch no longer."""
         if self._alarm is not None:
-            self._alarm.cancel()
+            self._alarm.stop()
             self.feed.remove(self._on_sign)
 
 
@@ -327,7 +306,7 @@ class LivelinessChangedWatch(Watch):
 
     def start(self) -> None:
         """Begin to watch."""
-        self._publishers: dict[bytes, Alarm | None] = {}
+        self._publishers: dict[bytes, SilenceAlarm | None] = {}
         self._lapsed: set[bytes] = set()
         self.feed.append(self._on_message)
         self.assertions.append(self._on_sign)
@@ -344,25 +323,25 @@ class LivelinessChangedWatch(Watch):
         for gid in [gid for gid in self._publishers if gid not in matched]:
             alarm = self._publishers.pop(gid)
             if alarm is not None:
-                alarm.cancel()
+                alarm.stop()
             if gid in self._lapsed:
                 self._lapsed.discard(gid)
                 self.count(not_alive_count=-1)
             else:
                 self.count(alive_count=-1)
 
-    def _alarm_of(self, publisher: EndpointInfo) -> Alarm | None:
+    def _alarm_of(self, publisher: EndpointInfo) -> SilenceAlarm | None:
         if not is_manual(publisher):
             return None
-        lease_s = publisher.qos.liveliness_lease_duration.nanoseconds / 1e9
-        alarm = Alarm(self.io.loop, lease_s, lambda: self._on_lapse(publisher.gid))
-        alarm.restart()
+        lease = publisher.qos.liveliness_lease_duration
+        alarm = self.alarm(lease, lambda _: self._on_lapse(publisher.gid))
+        alarm.note()
         return alarm
 
-    def _on_lapse(self, gid: bytes) -> None:
-        if gid not in self._lapsed:
-            self._lapsed.add(gid)
-            self.count(alive_count=-1, not_alive_count=1)
+    def _on_lapse(self, gid: bytes) -> bool:
+        self._lapsed.add(gid)
+        self.count(alive_count=-1, not_alive_count=1)
+        return False  # once, until the next sign
 
     def _on_message(self, sample_info: SampleInfo | None) -> None:
         if sample_info is not None:
@@ -371,7 +350,7 @@ class LivelinessChangedWatch(Watch):
     def _on_sign(self, gid: bytes) -> None:
         alarm = self._publishers.get(gid)
         if alarm is not None:
-            alarm.restart()
+            alarm.note()
         if gid in self._lapsed:
             self._lapsed.discard(gid)
             self.count(alive_count=1, not_alive_count=-1)
@@ -383,7 +362,7 @@ class LivelinessChangedWatch(Watch):
         self.assertions.remove(self._on_sign)
         for alarm in self._publishers.values():
             if alarm is not None:
-                alarm.cancel()
+                alarm.stop()
 
 
 class MessageLostWatch(Watch):

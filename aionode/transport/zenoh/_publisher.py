@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import zenoh
 from zenoh import ext
 
-from aionode.clock import perf_ns
-from aionode.clock._silence import SilenceAlarm
+from aionode.clock import SilenceAlarm, perf_ns
 from aionode.errors import TransportError
 from aionode.qos import depth_of, is_unlimited, keeps_all
 from aionode.transport._reliability import WriterHistory
