@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import subprocess
+import sys
 import threading
 from collections.abc import AsyncIterator
 
@@ -154,3 +156,25 @@ async def test_the_end_of_the_process_waits_for_a_send_and_lets_none_begin(
 
     assert sent == []
     assert "test-sender" not in [thread.name for thread in threading.enumerate()]
+
+
+def test_a_process_that_exits_waits_for_the_send_that_a_thread_is_in() -> None:
+    """Its end must not meet a thread inside Zenoh, which would abort it (SIGABRT)."""
+    program = """
+import os, threading, time
+from aionode.transport._loop_waker import LoopWaker
+from aionode.transport._send_thread import SendThread
+
+began = threading.Event()
+
+def send():
+    began.set()
+    time.sleep(0.2)
+    os.write(1, b"sent")
+
+SendThread("test-sender", LoopWaker()).submit(send)
+began.wait()
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, check=False)
+
+    assert (done.returncode, done.stdout, done.stderr) == (0, b"sent", b"")

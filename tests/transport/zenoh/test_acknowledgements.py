@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from typing import Any
 
 import pytest
@@ -11,8 +13,11 @@ from aionode._concurrency import checkpoint
 from aionode.clock import perf_ns
 from aionode.graph import EndpointKind
 from aionode.interfaces.std_msgs.msg import Int32, String
+from aionode.node import Node
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from aionode.transport._reliability import WINDOW_BYTES
 from aionode.transport._writer_proxy import WriterProxy
+from aionode.transport.zenoh import _session_state as session_state
 from aionode.transport.zenoh._acknowledgements import Acknowledgements
 from aionode.transport.zenoh._publisher import ZenohWriter
 from aionode.transport.zenoh._subscription import GONE_TICKS, ZenohReader
@@ -100,26 +105,109 @@ async def test_what_is_lost_on_the_way_is_sent_again(
         assert publisher.stats.dropped == 0
 
 
+@asynccontextmanager
+async def without_acknowledgements(
+    monkeypatch: pytest.MonkeyPatch,
+) -> AsyncIterator[tuple[Node, Node]]:
+    """Two nodes, of which each takes the other for an older aionode, or a ROS 2 node."""
+    monkeypatch.setattr(Acknowledgements, "_take_token", lambda *_: None)
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        yield a, b
+
+
 async def test_a_peer_that_does_not_acknowledge_still_hears_everything(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """An older aionode; as a ROS 2 node, it is left to Zenoh."""
-    async with two_contexts() as (first, second):
-        for context in (first, second):
-            transport: Any = context.transports[1]
-            transport._state.acknowledgements.participants.clear()
-        monkeypatch.setattr(Acknowledgements, "_take_token", lambda *_: None)
-        async with quiet_node("a", first) as a, quiet_node("b", second) as b:
-            publisher = a.create_publisher(String, "n", KEEP_ALL)
-            subscription = b.create_subscription(String, "n", None, KEEP_ALL)
-            await publisher.wait_for_subscribers()
-            for number in range(5000):
-                if not writer_of(publisher).has_room():
-                    await publisher.drain()
-                publisher.publish(String(data=str(number)))
-            heard = [(await subscription.receive()).data for _ in range(5000)]
+    async with without_acknowledgements(monkeypatch) as (a, b):
+        publisher = a.create_publisher(String, "n", KEEP_ALL)
+        subscription = b.create_subscription(String, "n", None, KEEP_ALL)
+        await publisher.wait_for_subscribers()
+        for number in range(5000):
+            if not writer_of(publisher).has_room():
+                await publisher.drain()
+            publisher.publish(String(data=str(number)))
+        heard = [(await subscription.receive()).data for _ in range(5000)]
 
     assert heard == [str(number) for number in range(5000)]
+
+
+@pytest.mark.parametrize("depth", [5000, 100], ids=["fits", "does not fit"])
+async def test_of_a_burst_that_no_reader_acknowledges_only_what_is_beyond_the_depth_is_dropped(
+    depth: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Zenoh would drop what it has no room for, and tell nobody: a thread waits for it instead."""
+    in_thread: list[bytes] = []
+    send_patiently = ZenohWriter._send_patiently
+
+    def note(self: ZenohWriter, publisher: Any, payload: bytes, extra: bytes) -> None:
+        in_thread.append(extra)
+        send_patiently(self, publisher, payload, extra)
+
+    monkeypatch.setattr(ZenohWriter, "_send_patiently", note)
+    monkeypatch.setattr(session_state, "BURST_BYTES", 4096)  # else the machine would decide
+    monkeypatch.setattr(session_state, "BURST_NS", 1 << 62)
+    async with without_acknowledgements(monkeypatch) as (a, b):
+        publisher = a.create_publisher(String, "n", depth)
+        subscription = b.create_subscription(String, "n", None, 5000)
+        await publisher.wait_for_subscribers()
+        for number in range(5000):
+            publisher.publish(String(data=str(number)))
+        heard = []
+        while "4999" not in heard:
+            heard.append((await subscription.receive()).data)
+
+        assert heard == sorted(set(heard), key=int)
+        assert len(heard) + publisher.stats.dropped == 5000
+        assert (publisher.stats.dropped == 0) is (depth == 5000)
+        assert in_thread
+
+
+async def test_a_keep_all_reader_that_takes_nothing_is_sent_no_more_than_a_window(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Nothing on the way has to wait for it, least of all the thread that reads keep-alives."""
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        publisher = a.create_publisher(String, "n", KEEP_ALL)
+        subscription: Any = b.create_subscription(String, "n", None, KEEP_ALL)
+        await publisher.wait_for_subscribers()
+        reader: Any = next(
+            each for each in subscription._registrations if isinstance(each, ZenohReader)
+        )
+        full = True
+        has_room = type(reader._reader).has_room
+        monkeypatch.setattr(
+            type(reader._reader), "has_room", lambda self: not full and has_room(self)
+        )
+        history: Any = writer_of(publisher)._history
+        for number in range(1000):
+            publisher.publish(String(data=f"{number:01000}"))
+        answers = 0
+        take_acknack = history.acknack
+
+        def count(*args: Any) -> None:
+            nonlocal answers
+            answers += 1
+            take_acknack(*args)
+
+        monkeypatch.setattr(history, "acknack", count)
+        while answers < 3:  # it says again and again that it has used nothing
+            await checkpoint()
+
+        assert history.unsent
+        assert history.sent <= WINDOW_BYTES // 1000
+        full = False
+        reader._use_room()
+        heard = [int((await subscription.receive()).data) for _ in range(1000)]
+        assert heard == list(range(1000))
 
 
 @pytest.mark.parametrize(

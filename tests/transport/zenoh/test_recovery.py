@@ -6,6 +6,7 @@ import asyncio
 import os
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager, closing, suppress
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -385,6 +386,27 @@ async def silent_after_return(ours: ZenohTransport, *names: str) -> AsyncIterato
         acknowledgements.present.clear()
         ours._recovery._returned.update(names)
         yield
+
+
+def change(kind: zenoh.SampleKind, zid: str) -> Any:
+    """Return what Zenoh says of a connection that was made or lost."""
+    transport = SimpleNamespace(zid=zid, whatami=zenoh.WhatAmI.PEER)
+    return SimpleNamespace(kind=kind, transport=transport)
+
+
+async def test_a_participant_is_checked_that_was_lost_and_has_returned() -> None:
+    """Not one that is new, and not while it is lost once more."""
+    put, delete = zenoh.SampleKind.PUT, zenoh.SampleKind.DELETE
+    async with context("a1") as first:
+        watch = first._recovery
+        watch._take_change(change(put, "new"))
+        watch._take_change(change(delete, "b2"))
+        assert not watch._returned
+        watch._take_change(change(put, "b2"))
+        assert watch._returned == {"b2"}
+        assert watch._check is not None
+        watch._take_change(change(delete, "b2"))
+        assert not watch._returned
 
 
 async def test_no_connection_is_cut_while_others_are_being_made() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -19,6 +20,7 @@ from aionode.errors import RequestTimeoutError, ServiceError, ServiceUnavailable
 from aionode.interfaces import get_service
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.message import from_builtins
+from aionode.transport.zenoh import _services as services
 from aionode.transport.zenoh._services import error_payload, parse_error
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
@@ -235,10 +237,23 @@ async def test_a_request_that_was_given_up_is_not_served() -> None:
         assert served == [1, 3]
 
 
-async def test_a_large_request_and_response_travel_through_a_thread() -> None:
+async def test_a_large_request_and_response_travel_through_a_thread(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """They take more than one packet, and sending them could hold up the loop."""
     from aionode.interfaces.rcl_interfaces.srv import GetParameters
 
+    senders: list[tuple[str, str]] = []
+
+    def note(name: str, send: Callable[..., None]) -> Callable[..., None]:
+        def sending(*args: Any) -> None:
+            senders.append((name, threading.current_thread().name))
+            send(*args)
+
+        return sending
+
+    monkeypatch.setattr(services.ZenohCall, "_get", note("request", services.ZenohCall._get))
+    monkeypatch.setattr(services, "answer", note("response", services.answer))
     async with (
         two_contexts() as (first, second),
         quiet_node("server", first) as server,
@@ -261,6 +276,7 @@ async def test_a_large_request_and_response_travel_through_a_thread() -> None:
         response = await client.call(GetParameters.Request(names=names))
 
         assert [len(value.string_value) for value in response.values] == [1000] * 500
+        assert set(senders) == {("request", "aionode-peer"), ("response", "aionode-peer")}
 
 
 def value_of(name: str) -> Any:
