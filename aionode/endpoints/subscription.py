@@ -285,8 +285,8 @@ class Subscription(Endpoint, Generic[ItemT]):
             return None
         receive: Callable[[int, Any], Coroutine[Any, Any, None] | None] = self._runner.receive
         if self._reader.wants_info:
-            receive_args = self._runner.receive_args
-            receive = lambda entered_ns, item: receive_args(entered_ns, *item)  # noqa: E731
+            with_info = self._runner.receive
+            receive = lambda entered_ns, item: with_info(entered_ns, *item)  # noqa: E731
         return consume(self._reader, receive, self._concurrent, inline=self._runner.is_sync)
 
     def _close(self) -> None:
@@ -397,7 +397,7 @@ class _Reader(MessageQueue[Any]):
             and not waiter.done()
             and (began_ns := perf_ns()) < inline_deadline_ns
         ):
-            # `take_inline` and `CallbackRunner.receive` written out: four calls less for a message.
+            # `take_inline` and `CallbackRunner.receive` written out: five calls less for a message.
             runner, stats = self.runner, self.stats
             stats.received += 1
             self._inline_waiter = None
@@ -428,6 +428,44 @@ class _Reader(MessageQueue[Any]):
         queue.append((perf_ns(), msg))
         if self._readers:
             self.wake_readers()
+
+    def handle_items(
+        self,
+        handle: Callable[[int, Any], Coroutine[object, object, None] | None],
+        turn_ends_ns: int,
+    ) -> Coroutine[object, object, None] | None:
+        """Call the callback with each message until one leaves something to await.
+
+        `CallbackRunner.receive` written out, with one reading of the clock for the end of a call
+        and the begin of the next: half of what a message in a burst costs here.
+        """
+        runner, stats = self.runner, self.stats
+        if self.wants_info or runner.offload:
+            return super().handle_items(handle, turn_ends_ns)
+        callback, budget_ns = runner.callback, runner.budget_ns
+        waited, took = stats._waited_ns, stats._took_ns
+        began_ns = perf_ns()
+        while self.items:
+            entered_ns, msg = self.items.popleft()
+            if self._writers:
+                self.wake_writers()
+            stats.received += 1
+            try:
+                outcome = callback(msg)
+            except Exception as error:  # noqa: BLE001  # the policy decides, see `fail`
+                return runner.conclude(began_ns - entered_ns, perf_ns() - began_ns, None, error)
+            ended_ns = perf_ns()
+            took_ns = ended_ns - began_ns
+            if outcome is not None or took_ns > budget_ns:
+                return runner.conclude(began_ns - entered_ns, took_ns, outcome)
+            waited.append(began_ns - entered_ns)
+            took.append(took_ns)
+            if len(took) >= NOTED_CALLS:
+                stats._record_noted()
+            if ended_ns >= turn_ends_ns:
+                return None
+            began_ns = ended_ns
+        return None
 
     def _deliver_with(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int) -> None:
         """Deliver a message to a filter, a monitor, or a callback that takes its info."""

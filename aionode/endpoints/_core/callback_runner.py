@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from aionode._concurrency import SLICE_NS, checkpoint, run_in_thread
 from aionode.clock import perf_ns
-from aionode.endpoints.stats import NOTED_CALLS
 from aionode.errors import CallbackCancelledError, CallbackSignatureError, brief
 
 if TYPE_CHECKING:
@@ -78,6 +77,7 @@ class CallbackRunner:
     Attributes:
         subject: The entity and its callback, such as ``subscription of /chatter (callback
             on_text)``.
+        offload: Whether the callback runs in a thread.
         is_sync: Whether a call is expected to finish at once, in the loop's own thread.
         budget_ns: How long a callback may block the loop before that is reported.
         waiting: The callbacks of the node that have started and are suspended; shared with it.
@@ -116,7 +116,7 @@ class CallbackRunner:
         self._entity = entity
         self._callbacks = callbacks
         self._on_error = on_error
-        self._offload = offload
+        self.offload = offload
         self.is_sync = not offload and not _is_async(callback)
         self.budget_ns = callbacks.budget_ns
         self.waiting = callbacks.waiting
@@ -135,34 +135,8 @@ class CallbackRunner:
             return None
         return self._finish(entered) if is_unfinished(entered) else None
 
-    def receive(self, entered_ns: int, item: Any) -> Coroutine[Any, Any, None] | None:
+    def receive(self, entered_ns: int, *args: Any) -> Coroutine[Any, Any, None] | None:
         """Do `run` for an item that was queued at `entered_ns`; count it, and record its wait.
-
-        Raises:
-            Exception: what the callback raised, if `on_error` is ``"raise"``.
-        """
-        if self._offload:
-            return self.receive_args(entered_ns, item)
-        # `receive_args` written out, without a tuple of arguments.
-        stats = self.stats
-        stats.received += 1
-        began_ns = perf_ns()
-        try:
-            outcome = self.callback(item)
-        except Exception as error:  # noqa: BLE001  # the policy decides, see `fail`
-            return self.conclude(began_ns - entered_ns, perf_ns() - began_ns, None, error)
-        took_ns = perf_ns() - began_ns
-        if outcome is not None or took_ns > self.budget_ns:
-            return self.conclude(began_ns - entered_ns, took_ns, outcome)
-        stats._waited_ns.append(began_ns - entered_ns)
-        took = stats._took_ns
-        took.append(took_ns)
-        if len(took) >= NOTED_CALLS:
-            stats._record_noted()
-        return None
-
-    def receive_args(self, entered_ns: int, *args: Any) -> Coroutine[Any, Any, None] | None:
-        """Do `receive` for a callback that takes none or several arguments.
 
         Raises:
             Exception: what the callback raised, if `on_error` is ``"raise"``.
@@ -170,7 +144,7 @@ class CallbackRunner:
         self.stats.received += 1
         began_ns = perf_ns()
         waited_ns = began_ns - entered_ns
-        if self._offload:
+        if self.offload:
             self.stats.queue_wait.record(waited_ns)
             return self._finish(_Offloaded(self, args))
         try:
@@ -221,7 +195,7 @@ class CallbackRunner:
         Raises:
             Exception: what a sync callback raised.
         """
-        if self._offload:
+        if self.offload:
             return _Offloaded(self, args)
         began_ns = perf_ns()
         try:

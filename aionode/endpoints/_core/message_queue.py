@@ -170,15 +170,27 @@ class MessageQueue(InlineCall, Generic[T]):
                     await rest
             turn_ends_ns = perf_ns() + SLICE_NS
             while self.items:
-                entered_ns, item = self.items.popleft()  # `pop` is one more call for each item
-                if self._writers:
-                    _wake(self._writers)
-                rest = handle(entered_ns, item)
+                rest = self.handle_items(handle, turn_ends_ns)
                 if rest is not None:
                     await rest
-                if perf_ns() >= turn_ends_ns:
+                if self.items and perf_ns() >= turn_ends_ns:
                     await checkpoint()
                     turn_ends_ns = perf_ns() + SLICE_NS
+
+    def handle_items(
+        self,
+        handle: Callable[[int, T], Coroutine[object, object, None] | None],
+        turn_ends_ns: int,  # noqa: ARG002  # for subclasses
+    ) -> Coroutine[object, object, None] | None:
+        """Hand the oldest item to `handle`, and return what that returns.
+
+        A subclass may go on to the next items while there is nothing to await, until `turn_ends_ns`
+        on the clock of `perf_ns`.
+
+        Raises:
+            BaseException: what `handle` raised.
+        """
+        return handle(*self.pop())
 
     async def _wait_for_rest(self, *, inline: bool) -> Coroutine[object, object, None] | None:
         """Wait for an item; return what an inline call has left to await, or raise its error."""

@@ -195,8 +195,8 @@ class Timer(Entity):
         self.stats.dropped = self._ticker.schedule.skipped
         entered_ns = perf_ns() - (now_ns - expected_ns)
         if not self._wants_info:
-            return self._runner.receive_args(entered_ns)
-        return self._runner.receive_args(
+            return self._runner.receive(entered_ns)
+        return self._runner.receive(
             entered_ns,
             TimerInfo(
                 expected_call_time=expected_ns,
