@@ -58,6 +58,9 @@ FIRST_S: Final = 0.5
 DECLARED_S: Final = 1.0
 """How long after a participant has returned its tokens may take; they take some milliseconds."""
 
+EACH_S: Final = 20
+"""For each so many connected peers they may take a second: all of them may have returned."""
+
 FEW: Final = 3
 """If more participants than that have declared nothing, they are slow, and not silent for good."""
 
@@ -175,7 +178,7 @@ class Recovery:
             self._lost.add(zid)
         else:
             if zid in self._lost:
-                asyncio.get_running_loop().call_later(DECLARED_S, self._check_returned, zid)
+                asyncio.get_running_loop().call_later(self._declared_s(), self._check_returned, zid)
             self._lost.discard(zid)
             if now_s >= self._until_s:
                 return  # nothing was lost
@@ -184,6 +187,11 @@ class Recovery:
             self._changing_since_s = now_s
         if now_s - self._changing_since_s < POSTPONED_S:
             self._look_in(FIRST_S)
+
+    def _declared_s(self) -> float:
+        """Return how long the tokens of a participant that has returned may take."""
+        count = 0 if self._session is None else len(self._session.info.transports())
+        return DECLARED_S * max(count / EACH_S, 1)
 
     def _check_returned(self, zid: str) -> None:
         """Cut the connection to a participant that has returned, but has not declared anything."""
@@ -195,7 +203,7 @@ class Recovery:
         silent = connected & (acknowledgements.participants - acknowledgements.present)
         if loop.time() - self._changed_s < DECLARED_S / 2 or len(silent) > FEW:
             # Where many connect at once, tokens take longer, and a cut makes all take longer still.
-            loop.call_later(DECLARED_S, self._check_returned, zid)
+            loop.call_later(self._declared_s(), self._check_returned, zid)
         elif zid in silent and self._cuts[zid] < ATTEMPTS:
             self._cuts[zid] += 1
             logger.info("process %s is connected, but declares nothing: connected anew", zid)
