@@ -19,10 +19,29 @@ EVERY = 10
 """Number of endpoints after which the event loop gets a turn."""
 
 
+POLL_S = 0.1
+"""How often a process looks whether it has met all others."""
+
+
 async def pause(number: int) -> None:
     """Let the event loop run now and then."""
     if number % EVERY == EVERY - 1:
         await asyncio.sleep(0)
+
+
+async def meet(nodes: list[Node], wanted: int, wait_s: float) -> list[float]:
+    """Wait until all nodes know so many, and are linked with all of them but themselves.
+
+    Here and not in the process that asks, as a hundred that are asked again and again are busy with
+    that. Return what the least informed node has found, the CPU time, and when that was.
+    """
+    began = time.monotonic()
+    while True:
+        nodes_found, links = (min(counts) for counts in zip(*map(found, nodes), strict=True))
+        now = time.monotonic()
+        if (nodes_found >= wanted and links >= wanted - 1) or now > began + wait_s:
+            return [nodes_found, links, time.process_time(), now]
+        await asyncio.sleep(POLL_S)
 
 
 def found(node: Node) -> list[int]:
@@ -58,10 +77,8 @@ async def serve(name: str, contexts: int, *, link: bool) -> None:
                 for each in nodes:
                     made.append(each.create_publisher(String, "everyone", 10))
                     made.append(each.create_subscription(String, "everyone", lambda _: None, 10))
-            if words[0] == "found":
-                each_found = [found(each) for each in nodes]
-                counts = [min(counts) for counts in zip(*each_found, strict=True)]
-                say([*counts, time.process_time()])
+            if words[0] == "meet":
+                say(await meet(nodes, int(words[1]), float(words[2])))
             else:
                 say({"cpu_s": time.process_time(), "threads": threads()})
 

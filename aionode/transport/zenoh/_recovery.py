@@ -58,6 +58,9 @@ FIRST_S: Final = 0.5
 DECLARED_S: Final = 1.0
 """How long after a participant has returned its tokens may take; they take some milliseconds."""
 
+EACH_S: Final = 20
+"""For each so many connected peers they may take a second: all of them may have returned."""
+
 FEW: Final = 3
 """If more participants than that have declared nothing, they may be slow, and have more time."""
 
@@ -185,7 +188,7 @@ class Recovery:
             if zid in self._lost:
                 self._lost.discard(zid)
                 self._returned.add(zid)
-                self._check_in(DECLARED_S)
+                self._check_in(self._declared_s())
             if now_s >= self._until_s:
                 return  # nothing was lost
         self._checks = CHECKS
@@ -193,6 +196,11 @@ class Recovery:
             self._changing_since_s = now_s
         if now_s - self._changing_since_s < POSTPONED_S:
             self._look_in(FIRST_S)
+
+    def _declared_s(self) -> float:
+        """Return how long the tokens of a participant that has returned may take."""
+        count = 0 if self._session is None else len(self._session.info.transports())
+        return DECLARED_S * max(count / EACH_S, 1)
 
     def _check_in(self, delay_s: float) -> None:
         if self._check is None:
@@ -209,9 +217,10 @@ class Recovery:
             return
         self._returned &= acknowledgements.participants - acknowledgements.present
         # Where many connect at once, tokens take longer, and a cut makes all take longer still.
-        wait_s = DECLARED_S / 2 if len(self._returned) <= FEW else POSTPONED_S
+        declared_s = self._declared_s()
+        wait_s = declared_s / 2 if len(self._returned) <= FEW else max(POSTPONED_S, declared_s)
         if self._returned and asyncio.get_running_loop().time() - self._changed_s < wait_s:
-            self._check_in(DECLARED_S / 2)
+            self._check_in(declared_s / 2)
             return
         silent = {zid for zid in self._returned if self._cuts[zid] < ATTEMPTS}
         self._returned.clear()

@@ -26,6 +26,7 @@ from aionode.transport.zenoh._session import (
 from aionode.transport.zenoh._session_state import SessionState
 from aionode.transport.zenoh._sockets import SocketOptions, cut_stuck
 from aionode.transport.zenoh._subscription import ZenohReader
+from aionode.transport.zenoh._turn import Turn
 
 if TYPE_CHECKING:
     from collections import Counter
@@ -85,6 +86,7 @@ class ZenohTransport(Transport):
         self._expected = 0  # how many peers accept connections, and so should be connected
         self._recovery = Recovery(self._state, network, self._watcher.check)
         self._local_router = LocalRouter(self._state, network)
+        self._turn = Turn()
         self._socket_options: SocketOptions | None = None
 
     def __repr__(self) -> str:
@@ -112,8 +114,11 @@ class ZenohTransport(Transport):
         """Connect; return when the running peers are known, as far as that can be determined."""
         try:
             await self._local_router.open()
-            session, expected = await open_session(self.network, self._state.participant)
+            session, expected = await open_session(
+                self.network, self._state.participant, self._turn
+            )
         except BaseException:
+            self._turn.release()
             await asyncio.shield(self._local_router.close())
             raise
         self._state.waker.open(asyncio.get_running_loop())
@@ -128,6 +133,7 @@ class ZenohTransport(Transport):
             self._recovery.start(session)
             self._local_router.start(session)
             await links.wait_until_connected(expected)
+            self._turn.release_when_connected(session)
             # Configured peers may be absent, so they are not expected.
             self._expected = expected - bool(self.network.near_peers or self.network.config_file)
             answered = self._ask(session)
@@ -136,6 +142,9 @@ class ZenohTransport(Transport):
                     await asyncio.shield(answered)
             self._watcher.note_domains()
             self._state.graph_is_known()
+        except BaseException:
+            self._turn.release()
+            raise
         finally:
             links.close()
 
@@ -205,6 +214,7 @@ class ZenohTransport(Transport):
         """Undeclare everything and disconnect, within a second after `SessionState.flush`."""
         state = self._state
         self._answered = None
+        self._turn.release()
         await state.flush()
         if self._socket_options is not None:
             self._socket_options.close()

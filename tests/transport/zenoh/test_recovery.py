@@ -23,6 +23,7 @@ from aionode.transport.zenoh._recovery import (
     addresses_of,
     is_look,
 )
+from aionode.transport.zenoh._session_state import SessionState
 from aionode.transport.zenoh._transport import ZenohTransport
 from tests.support.peers import (
     DOMAIN_ID,
@@ -421,6 +422,18 @@ async def test_no_connection_is_cut_while_others_are_being_made() -> None:
 
         assert not first._recovery._cuts
         assert first._recovery._returned == {"b2"}
+
+
+@pytest.mark.parametrize(("connected", "limit_s"), [(3, 1.0), (100, 5.0)])
+def test_tokens_may_take_longer_where_there_are_many_participants(
+    connected: int, limit_s: float
+) -> None:
+    """On a busy machine all had lost each other, and each cut the others again and again."""
+    session = SimpleNamespace(info=SimpleNamespace(transports=lambda: [None] * connected))
+    recovery_of_many = Recovery(SessionState("a1", DOMAIN_ID), network_from({}), lambda: None)
+    recovery_of_many._session = session  # type: ignore[assignment]  # as far as it is used
+
+    assert recovery_of_many._declared_s() == limit_s
 
 
 async def test_one_that_has_declared_itself_is_not_connected_anew() -> None:
