@@ -9,7 +9,7 @@ import os
 import selectors
 import socket
 import threading
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack, closing, contextmanager, suppress
 from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, TypeVar
@@ -32,11 +32,10 @@ from aionode.transport.zenoh._handlers import direct, reason
 from aionode.transport.zenoh._sockets import SocketOptions, cut_unanswered
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from aionode.transport._loop_waker import ThreadsafeQueue
     from aionode.transport._zenoh_config import Network
-    from aionode.transport.zenoh._turn import Turn
 
 __all__ = [
     "ConnectionWatcher",
@@ -60,6 +59,12 @@ SPEAK_S = 2.0
 A process of aionode may take longer where many start at once. Other programs mostly answer or close
 the connection at once.
 """
+
+TURN_S = 1.0
+"""How long this process waits for its turn to open a session; each turn takes 10 ms."""
+
+TURN_POLL_S = 0.002
+"""The polling interval for the turn: in a thread, and only while many start at once."""
 
 FIRST_LINK_S = 1.0
 """How long `open` waits for the first peer that accepts connections; a frozen one never answers."""
@@ -222,6 +227,27 @@ def speaking_ports(ports: Iterable[int]) -> set[int]:
     return speaking
 
 
+@contextmanager
+def one_at_a_time(port: int | None) -> Iterator[None]:
+    """Let the processes of this machine look for a free meeting port, and take it, in turn.
+
+    Two that look at the same moment would both choose the first one; the loser would have none, and
+    not dial the winner either. The process that holds the UDP port of this number has the turn:
+    unlike a lock file it belongs to no user, and ends with its process.
+    """
+    if port is None:
+        yield
+        return
+    with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as turn:
+        ends_ns = perf_ns() + int(TURN_S * 1e9)
+        while perf_ns() < ends_ns:
+            with suppress(OSError):
+                turn.bind((LOOPBACK, port))
+                break
+            threading.Event().wait(TURN_POLL_S)
+        yield
+
+
 def load_config(
     network: Network,
     settings: dict[str, Any],
@@ -262,14 +288,8 @@ def load_config(
     return config
 
 
-async def open_session(network: Network, participant: str, turn: Turn) -> tuple[zenoh.Session, int]:
+async def open_session(network: Network, participant: str) -> tuple[zenoh.Session, int]:
     """Open a session; return it and the number of peers that are about to be connected.
-
-    Args:
-        network: The settings of the context.
-        participant: The id of the session.
-        turn: Taken before the session looks for others, where others do so too; the caller
-            releases it.
 
     Raises:
         ConfigurationError: the configuration cannot be used.
@@ -279,12 +299,11 @@ async def open_session(network: Network, participant: str, turn: Turn) -> tuple[
     def work() -> tuple[zenoh.Session, int]:
         ports = probed_ports(network)
         try:
-            if len(ports) > 1:
-                turn.take(network.meeting_ports[0])
-            answering = set(answering_ports(ports))
-            used, taken = meeting(network, answering) if len(ports) > 1 else (network, set())
-            settings = session_settings(used, taken)
-            session = zenoh.open(load_config(network, settings, participant))
+            with one_at_a_time(network.meeting_ports[0] if len(ports) > 1 else None):
+                answering = set(answering_ports(ports))
+                used, taken = meeting(network, answering) if len(ports) > 1 else (network, set())
+                settings = session_settings(used, taken)
+                session = zenoh.open(load_config(network, settings, participant))
         except zenoh.ZError as error:
             raise TransportError(
                 f"Zenoh: no session could be opened: {reason(error)}; look at "

@@ -26,7 +26,6 @@ from aionode.transport.zenoh._session import (
 from aionode.transport.zenoh._session_state import SessionState
 from aionode.transport.zenoh._sockets import SocketOptions, cut_stuck
 from aionode.transport.zenoh._subscription import ZenohReader
-from aionode.transport.zenoh._turn import Turn
 
 if TYPE_CHECKING:
     from collections import Counter
@@ -86,7 +85,6 @@ class ZenohTransport(Transport):
         self._expected = 0  # how many peers accept connections, and so should be connected
         self._recovery = Recovery(self._state, network, self._watcher.check)
         self._local_router = LocalRouter(self._state, network)
-        self._turn = Turn()
         self._socket_options: SocketOptions | None = None
 
     def __repr__(self) -> str:
@@ -114,11 +112,8 @@ class ZenohTransport(Transport):
         """Connect; return when the running peers are known, as far as that can be determined."""
         try:
             await self._local_router.open()
-            session, expected = await open_session(
-                self.network, self._state.participant, self._turn
-            )
+            session, expected = await open_session(self.network, self._state.participant)
         except BaseException:
-            self._turn.release()
             await asyncio.shield(self._local_router.close())
             raise
         self._state.waker.open(asyncio.get_running_loop())
@@ -133,7 +128,6 @@ class ZenohTransport(Transport):
             self._recovery.start(session)
             self._local_router.start(session)
             await links.wait_until_connected(expected)
-            self._turn.release_when_connected(session)
             # Configured peers may be absent, so they are not expected.
             self._expected = expected - bool(self.network.near_peers or self.network.config_file)
             answered = self._ask(session)
@@ -142,9 +136,6 @@ class ZenohTransport(Transport):
                     await asyncio.shield(answered)
             self._watcher.note_domains()
             self._state.graph_is_known()
-        except BaseException:
-            self._turn.release()
-            raise
         finally:
             links.close()
 
@@ -214,7 +205,6 @@ class ZenohTransport(Transport):
         """Undeclare everything and disconnect, within a second after `SessionState.flush`."""
         state = self._state
         self._answered = None
-        self._turn.release()
         await state.flush()
         if self._socket_options is not None:
             self._socket_options.close()
