@@ -28,6 +28,13 @@ KNOWN_S: Final = 0.25
 QUIET_S: Final = 0.06
 """After how much quiet `open` goes on early, if another node was found."""
 
+ALONE_QUIETS: Final = 1.6
+"""For how many of its times of quiet `all_known` waits for a first node.
+
+With the 2 s of tools that is more than the 3 s after which Fast DDS announces a process again, if
+its first announcements were lost on a busy machine.
+"""
+
 MAX_QUIETS: Final = 5
 """For how many of its times of quiet `all_known` waits at most."""
 
@@ -73,12 +80,12 @@ class RclTransport(Transport):
         await self._until_quiet(QUIET_S, KNOWN_S, KNOWN_S)
 
     async def all_known(self, quiet_s: float) -> bool:
-        """Wait until the graph has not changed for a quarter of `quiet_s`, and no part is missing.
+        """Wait until the graph has not changed for half of `quiet_s`, and no part is missing.
 
-        Without another node it waits for `quiet_s`, with changes that do not end for `MAX_QUIETS`
-        times as long.
+        Without another node it waits longer than `quiet_s`, with changes that do not end for
+        `MAX_QUIETS` times as long.
         """
-        await self._until_quiet(quiet_s / 4, quiet_s, quiet_s * MAX_QUIETS)
+        await self._until_quiet(quiet_s / 2, quiet_s * ALONE_QUIETS, quiet_s * MAX_QUIETS)
         return self._watcher.is_complete
 
     async def _until_quiet(self, quiet_s: float, alone_s: float, limit_s: float) -> None:
