@@ -259,7 +259,7 @@ class Recovery:
 
     def _look_in_thread(self, session: zenoh.Session, lost: set[str]) -> None:
         missing: set[str] | None = None
-        with suppress(zenoh.ZError, ConfigurationError):
+        with suppress(zenoh.ZError, ConfigurationError, TimeoutError):
             connection = introducer_connection(session, self._network)
             missing = self._reconnect(session, connection, lost) if connection else set()
         self._looks.put(missing)
@@ -320,10 +320,16 @@ def look_at(network: Network, connection: Connection) -> zenoh.Session:
     return zenoh.open(load_config(network, {}, look_id, look_settings(connection.endpoint)))
 
 
-def seen_at(network: Network, connection: Connection, *keys: str) -> set[str]:
-    """Return the tokens that match `keys` and are visible at the other end of a connection."""
+def seen_at(
+    network: Network, connection: Connection, *keys: str, timeout_s: float = ANSWER_S
+) -> set[str]:
+    """Return the tokens that match `keys` and are visible at the other end of a connection.
+
+    Raises:
+        TimeoutError: the answer was not complete in time.
+    """
     with closing(look_at(network, connection)) as look:
-        return tokens(look, *keys)
+        return tokens(look, *keys, timeout_s=timeout_s)
 
 
 def nodes_at_introducer(session: zenoh.Session, network: Network) -> set[str] | None:
@@ -335,13 +341,10 @@ def nodes_at_introducer(session: zenoh.Session, network: Network) -> set[str] | 
         connection = introducer_connection(session, network)
         if connection is None:
             return set()
-        with closing(look_at(network, connection)) as look:
-            keys = f"{ROS_PREFIX}/{network.domain_id}/*/*/*/NN/**"
-            replies = [reply.ok for reply in look.liveliness().get(keys, timeout=NODES_S)]
-    except (zenoh.ZError, ConfigurationError):
+        nodes = f"{ROS_PREFIX}/{network.domain_id}/*/*/*/NN/**"
+        return seen_at(network, connection, nodes, timeout_s=NODES_S)
+    except (zenoh.ZError, ConfigurationError, TimeoutError):
         return None
-    found = {str(token.key_expr) for token in replies if token is not None}
-    return found if None not in replies else None
 
 
 def participants(domain_id: int) -> tuple[str, ...]:
@@ -349,13 +352,18 @@ def participants(domain_id: int) -> tuple[str, ...]:
     return f"{ROS_PREFIX}/{domain_id}/*/*/*/NN/**", f"@aionode/{domain_id}/*/link/**"
 
 
-def tokens(session: zenoh.Session, *keys: str) -> set[str]:
-    """Return the tokens that match `keys` and that a session sees."""
+def tokens(session: zenoh.Session, *keys: str, timeout_s: float = ANSWER_S) -> set[str]:
+    """Return the tokens that match `keys` and that a session sees.
+
+    Raises:
+        TimeoutError: the answer was not complete in time; what is missing in it may well be there.
+    """
     found = set()
     for key in keys:
-        for reply in session.liveliness().get(key, timeout=ANSWER_S):
-            if reply.ok is not None:
-                found.add(str(reply.ok.key_expr))
+        for reply in session.liveliness().get(key, timeout=timeout_s):
+            if reply.ok is None:  # the time is up
+                raise TimeoutError(f"{key}: not all tokens were named within {timeout_s:g} s")
+            found.add(str(reply.ok.key_expr))
     return found
 
 

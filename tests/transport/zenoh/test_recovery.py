@@ -209,6 +209,40 @@ async def test_one_that_ended_is_looked_for_and_nothing_is_cut(
     assert cuts == []
 
 
+async def test_an_incomplete_answer_says_nothing_of_who_is_missing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """On a busy machine the time of the query ends first: nobody is cut off for that."""
+    cuts: list[object] = []
+    monkeypatch.setattr(recovery, "cut", cuts.append)
+    looks = Collector()
+    monkeypatch.setattr(Recovery, "_take_look", lambda _, missing: looks(missing))
+
+    class LateLook:
+        """A session whose router does not name all tokens in time."""
+
+        def liveliness(self) -> LateLook:
+            return self
+
+        def get(self, key: str, timeout: float) -> list[Any]:
+            return [SimpleNamespace(ok=None)]
+
+        def close(self) -> None:
+            pass
+
+    async with robot("theirs"), context("a1") as ours:
+        await until_seen(ours, "theirs")
+        session = ours._state.session
+        assert session is not None
+        monkeypatch.setattr(recovery, "look_at", lambda *_: LateLook())
+        looks.items.clear()
+        await asyncio.to_thread(ours._recovery._look_in_thread, session, set())
+        await looks.have(1)
+
+    assert looks.items[-1] is None
+    assert cuts == []
+
+
 async def test_one_whose_connection_was_lost_is_missing_though_a_router_brings_its_tokens(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
