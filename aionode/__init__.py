@@ -23,7 +23,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from aionode._node.end import NodeEnd
+    from aionode._node.end_record import NodeEnd
     from aionode.action import (
         ActionClient,
         ActionResult,
@@ -142,7 +142,7 @@ _EXPORTS = {
     "MatchedInfo": "aionode.endpoints.events",
     "MessageInfo": "aionode.endpoints.subscription",
     "Node": "aionode.node",
-    "NodeEnd": "aionode._node.end",
+    "NodeEnd": "aionode._node.end_record",
     "Parameter": "aionode.parameter",
     "Publisher": "aionode.endpoints.publisher",
     "PublisherEventCallbacks": "aionode.endpoints.events",

@@ -91,7 +91,7 @@ class LendableLoop(asyncio.SelectorEventLoop):
         self._owned.release()
         if has_news:
             with suppress(RuntimeError):  # it has been closed meanwhile
-                self.call_soon_threadsafe(_look)
+                self.call_soon_threadsafe(_only_wake_up)
 
     # What gives the loop work, which it learns of when it is given back.
 
@@ -260,8 +260,8 @@ def _number_of(fd: int | HasFileno) -> int:
     return fd if isinstance(fd, int) else fd.fileno()
 
 
-def _look() -> None:
-    """Do nothing: the loop looks at what is scheduled when it is called."""
+def _only_wake_up() -> None:
+    """Do nothing: scheduling it wakes the loop, which then sees its new work."""
 
 
 class _LendingSelector(selectors.DefaultSelector):

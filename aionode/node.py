@@ -9,6 +9,7 @@ from aionode import names, qos
 from aionode._node import builtin_services
 from aionode._node.endpoints import NodeEndpoints
 from aionode._node.graph import NodeGraphQueries
+from aionode._node.time_source import TimeSource
 from aionode.context import Context
 from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.message import Message
@@ -124,7 +125,7 @@ class Node(NodeEndpoints, NodeGraphQueries):
             dynamic = ParameterDescriptor(dynamic_typing=True)
             for name in self._parameters.overrides:
                 self.declare_parameter(name, descriptor=dynamic)
-        builtin_services.TimeSource(self, self._clock)
+        TimeSource(self, self._clock)
         if start_parameter_services:
             builtin_services.serve_parameters(self, self._parameters)
         builtin_services.serve_type_descriptions(self)

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, Literal, Self, TypeVar
 
-from aionode._node.end import NodeEnd, short_text
+from aionode._node.end_record import NodeEnd, short_text
 from aionode.clock import S_TO_NS, SteadyClock
 from aionode.errors import NodeNotRunningError
 from aionode.logging import get_logger

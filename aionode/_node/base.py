@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 from aionode import names
 from aionode._concurrency import to_the_end
-from aionode._node.end import EndRecord, NodeEnd
+from aionode._node.end_record import EndRecord, NodeEnd
 from aionode.arguments import Arguments, Usage, parse_arguments
 from aionode.clock import ROSClock
 from aionode.endpoints._core.callback_runner import Callbacks
 from aionode.endpoints._core.endpoint import Endpoint
 from aionode.endpoints._core.entity import EndStage
 from aionode.endpoints._core.loop_affinity import in_loop_thread
-from aionode.endpoints._core.shutdown import Ending
+from aionode.endpoints._core.shutdown import Shutdown
 from aionode.errors import EntityDestroyedError
 from aionode.logging import get_logger
 
@@ -92,7 +92,7 @@ class NodeBase:
             node=full_name, logger=self._logger, budget_ns=round(callback_budget_ms * 1e6)
         )
         self._affinity = context._affinity
-        self._ending = Ending(self._entities, self._callbacks, self._leave)
+        self._node_shutdown = Shutdown(self._entities, self._callbacks, self._leave)
         self._stop_rosout: Callable[[], None] | None = None
         self._registrations: list[Registration] = []  # of the node itself, one for each transport
         self._info = self.context._describe_node(
@@ -149,7 +149,7 @@ class NodeBase:
         with self._end_record.recorded(exc):
             self.destroy_node()
             try:
-                await to_the_end(self._ending.wait())
+                await to_the_end(self._node_shutdown.wait())
             except asyncio.CancelledError as cancelled:
                 if exc is None:
                     exc_type, exc, traceback = type(cancelled), cancelled, cancelled.__traceback__
@@ -227,7 +227,7 @@ class NodeBase:
             self._affinity.call(self.destroy_node)
             return
         self._destroyed.set()
-        self._ending.begin()
+        self._node_shutdown.begin()
 
     def _join_context(self) -> None:
         """Add the node to its context, and announce it on every transport.
@@ -344,7 +344,7 @@ class NodeBase:
         """Start `entity`; the end of the node waits for those that run callbacks."""
         task = entity._start(tasks)
         if task is not None and entity._stage is EndStage.CALLBACKS:
-            self._ending.watch(task)
+            self._node_shutdown.watch(task)
 
     def _forget_entity(self, entity: Entity) -> None:
         self._entities.pop(entity, None)
@@ -357,7 +357,7 @@ class NodeBase:
 
         Action clients use it: their requests to cancel goals have to reach the servers.
         """
-        self._ending.expect(answer)
+        self._node_shutdown.expect(answer)
 
     def _refuse_if_destroyed(self, wanted: str) -> None:
         if self.destroyed:

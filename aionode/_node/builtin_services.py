@@ -1,4 +1,4 @@
-"""The built-in services of a node: its log, parameters, types, and simulated time.
+"""The built-in services of a node: its log, parameters and types.
 
 Each is made of the node's public methods, as a program would make it, apart from the hand-over of
 log messages to the node's event loop.
@@ -10,8 +10,6 @@ import contextlib
 from typing import TYPE_CHECKING, Any
 
 from aionode import qos
-from aionode.clock import S_TO_NS, Time
-from aionode.endpoints._core.entity import EndStage
 from aionode.errors import QueueFullError
 from aionode.interfaces.rcl_interfaces.msg import (
     Log,
@@ -19,16 +17,13 @@ from aionode.interfaces.rcl_interfaces.msg import (
     ParameterDescriptor,
     ParameterEvent,
     SetLoggerLevelsResult,
-    SetParametersResult,
 )
 from aionode.interfaces.rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
-from aionode.interfaces.rosgraph_msgs.msg import Clock as ClockMsg
 from aionode.interfaces.type_description_interfaces.msg import TypeSource
 from aionode.interfaces.type_description_interfaces.srv import GetTypeDescription
 from aionode.logging import LoggingSeverity, get_logger_level, set_logger_level
 from aionode.message import type_name
-from aionode.parameter import Parameter, parameter_services
-from aionode.qos import QoSProfile, ReliabilityPolicy
+from aionode.parameter import parameter_services
 from aionode.wire.typehash import description_message, referenced_types, type_hash
 
 if TYPE_CHECKING:
@@ -36,21 +31,17 @@ if TYPE_CHECKING:
 
     from aionode._node.endpoints import NodeEndpoints
     from aionode.clock import Clock
-    from aionode.endpoints.subscription import Subscription
     from aionode.logging import LogEvent
     from aionode.parameter import ParameterStore
+    from aionode.qos import QoSProfile
 
 __all__ = [
-    "TimeSource",
     "publish_log",
     "publish_parameter_events",
     "serve_logger_levels",
     "serve_parameters",
     "serve_type_descriptions",
 ]
-
-CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-
 
 # Log
 
@@ -206,63 +197,3 @@ def source_of(kind: Any) -> TypeSource:
         encoding=name.split("/")[1],
         raw_file_contents=definition_text(kind),
     )
-
-
-# Time
-
-
-class TimeSource:
-    """Follows ``/clock`` while the parameter `use_sim_time` is true."""
-
-    def __init__(self, node: NodeEndpoints, clock: Clock) -> None:
-        self._node = node
-        self._clock = clock
-        self._subscription: Subscription[ClockMsg] | None = None
-        self._warned = False
-        node.add_on_set_parameters_callback(self._check)
-        if not node.has_parameter("use_sim_time"):
-            node.declare_parameter("use_sim_time", False)
-        node.add_post_set_parameters_callback(self._follow)
-        self._switch(active=node.get_parameter("use_sim_time").value)
-
-    def _check(self, parameters: list[Parameter]) -> SetParametersResult:
-        for parameter in parameters:
-            if parameter.name == "use_sim_time" and not isinstance(parameter.value, bool):
-                return SetParametersResult(
-                    successful=False,
-                    reason=f"use_sim_time is {parameter.value!r}; it must be true or false",
-                )
-        return SetParametersResult(successful=True)
-
-    def _follow(self, parameters: list[Parameter]) -> None:
-        for parameter in parameters:
-            if parameter.name == "use_sim_time":
-                self._switch(active=parameter.value)
-
-    def _switch(self, *, active: bool) -> None:
-        self._clock.set_ros_time_active(active)
-        if active and self._subscription is None:
-            self._subscription = self._node.create_subscription(
-                ClockMsg, "/clock", self._on_tick, CLOCK_QOS
-            )
-            self._subscription._stage = (
-                EndStage.GOALS
-            )  # until callbacks have ended: their cleanup may sleep
-        elif not active and self._subscription is not None:
-            self._subscription.destroy()
-            self._subscription = None
-
-    def _on_tick(self, msg: ClockMsg) -> None:
-        if msg.clock.sec >= 0 and msg.clock.nanosec < S_TO_NS:
-            self._clock.set_ros_time_override(Time.from_msg(msg.clock))
-            return
-        # Any node can publish on /clock; an invalid message must not end this one.
-        if self._subscription is not None:
-            self._subscription.stats.errors += 1
-        if not self._warned:
-            self._warned = True
-            self._node.get_logger().warning(
-                f"/clock: ignored an invalid time: {msg.clock.sec} s and {msg.clock.nanosec} ns; "
-                f"seconds must be at least 0, and nanoseconds less than {S_TO_NS}. Further ones "
-                "are only counted; `aionode topic info -v /clock` names the publishers"
-            )

@@ -157,7 +157,8 @@ class Subscription(Endpoint, Generic[ItemT]):
 
         Messages that are already in the queue stay there. Publishers of aionode in other processes
         learn of the filter as soon as the network allows, and then leave out what no subscription
-        wants; `stats.filtered` counts what arrived and did not pass.
+        wants, unless a liveliness lease makes every message a sign of life; `stats.filtered` counts
+        what arrived and did not pass.
 
         Args:
             filter_expression: A condition over the fields of the message, as described in
@@ -222,7 +223,7 @@ class Subscription(Endpoint, Generic[ItemT]):
 
     def __aiter__(self) -> AsyncIterator[ItemT]:
         """Iterate over the messages as they arrive, until the subscription is destroyed."""
-        self._refuse_if_called_back()
+        self._refuse_if_it_has_a_callback()
         return self
 
     async def __anext__(self) -> ItemT:
@@ -239,7 +240,7 @@ class Subscription(Endpoint, Generic[ItemT]):
             EntityDestroyedError: the subscription is destroyed, and all messages have been read.
             RuntimeError: the subscription has a callback, which gets the messages.
         """
-        self._refuse_if_called_back()
+        self._refuse_if_it_has_a_callback()
         if perf_ns() >= self._turn_ends_ns:
             # With a full queue this never waits, so nothing else would run.
             await checkpoint()
@@ -253,7 +254,7 @@ class Subscription(Endpoint, Generic[ItemT]):
         taken: ItemT = item
         return taken
 
-    def _refuse_if_called_back(self) -> None:
+    def _refuse_if_it_has_a_callback(self) -> None:
         if self._runner is not None:
             raise RuntimeError(
                 f"{self._subject}: its callback gets the messages; to read them yourself, create "
@@ -371,7 +372,7 @@ class _Reader(MessageQueue[Any]):
         self._last_sequences: dict[bytes, int] = {}
         self._reception_sequence = 0
 
-    def deliver(  # noqa: C901  # calls less for each message, see below
+    def deliver(  # noqa: C901  # fewer calls for each message, see below
         self,
         msg: Any,
         gid: bytes,
@@ -397,7 +398,7 @@ class _Reader(MessageQueue[Any]):
             and not waiter.done()
             and (began_ns := perf_ns()) < inline_deadline_ns
         ):
-            # `take_inline` and `CallbackRunner.receive` written out: five calls less for a message.
+            # `take_inline` and `CallbackRunner.receive` written out: five calls fewer.
             runner, stats = self.runner, self.stats
             stats.received += 1
             self._inline_waiter = None
@@ -437,7 +438,7 @@ class _Reader(MessageQueue[Any]):
         """Call the callback with each message until one leaves something to await.
 
         `CallbackRunner.receive` written out, with one reading of the clock for the end of a call
-        and the begin of the next: half of what a message in a burst costs here.
+        and the start of the next: half of what a message in a burst costs here.
         """
         runner, stats = self.runner, self.stats
         if self.wants_info or runner.offload:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from aionode.rclpy.callback_groups import Entity
 
 
-__all__ = ["Ready", "Take", "await_or_execute", "ready_callbacks", "wait_set_of"]
+__all__ = ["Ready", "Take", "await_or_execute", "find_ready", "wait_set_of"]
 
 
 Take = Callable[["ExecutorLike", Any], "Callable[[], Any] | None"]
@@ -30,7 +30,7 @@ Ready = tuple["Entity", "NodeLike", Take]
 MESSAGE_ONLY = Subscription.CallbackType.MessageOnly
 
 
-def ready_callbacks(
+def find_ready(
     nodes: list[NodeLike], can_execute: Callable[[Entity], bool], context: Any
 ) -> list[Ready]:
     """Return what is ready now, in the order of a round."""
@@ -54,12 +54,12 @@ def ready_callbacks(
             if entities and (arrivals is None or arrivals.last is not arrivals.seen):
                 for entity in ready_entities(entities, arrivals):
                     if can_execute(entity):
-                        found.append((entity, node, take))  # few are
+                        found.append((entity, node, take))  # rarely any
     return found
 
 
 def ready_entities(entities: list[Any], arrivals: Arrivals | None) -> list[Any]:
-    """Return those that are ready; if none is, only a new arrival makes one so."""
+    """Return those that are ready; if none is, note in `arrivals` that all were looked at."""
     last = None if arrivals is None else arrivals.last
     ready = []
     for entity in entities:

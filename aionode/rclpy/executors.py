@@ -20,7 +20,7 @@ from aionode.rclpy._taking import (
     Ready,
     Take,
     await_or_execute,
-    ready_callbacks,
+    find_ready,
     wait_set_of,
 )
 from aionode.rclpy.task import Future, Task
@@ -340,7 +340,7 @@ class Executor:
                 for work in self._unfinished(used):
                     yielded = True
                     yield work
-            ready = ready_callbacks(used, self.can_execute, self._context_handle)
+            ready = find_ready(used, self.can_execute, self._context_handle)
             if not ready and not yielded:
                 ready = self._ready_after_wait(used, ends_ns)
             # Before the calls, which may take longer than the limit.
@@ -370,7 +370,7 @@ class Executor:
         self._wait(nodes, left_ns)
         if self._is_shutdown or self._context_handle.is_shut_down:
             self._raise_if_over()
-        return ready_callbacks(nodes, self.can_execute, self._context_handle)
+        return find_ready(nodes, self.can_execute, self._context_handle)
 
     def _unfinished(self, nodes: list[NodeLike]) -> Iterable[Work]:
         """Yield the tasks that can go on, and forget those that are done."""

@@ -65,10 +65,10 @@ UNHEARD_NS: Final = 500_000_000
 """A reader that has everything, and from which nothing came for so long, is probed."""
 
 FLAPPING_NS: Final = 10_000_000_000
-"""A reader that vanishes so soon after its return may return once more, and just as soon."""
+"""A reader that vanishes within this time after its return is waited for as long again."""
 
 RETURN_NS: Final = 120_000_000_000
-"""How long the messages for such a reader are kept."""
+"""How long messages are kept for a reader that vanished after `SILENT_NS` without a sign."""
 
 LOST_RANGES: Final = 16
 """How many ranges of reported losses are remembered before acknowledged ones are dropped."""
@@ -82,13 +82,14 @@ class Entry(NamedTuple):
     Attributes:
         sequence: Its sequence number.
         payload: Its bytes.
-        extra: Its attachment.
-        end: The position of its last byte in the stream of all messages of this writer.
+        attachment: Its attachment.
+        end: The bytes of all messages of this writer up to and including this one, with
+            `OVERHEAD_BYTES` for each.
     """
 
     sequence: int
     payload: bytes
-    extra: bytes
+    attachment: bytes
     end: int
 
 
@@ -160,7 +161,7 @@ class WriterHistory:
         depth: How many messages are kept at most.
         keep_all: Whether nothing may be dropped.
         side: The output.
-        now_ns: A monotonic clock with any zero.
+        now_ns: A monotonic clock with an arbitrary zero.
 
     Attributes:
         entries: The messages as plain tuples with the fields of `Entry`, in order of sequence.
@@ -270,8 +271,8 @@ class WriterHistory:
     def _write_slowly(self, entry: tuple[int, bytes, bytes, int]) -> None:
         """Send a message after a jump of sequence numbers, or as the window allows."""
         sequence = entry[0]
-        has_readers_changed = self._window_end < 0
-        if has_readers_changed:
+        readers_changed = self._window_end < 0
+        if readers_changed:
             self._update_window()
         if sequence != self._last + 1:
             self._jumped_to = sequence
@@ -282,7 +283,7 @@ class WriterHistory:
         self.entries.append(entry)
         self._unsent.append(entry)
         # Behind a message that waits, only an acknowledgement opens the window, and that pumps too.
-        if len(self._unsent) == 1 or has_readers_changed or self.has_other_readers:
+        if len(self._unsent) == 1 or readers_changed or self.has_other_readers:
             self.pump()
         while len(self.entries) > self._limit:
             oldest = self.entries.popleft()[0]
@@ -406,7 +407,7 @@ class WriterHistory:
         return bisect_left(entries, sequence, hi=min(guess, len(entries)), key=itemgetter(0))
 
     def _resend(self, reader: ReaderProxy, ranges: list[tuple[int, int]], now_ns: int) -> None:
-        """Send a reader what it lacks; of what is not here any more, tell it that it is not."""
+        """Send a reader what it lacks, and announce a gap for what is no longer kept."""
         left = RESEND_BYTES
         entries = self.entries
         for begin, end in ranges[:MAX_RANGES]:

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from aionode.rclpy._impl.destroyable import Arrivals, Signal
-from aionode.rclpy._taking import ready_callbacks
+from aionode.rclpy._taking import find_ready
 
 
 class Handles:
@@ -34,7 +34,7 @@ class Handles:
 
     def found(self) -> int:
         """Return how many callbacks are ready."""
-        return len(ready_callbacks([self.node], lambda _: True, None))
+        return len(find_ready([self.node], lambda _: True, None))
 
 
 def test_subscriptions_are_looked_at_only_after_something_has_come() -> None:

@@ -345,7 +345,7 @@ class FakeRcl:
         self.takes = self.published = 0
         self.is_fast_dds = True
         self._ids = itertools.count(1)
-        self.take_freely, self.publish_freely = self.take, self.publish
+        self.take_without_gil, self.publish_without_gil = self.take, self.publish
         self.set_service_callback = self.set_client_callback = self.set_subscription_callback
         self.client_gid = self.publisher_gid
         made = {

@@ -70,7 +70,10 @@ class MessageQueue(InlineCall, Generic[T]):
         return len(self.items)
 
     def put(self, item: T) -> None:
-        """Add `item`, and wake the readers."""
+        """Add `item`, and wake the readers.
+
+        `deliver` of a subscription in `endpoints/subscription.py` repeats this.
+        """
         queue = self.items
         if len(queue) >= self.depth:
             self.stats.dropped += 1

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from aionode.endpoints._core.callback_runner import Callbacks
     from aionode.endpoints._core.entity import Entity
 
-__all__ = ["Ending"]
+__all__ = ["Shutdown"]
 
 NOTICE_S = 0.3
 """After how long the log says what the end of a node waits for, in seconds of real time."""
@@ -25,7 +25,7 @@ ANSWERS_S = 1.0
 """How long it waits for the servers whose goals it cancels."""
 
 
-class Ending:
+class Shutdown:
     """Ends a node so that its callbacks can clean up.
 
     Entities with callbacks are destroyed at once, and their callbacks are cancelled. Publishers,

@@ -22,8 +22,8 @@ MAX_READERS: Final = 1_000
 """How many subscriptions to one topic a process may have."""
 
 MAX_UNCONFIRMED: Final = 20_000
-"""How many messages are kept until they are confirmed: more than a subscription leaves unconfirmed
-whose process works.
+"""How many messages are kept until they are confirmed: more than a subscription in a working
+process ever leaves unconfirmed. Beyond it the oldest are forgotten.
 """
 
 DATA: Final = int(Kind.DATA)
@@ -68,7 +68,7 @@ class IpcSendQueue:
         name: The topic.
         connection: The link.
         readers: The subscriptions, by gid; changes with their `Open` and `Close`.
-        confirmed: Whether any of them confirms messages.
+        confirms: Whether any of them confirms messages.
         dropped: How many messages were dropped because the queue was full.
         wants: Whether any of the subscriptions wants a message; None if one wants all.
     """
@@ -81,7 +81,7 @@ class IpcSendQueue:
         "_sent",
         "_unconfirmed",
         "_waiting",
-        "confirmed",
+        "confirms",
         "connection",
         "dropped",
         "name",
@@ -97,12 +97,12 @@ class IpcSendQueue:
         self.readers: dict[bytes, RemoteSubscription] = {}
         self.dropped = 0
         self.wants: Callable[[Any], bool] | None = None
-        self.confirmed = False
+        self.confirms = False
         self._gid = gid
         self._depth = depth
         self._keep_all = keep_all
         self._limited = False  # whether a subscription has a window
-        self._sent = 0  # how many frames the connection has taken while it was limited
+        self._sent = 0  # how many frames `_pass` has sent: what `used` is compared with
         # Number, frame, and the buffer that holds its payload. What waits for the socket or for a
         # window, and what was sent and is not confirmed by every subscription that confirms.
         self._waiting: deque[tuple[int, bytes, SharedBuffer | None]] = deque()
@@ -120,13 +120,13 @@ class IpcSendQueue:
             raise FrameError(f"more than {MAX_READERS} subscriptions of one process to {self.name}")
         reader.used = self._sent
         self.readers[gid] = reader
-        self.confirmed = self.confirmed or reader.confirms
+        self.confirms = self.confirms or reader.confirms
         self._limited = self._limited or bool(reader.window)
 
     def remove(self, gid: bytes) -> None:
         """Stop sending to a subscription."""
         self.readers.pop(gid, None)
-        self.confirmed = any(reader.confirms for reader in self.readers.values())
+        self.confirms = any(reader.confirms for reader in self.readers.values())
         self._limited = any(reader.window for reader in self.readers.values())
         self._confirm()
         self.on_writable()
@@ -158,13 +158,13 @@ class IpcSendQueue:
     def send(self, sequence: int, data: bytes, buffer: SharedBuffer | None = None) -> None:
         """Send a frame after those that wait; at once if none does."""
         if not (self._limited or self._waiting or buffer):  # `_pass` inlined: fewer calls
-            if self.confirmed:
+            if self.confirms:
                 self._unconfirmed.append((sequence, data, None))
             if self.connection.write(data):
                 if len(self._unconfirmed) > MAX_UNCONFIRMED:
                     self._let_go(self._unconfirmed.popleft()[2])
                 return
-            if self.confirmed:
+            if self.confirms:
                 self._unconfirmed.pop()
         if self._waiting or not self._pass(sequence, data, buffer):
             waiting = self._waiting
@@ -182,7 +182,7 @@ class IpcSendQueue:
             return False
         if buffer is not None:
             buffer.users += 1  # the receiver
-        if self.confirmed:
+        if self.confirms:
             if buffer is not None:
                 buffer.users += 1
             # Before writing, which may find that the link is broken.
@@ -191,7 +191,7 @@ class IpcSendQueue:
             self._let_go(buffer)
             if self.connection.closed:  # `unacked` has taken what is unconfirmed
                 return True
-            if self.confirmed:
+            if self.confirms:
                 self._unconfirmed.pop()
                 self._let_go(buffer)
             return False

@@ -118,7 +118,7 @@ class ErrorString(ctypes.Structure):
 
 
 class Rcl:
-    """The functions. Those named ``*_freely`` release the GIL, the other ones keep it.
+    """The functions. Those named ``*_without_gil`` release the GIL, the other ones keep it.
 
     No thread of the middleware ever wants the GIL, so keeping it cannot deadlock; it spares the
     loop the wait for the GIL after each short call.
@@ -147,11 +147,11 @@ class Rcl:
         self.take = function(
             rcl.rcl_take_serialized_message, nothing, array, POINTER(MessageInfo), nothing
         )
-        self.take_freely = function(
+        self.take_without_gil = function(
             freely.rcl_take_serialized_message, nothing, array, POINTER(MessageInfo), nothing
         )
         self.publish = function(rcl.rcl_publish_serialized_message, nothing, shown, nothing)
-        self.publish_freely = function(
+        self.publish_without_gil = function(
             freely.rcl_publish_serialized_message, nothing, shown, nothing
         )
         self.take_request = function(

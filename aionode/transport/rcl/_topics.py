@@ -29,7 +29,9 @@ if TYPE_CHECKING:
 __all__ = ["RclReader", "RclWriter"]
 
 BULK_BYTES: Final = 60_000
-"""From this size on a message is sent by a thread, and taken without the GIL."""
+"""From this size on a message is sent by a thread; after the first one, a subscription takes all of
+its messages without the GIL.
+"""
 
 GIVE_UP_TRIES: Final = 20
 """How often a publisher that is being destroyed tries to send one more message (0.1 s each)."""
@@ -137,7 +139,7 @@ class RclWriter(RclDeclaration, Writer):
 
     def _put(self, payload: bytes) -> None:
         """Have a thread send a message that may take long, or that comes after such ones."""
-        self._queue.put(partial(self._send_freely, self._handle, self._pointer, payload))
+        self._queue.put(partial(self._send_without_gil, self._handle, self._pointer, payload))
         self._queued = True
 
     def _is_queueing(self) -> bool:
@@ -145,11 +147,11 @@ class RclWriter(RclDeclaration, Writer):
         self._queued = self.bounded or len(self._queue) > 0
         return self._queued
 
-    def _send_freely(self, handle: Any, pointer: int, payload: bytes) -> None:  # noqa: ARG002
+    def _send_without_gil(self, handle: Any, pointer: int, payload: bytes) -> None:  # noqa: ARG002
         """Send a message in a thread; `handle` keeps the publisher alive meanwhile."""
         rcl, array = load(), view(payload)
         tries = 0
-        while rcl.publish_freely(pointer, byref(array), None):
+        while rcl.publish_without_gil(pointer, byref(array), None):
             if not self.bounded or (self._closing and tries >= GIVE_UP_TRIES):
                 self._note_refused()
                 return
@@ -286,7 +288,7 @@ class RclReader(RclDeclaration):
         info, array = self._info, self._array
         size = array.length
         if size >= BULK_BYTES:
-            self._take_it = rcl.take_freely
+            self._take_it = rcl.take_without_gil
         payload = string_at(array.buffer, size)
         sequence = info.sequence
         if sequence == UNNUMBERED:

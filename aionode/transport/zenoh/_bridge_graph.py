@@ -92,7 +92,7 @@ class BridgeWatcher:
     """Keeps the graph up to date with what bridges announce.
 
     Args:
-        session_state: The connection of the context.
+        session_state: The session state of the context.
         bridges: The connection with bridges, which begins with the first of them.
     """
 

@@ -59,7 +59,7 @@ class LocalRouter:
     """Links this machine with the static peers of a context, by a router where one is needed.
 
     Args:
-        state: The connection of the context.
+        state: The session state of the context.
         network: Its settings.
     """
 

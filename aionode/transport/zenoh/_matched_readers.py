@@ -17,8 +17,8 @@ __all__ = ["MatchedReaders"]
 class MatchedReaders:
     """The matched readers of one publisher.
 
-    Each is added and removed by itself: many publishers and subscriptions of one topic cost each
-    pair once.
+    Readers are added and removed one at a time, so that with many publishers and subscriptions of a
+    topic each pair is compared only once.
 
     Args:
         endpoint: The publisher.
@@ -27,7 +27,7 @@ class MatchedReaders:
     Attributes:
         gids: All of them.
         acknowledging: Those that acknowledge, each with its context.
-        others: Those that must lose nothing, and do not acknowledge.
+        others: Those of contexts that do not acknowledge, whatever their reliability.
     """
 
     def __init__(self, endpoint: EndpointInfo, state: SessionState) -> None:

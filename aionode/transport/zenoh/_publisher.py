@@ -537,7 +537,7 @@ class ZenohWriter(Declaration, Writer):
 
     def resend(self, reader: ReaderProxy, entry: Entry) -> None:
         """Send a message again to one reader."""
-        fields = attachment.unpack_fields(entry.extra)
+        fields = attachment.unpack_fields(entry.attachment)
         source_ns = 0 if fields is None else fields[1]
         self._send_submessage(SubmessageKind.DATA, reader, entry.sequence, source_ns, entry.payload)
 

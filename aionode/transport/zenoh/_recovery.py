@@ -58,22 +58,22 @@ FIRST_S: Final = 0.5
 DECLARED_S: Final = 1.0
 """How long after a participant has returned its tokens may take; they take some milliseconds."""
 
-EACH_S: Final = 20
-"""For each so many connected peers they may take a second: all of them may have returned."""
+PEERS_PER_SECOND: Final = 20
+"""Tokens may take a second for each so many connected peers: all of these may have returned."""
 
 FEW: Final = 3
 """If more participants than that have declared nothing, they may be slow, and have more time."""
 
 POSTPONED_S: Final = 3.0
-"""For so long a look waits for connections that go on being made or lost, and many that are silent
-are waited for after the last of these.
+"""How long connections that go on being made or lost may postpone a look; also how long after the
+last of these more than `FEW` silent participants are waited for.
 """
 
 AGAIN_S: Final = 3.0
 """The interval of further looks: a process that was frozen returns without a sign."""
 
 WATCH_S: Final = 120.0
-"""How long looks are repeated after the loss of the last connection."""
+"""How long looks are repeated after the most recent loss of a connection."""
 
 SURE_S: Final = 0.3
 """How long a participant must be missing. One that is starting is, for some milliseconds."""
@@ -110,9 +110,9 @@ class Recovery:
     """Looks for processes that are alive, but not connected any more.
 
     Args:
-        state: The connection of the context.
+        state: The session state of the context.
         network: The settings of the context, with the endpoints that it dials.
-        on_change: Called some times after connections were made or lost.
+        on_change: Called a few times after connections were made or lost.
     """
 
     def __init__(
@@ -155,7 +155,7 @@ class Recovery:
             )
 
     def stop(self) -> None:
-        """Stop watching; a look that is under connection ends by itself."""
+        """Stop watching; a look that is under way ends by itself."""
         self._session = None
         listener, self._listener = self._listener, None
         if listener is not None:
@@ -200,7 +200,7 @@ class Recovery:
     def _declared_s(self) -> float:
         """Return how long the tokens of a participant that has returned may take."""
         count = 0 if self._session is None else len(self._session.info.transports())
-        return DECLARED_S * max(count / EACH_S, 1)
+        return DECLARED_S * max(count / PEERS_PER_SECOND, 1)
 
     def _check_in(self, delay_s: float) -> None:
         if self._check is None:
@@ -209,7 +209,7 @@ class Recovery:
     def _check_returned(self) -> None:
         """Cut the connections to participants that have returned, but have not declared anything.
 
-        All of them at once, as each cut is a change, which the others would be waited for again.
+        All at once: each cut is itself a change, after which the others would have to wait again.
         """
         self._check = None
         session, acknowledgements = self._session, self._state.acknowledgements
@@ -227,7 +227,8 @@ class Recovery:
         if silent:
             self._cuts.update(silent)
             logger.info(
-                "processes %s are connected, but declare nothing: connected anew",
+                "processes %s are connected but declare nothing; cutting their connections, so "
+                "that Zenoh makes them anew",
                 ", ".join(sorted(silent)[:5]),
             )
             start_thread(
@@ -282,15 +283,18 @@ class Recovery:
         return missing
 
     def _missing(self, session: zenoh.Session, connection: Connection, lost: set[str]) -> set[str]:
-        """Return those that only the introducer sees, and this one if the introducer does not."""
+        """Return the participants that are not connected as they should be.
+
+        Those that only the introducer sees, lost ones that it sees and that are not connected
+        here, and this one if the introducer does not see it.
+        """
         keys = participants(self._state.domain_id)
         there = seen_at(self._network, connection, *keys)
         here = tokens(session, *keys)
         connected = {str(transport.zid) for transport in session.info.transports()}
         own = {token for token in here if participant_of(token) == self._state.participant}
-        return {participant_of(token) for token in (there - here) | (own - there)} | {
-            participant_of(token) for token in there
-        } & lost - connected
+        one_sided = {participant_of(token) for token in (there - here) | (own - there)}
+        return one_sided | ({participant_of(token) for token in there} & (lost - connected))
 
     def _take_look(self, missing: set[str] | None) -> None:
         """Take what a look has found to be missing; None if it could not be made."""
@@ -303,7 +307,8 @@ class Recovery:
             }
         if missing:
             logger.info(
-                "processes %s live, but were not connected any more: connected anew",
+                "lost touch with running processes %s; cutting connections, so that Zenoh makes "
+                "them anew",
                 ", ".join(sorted(missing)[:5]),
             )
         if self._checks:

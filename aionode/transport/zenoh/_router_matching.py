@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Final
 
 import zenoh
 
-from aionode.errors import ConfigurationError
+from aionode.errors import ConfigurationError, TransportError
 from aionode.transport._send_thread import SendThread
 from aionode.transport._zenoh_config import look_settings
 from aionode.transport.zenoh._handlers import direct, reason
@@ -127,7 +127,7 @@ class RouterMatching:
     """The sessions with all routers of a context.
 
     Args:
-        state: The connection of the context.
+        state: The session state of the context.
         network: Its settings.
     """
 
@@ -235,7 +235,7 @@ class RouterMatching:
                 self._drop(router, key)
 
     def _take_lost(self, router: RouterSession) -> None:
-        """Begin anew with a router to which there is no connection, if that is still there."""
+        """Start again with a router that its session has lost, if the context has it still."""
         if self._routers.get(router.zid) is not router:
             return
         self._end(router)
@@ -258,7 +258,7 @@ class RouterMatching:
             asked = router.session
             known = {key: KeyMatching(asked, key, self._changes.put) for key in keys}
             wait_for_answer(asked)
-        except (zenoh.ZError, ConfigurationError, TimeoutError) as error:
+        except (zenoh.ZError, ConfigurationError, TimeoutError, TransportError) as error:
             logger.debug("router %s: what it announces is not known: %s", router.zid, error)
             self._lost.put(router)
         else:
@@ -278,7 +278,7 @@ class RouterMatching:
         router.listener = opened.info.declare_transport_events_listener(direct(on_event))
         if router.zid not in {str(transport.zid) for transport in opened.info.transports()}:
             opened.close()
-            raise TimeoutError("another router has taken its place")
+            raise TransportError("not connected to it any more; another one may have its address")
         return opened
 
 

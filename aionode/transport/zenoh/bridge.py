@@ -43,7 +43,7 @@ class BridgeTransport(Transport):
     Until a bridge is seen, nothing is declared for it.
 
     Args:
-        session_state: The connection of the context, which is open while this is.
+        session_state: The session state of the context, which is open while this is.
         time_base: The time of the context; by default that of the machine.
     """
 

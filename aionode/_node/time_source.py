@@ -1,0 +1,78 @@
+"""Simulated time: what a node's clock follows while `use_sim_time` is true."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from aionode.clock import S_TO_NS, Time
+from aionode.endpoints._core.entity import EndStage
+from aionode.interfaces.rcl_interfaces.msg import SetParametersResult
+from aionode.interfaces.rosgraph_msgs.msg import Clock as ClockMsg
+from aionode.parameter import Parameter
+from aionode.qos import QoSProfile, ReliabilityPolicy
+
+if TYPE_CHECKING:
+    from aionode._node.endpoints import NodeEndpoints
+    from aionode.clock import Clock
+    from aionode.endpoints.subscription import Subscription
+
+__all__ = ["TimeSource"]
+
+CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+class TimeSource:
+    """Follows ``/clock`` while the parameter `use_sim_time` is true."""
+
+    def __init__(self, node: NodeEndpoints, clock: Clock) -> None:
+        self._node = node
+        self._clock = clock
+        self._subscription: Subscription[ClockMsg] | None = None
+        self._warned = False
+        node.add_on_set_parameters_callback(self._check)
+        if not node.has_parameter("use_sim_time"):
+            node.declare_parameter("use_sim_time", False)
+        node.add_post_set_parameters_callback(self._follow)
+        self._switch(active=node.get_parameter("use_sim_time").value)
+
+    def _check(self, parameters: list[Parameter]) -> SetParametersResult:
+        for parameter in parameters:
+            if parameter.name == "use_sim_time" and not isinstance(parameter.value, bool):
+                return SetParametersResult(
+                    successful=False,
+                    reason=f"use_sim_time is {parameter.value!r}; it must be true or false",
+                )
+        return SetParametersResult(successful=True)
+
+    def _follow(self, parameters: list[Parameter]) -> None:
+        for parameter in parameters:
+            if parameter.name == "use_sim_time":
+                self._switch(active=parameter.value)
+
+    def _switch(self, *, active: bool) -> None:
+        self._clock.set_ros_time_active(active)
+        if active and self._subscription is None:
+            self._subscription = self._node.create_subscription(
+                ClockMsg, "/clock", self._on_tick, CLOCK_QOS
+            )
+            self._subscription._stage = (
+                EndStage.GOALS
+            )  # until callbacks have ended: their cleanup may sleep
+        elif not active and self._subscription is not None:
+            self._subscription.destroy()
+            self._subscription = None
+
+    def _on_tick(self, msg: ClockMsg) -> None:
+        if msg.clock.sec >= 0 and msg.clock.nanosec < S_TO_NS:
+            self._clock.set_ros_time_override(Time.from_msg(msg.clock))
+            return
+        # Any node can publish on /clock; an invalid message must not end this one.
+        if self._subscription is not None:
+            self._subscription.stats.errors += 1
+        if not self._warned:
+            self._warned = True
+            self._node.get_logger().warning(
+                f"/clock: ignored an invalid time: {msg.clock.sec} s and {msg.clock.nanosec} ns; "
+                f"seconds must be at least 0, and nanoseconds less than {S_TO_NS}. Further ones "
+                "are only counted; `aionode topic info -v /clock` names the publishers"
+            )

@@ -1,0 +1,79 @@
+"""Simulated time: nodes that follow /clock."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING
+
+import pytest
+
+from aionode.clock import ClockType, Time
+from aionode.errors import TimeSourceChangedError
+from aionode.interfaces.builtin_interfaces.msg import Time as TimeMsg
+from aionode.interfaces.rosgraph_msgs.msg import Clock as ClockMsg
+from aionode.node import Node
+from aionode.parameter import Parameter
+from aionode.qos import QoSProfile
+from aionode.testing import settle
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.context import Context
+
+
+async def test_simulated_time_follows_the_clock_topic(context: Context, node: Node) -> None:
+    """It stands at 0 until the first tick, and the timers wait for it."""
+    ticks: list[int] = []
+    options = {"parameter_overrides": [Parameter("use_sim_time", value=True)]}
+    async with Node("sim", context=context, **options) as sim:  # type: ignore[arg-type]  # one of many options
+        clock = sim.get_clock()
+        assert clock.now() == Time(clock_type=ClockType.ROS_TIME)
+        sim.create_timer(1.0, lambda: ticks.append(clock.now().nanoseconds))
+        source = node.create_publisher(ClockMsg, "/clock", QoSProfile(depth=1))
+        for second in (0, 1, 2):
+            source.publish(ClockMsg(clock=TimeMsg(sec=second)))
+            await settle()
+    assert ticks == [1_000_000_000, 2_000_000_000]
+
+
+async def test_simulated_time_can_be_switched_on_and_off(node: Node) -> None:
+    """Pending sleeps are told that the source of time has changed."""
+    sleeping = asyncio.get_running_loop().create_task(node.get_clock().sleep(999))
+    await settle()
+    node.set_parameters([Parameter("use_sim_time", value=True)])
+    with pytest.raises(TimeSourceChangedError):
+        await sleeping
+    assert node.get_clock().ros_time_is_active
+    node.set_parameters([Parameter("use_sim_time", value=False)])
+    assert not node.get_clock().ros_time_is_active
+    assert node.count_subscribers("/clock") == 0
+
+
+async def test_use_sim_time_must_be_true_or_false(node: Node) -> None:
+    """A typing mistake must not freeze a robot."""
+    (result,) = node.set_parameters([Parameter("use_sim_time", value="yes")])
+    assert not result.successful
+
+
+@pytest.mark.parametrize(
+    "wrong", [TimeMsg(sec=-1), TimeMsg(nanosec=10**9), TimeMsg(nanosec=2**32 - 1)]
+)
+async def test_a_clock_message_that_holds_no_time_is_counted(
+    node: Node,
+    node_factory: Callable[..., Node],
+    wrong: TimeMsg,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Any node can publish on /clock; an invalid message must not end the nodes that follow it."""
+    sim = node_factory("sim", parameter_overrides=[Parameter("use_sim_time", value=True)])
+    source = node.create_publisher(ClockMsg, "/clock", QoSProfile(depth=10))
+    for clock in (TimeMsg(sec=1), wrong, wrong, TimeMsg(sec=2)):
+        source.publish(ClockMsg(clock=clock))
+        await settle()
+
+    assert sim.is_running
+    assert sim.get_clock().now() == Time(seconds=2, clock_type=ClockType.ROS_TIME)
+    (subscription,) = sim.subscriptions
+    assert subscription.stats.errors == 2
+    assert capsys.readouterr().err.count("/clock: ignored an invalid time") == 1
