@@ -56,7 +56,7 @@ def test_three_thousand_topics_are_all_listed(env: dict[str, str]) -> None:
         )
 
     assert len(tokens) == TOPICS
-    assert done.stdout == f"{TOPICS}\n"
+    assert done.stdout == f"{TOPICS}\n", done.stderr
     assert "may be incomplete" not in done.stderr
 
 

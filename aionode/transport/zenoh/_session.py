@@ -387,7 +387,7 @@ class ConnectionWatcher:
         if expected == 0:
             return
         try:
-            while (count := len(self._session.info.transports())) < expected:
+            while (count := self._count()) < expected:
                 async with asyncio.timeout(NEXT_LINK_S if count else FIRST_LINK_S):
                     await self._next()
             for _ in range(expected + 8):
@@ -395,6 +395,16 @@ class ConnectionWatcher:
                     await self._next()
         except TimeoutError:
             return
+
+    async def wait_longer(self, expected: int, limit_s: float) -> None:
+        """Wait until `expected` peers are connected, `limit_s` at most."""
+        with suppress(TimeoutError):
+            async with asyncio.timeout(limit_s):
+                while self._count() < expected:
+                    await self._next()
+
+    def _count(self) -> int:
+        return len(self._session.info.transports())
 
     async def _next(self) -> None:
         self._changed.clear()

@@ -141,10 +141,17 @@ class ZenohTransport(Transport):
 
     async def all_known(self, quiet_s: float) -> bool:
         """Wait until the tokens of all reachable peers are in the graph."""
-        if not await self._has_answers(quiet_s):
-            return False
         session, graph = self._state.session, self._state.graph
         if session is None or graph is None:
+            return False
+        if not self._is_connected(session):  # on a busy machine that takes longer than `open` waits
+            links = ConnectionWatcher(session, self._state.queue)
+            try:
+                await links.wait_longer(self._expected, quiet_s)
+            finally:
+                links.close()
+            self._ask(session)
+        if not await self._has_answers(quiet_s):
             return False
         # Peers that a router, or another peer, has named may not be connected yet: nothing but what
         # that sees tells of them.

@@ -160,6 +160,7 @@ async def test_no_message_is_asked_for_in_vain(pair: Pair, rcl: FakeRcl) -> None
     reader = pair.right.create_subscription(Int32, "numbers", None, 10)
     publisher = pair.left.create_publisher(Int32, "numbers", 10)
     await publisher.wait_for_subscribers()
+    await until(lambda: rcl.takes)  # what came before the callback was set
     before = rcl.takes
     for number in range(3):
         publisher.publish(Int32(data=number))
