@@ -1,7 +1,7 @@
 # aionode's commands. The first one makes .venv and installs what it needs; nothing else is touched.
 #
 #   make demo      two nodes talk: python -m aionode.examples.pubsub
-#   make test      the tests, in WORKERS processes: four more than there are processors
+#   make test      the tests, in WORKERS processes: two more than there are processors
 #   make stress    variants that take long or differ little from what `make test` runs
 #   make check     style, types, layers and structure, the documentation and its code
 #   make coverage  how much of aionode the tests reach that start no process; fails below 92 %

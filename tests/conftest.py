@@ -108,8 +108,8 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
 
 @pytest.hookimpl(optionalhook=True)  # of pytest-xdist
 def pytest_xdist_auto_num_workers() -> int:
-    """Use four workers more than there are processors: tests of processes and sessions wait."""
-    return (os.cpu_count() or 1) + 4
+    """Use two workers more than there are processors: tests of processes mostly wait."""
+    return (os.cpu_count() or 1) + 2
 
 
 @pytest.hookimpl(tryfirst=True)
