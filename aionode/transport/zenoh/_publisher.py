@@ -103,8 +103,8 @@ class ZenohWriter(Declaration, Writer):
         self._early: deque[tuple[int, bytes, bytes]] = deque(maxlen=self._depth)
         self.active = self._transient
         self.bounded = keeps_all(qos)
-        # A transient local KEEP_LAST publisher has none: there Zenoh sends lost messages again, but
-        # for good not those that were coming again when a connection was lost.
+        # A transient local KEEP_LAST publisher has none: Zenoh repeats its lost messages, except
+        # those whose repetition was under way when a connection was lost.
         self._history: WriterHistory | None = None
         if self._reliable and self.recovers and (self.bounded or not self._transient):
             self._history = WriterHistory(

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from aionode.context import Context
+from aionode.endpoints.publisher import Publisher
+from aionode.endpoints.subscription import Subscription
 from aionode.errors import ServiceUnavailableError, TransportError
 from aionode.graph import EndpointKind
 from aionode.interfaces.std_msgs.msg import Int32, String, UInt8MultiArray
@@ -143,28 +145,35 @@ async def test_a_full_keep_all_subscription_leaves_messages_in_the_middleware(
     assert [(await reader.receive()).data for _ in range(count)] == list(range(count))
 
 
-async def test_messages_without_numbers_are_not_taken_for_lost(pair: Pair, rcl: FakeRcl) -> None:
-    """As those of Cyclone DDS."""
-    rcl.numbers = False
+async def matched(pair: Pair) -> tuple[Publisher[Int32], Subscription[Int32]]:
+    """Return a publisher, and a subscription in the other context that it has matched."""
     reader = pair.right.create_subscription(Int32, "numbers", None, 10)
     publisher = pair.left.create_publisher(Int32, "numbers", 10)
     await publisher.wait_for_subscribers()
+    return publisher, reader
+
+
+async def three_arrive(publisher: Publisher[Int32], reader: Subscription[Int32]) -> None:
+    """Publish three messages at once, and assert that all arrive in order."""
     for number in range(3):
         publisher.publish(Int32(data=number))
     assert [(await reader.receive()).data for _ in range(3)] == [0, 1, 2]
+
+
+async def test_messages_without_numbers_are_not_taken_for_lost(pair: Pair, rcl: FakeRcl) -> None:
+    """As those of Cyclone DDS."""
+    rcl.numbers = False
+    publisher, reader = await matched(pair)
+    await three_arrive(publisher, reader)
     assert reader.stats.lost == 0
 
 
 async def test_no_message_is_asked_for_in_vain(pair: Pair, rcl: FakeRcl) -> None:
     """That would wait for the middleware's lock, which it holds while it receives the next."""
-    reader = pair.right.create_subscription(Int32, "numbers", None, 10)
-    publisher = pair.left.create_publisher(Int32, "numbers", 10)
-    await publisher.wait_for_subscribers()
+    publisher, reader = await matched(pair)
     await until(lambda: rcl.takes)  # what came before the callback was set
     before = rcl.takes
-    for number in range(3):
-        publisher.publish(Int32(data=number))
-    assert [(await reader.receive()).data for _ in range(3)] == [0, 1, 2]
+    await three_arrive(publisher, reader)
     publisher.publish(Int32(data=3))
     assert (await reader.receive()).data == 3
     assert rcl.takes - before == 4
@@ -173,12 +182,8 @@ async def test_no_message_is_asked_for_in_vain(pair: Pair, rcl: FakeRcl) -> None
 async def test_a_middleware_may_tell_of_several_messages_once(pair: Pair, rcl: FakeRcl) -> None:
     """All of them are taken."""
     rcl.is_fast_dds = False
-    reader = pair.right.create_subscription(Int32, "numbers", None, 10)
-    publisher = pair.left.create_publisher(Int32, "numbers", 10)
-    await publisher.wait_for_subscribers()
-    for number in range(3):
-        publisher.publish(Int32(data=number))
-    assert [(await reader.receive()).data for _ in range(3)] == [0, 1, 2]
+    publisher, reader = await matched(pair)
+    await three_arrive(publisher, reader)
 
 
 async def test_a_subscription_that_the_graph_does_not_show_yet_gets_messages(
