@@ -43,6 +43,7 @@ from aionode.wire.typehash import type_hash
 from tests.endpoints.qos.conftest import next_of, waiting
 from tests.support.links import folder, transport_of
 from tests.support.peers import DOMAIN_ID, Collector, isolated_environment, quiet_node, raw_session
+from tests.support.waiting import until
 
 __all__ = ["folder"]  # a fixture
 
@@ -80,13 +81,15 @@ class RosNode:
         self._node = NodeInfo(str(session.info.zid()), 0, "ros", "/")
         self.gid = b""
         self._token: Any = None
-        self._key = ""
+        self._publisher: Any = None
         self._sequence = 0
 
     def announce(self, kind: EndpointKind, profile: QoSProfile, ros_type: Any = Int32) -> None:
         """Declare the token of an endpoint of the topic."""
         hashed = type_hash(ros_type)
-        self._key = data_key(DOMAIN_ID, "/n", type_name(ros_type), hashed)
+        if kind is EndpointKind.PUBLISHER:
+            key = data_key(DOMAIN_ID, "/n", type_name(ros_type), hashed)
+            self._publisher = self._session.declare_publisher(key)
         token = endpoint_token(
             DOMAIN_ID,
             EndpointInfo(kind, self._node, 1, "/n", type_name(ros_type), hashed, profile, b""),
@@ -107,12 +110,16 @@ class RosNode:
         """Undeclare the token, as the end of the process does."""
         self._token.undeclare()
 
-    def publish(self, number: int, *, age_s: float = 0, skip: int = 0) -> None:
-        """Send a sample with a stamp in the past, after samples that are lost."""
+    async def publish(self, number: int, *, age_s: float = 0, skip: int = 0) -> None:
+        """Send a sample with a stamp in the past, after samples that are lost.
+
+        The subscription may see the token before this session hears of the subscription: until
+        then, what is sent goes nowhere.
+        """
+        await until(lambda: self._publisher.matching_status.matching)
         self._sequence += 1 + skip
         stamp_ns = self._clock.system_ns() - round(age_s * 1e9)
-        self._session.put(
-            self._key,
+        self._publisher.put(
             cdr.encode(Int32(data=number)),
             attachment=attachment.pack(self._sequence, stamp_ns, self.gid),
         )
@@ -150,7 +157,7 @@ async def test_a_deadline_is_kept_by_the_samples_that_come(
     events = subscription.events
     await next_of(events, MatchedInfo)
     for number in range(3):
-        ros_node.publish(number)
+        await ros_node.publish(number)
         assert (await subscription.receive()).data == number
         await clock.advance(0.7)
     assert waiting(events, QoSRequestedDeadlineMissedInfo) == []
@@ -187,8 +194,8 @@ async def test_an_old_sample_is_not_delivered(
     subscription = node.create_subscription(Int32, "n", None, requested)
     ros_node.announce(EndpointKind.PUBLISHER, offered)
     await next_of(subscription.events, MatchedInfo)
-    ros_node.publish(1, age_s=1.5)
-    ros_node.publish(2, age_s=0.5)
+    await ros_node.publish(1, age_s=1.5)
+    await ros_node.publish(2, age_s=0.5)
     assert (await subscription.receive()).data == 2
     assert subscription.stats.expired == 1
 
@@ -253,7 +260,7 @@ async def test_automatic_liveliness_without_assertions_has_no_lease(
     subscription = node.create_subscription(Int32, "n", None, profile)
     ros_node.announce(EndpointKind.PUBLISHER, profile)
     await next_of(subscription.events, QoSLivelinessChangedInfo)
-    ros_node.publish(1)
+    await ros_node.publish(1)
     await subscription.receive()
     await clock.advance(5)
     assert waiting(subscription.events, QoSLivelinessChangedInfo) == []
@@ -291,7 +298,7 @@ async def test_manual_liveliness_is_that_of_the_samples(
     events = subscription.events
     await next_of(events, MatchedInfo)
     for number in range(3):
-        ros_node.publish(number)
+        await ros_node.publish(number)
         await subscription.receive()
         await clock.advance(0.7)
     assert waiting(events, QoSLivelinessChangedInfo) == [QoSLivelinessChangedInfo(1, 0, 1, 0)]
@@ -306,8 +313,8 @@ async def test_missing_numbers_are_lost_messages(node: Node, ros_node: RosNode) 
     )
     ros_node.announce(EndpointKind.PUBLISHER, PLAIN)
     await next_of(subscription.events, MatchedInfo)
-    ros_node.publish(1)
-    ros_node.publish(2, skip=3)
+    await ros_node.publish(1)
+    await ros_node.publish(2, skip=3)
     assert await next_of(subscription.events, QoSMessageLostInfo) == QoSMessageLostInfo(3, 3)
 
 
