@@ -34,6 +34,9 @@ if __name__ == "__main__":
     work(sys.argv[-1])
 """
 
+SHADOW = "shadow"
+"""The folder with an rclpy that hides one of ROS."""
+
 TRACEBACK = """\
 Traceback (most recent call last):
   File "program.py", line 22, in <module>
@@ -49,6 +52,11 @@ def folder(tmp_path: Path) -> Path:
     """A folder with a program, and a module that it imports."""
     (tmp_path / "program.py").write_text(PROGRAM)
     (tmp_path / "helper.py").write_text("TEXT = 'hi'\n")
+    # Found before an rclpy of ROS that may be installed here, about which a line of the log would
+    # be printed; `aionode.rclpy` itself takes the place of both.
+    shadow = tmp_path / SHADOW / "rclpy"
+    shadow.mkdir(parents=True)
+    (shadow / "__init__.py").write_text("raise ImportError('not the rclpy of aionode')\n")
     return tmp_path
 
 
@@ -56,6 +64,7 @@ def run(
     folder: Path, *command: str, module: str = "aionode.rclpy"
 ) -> subprocess.CompletedProcess[str]:
     """Run a command in a folder."""
+    path = (folder / SHADOW, Path(__file__).parents[2])
     return subprocess.run(
         [sys.executable, "-m", module, *command],
         cwd=folder,
@@ -63,7 +72,7 @@ def run(
         text=True,
         check=False,
         timeout=50,
-        env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])},
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(map(str, path))},
     )
 
 
