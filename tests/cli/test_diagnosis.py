@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from aionode import Node, QoSProfile, ReliabilityPolicy
-from aionode.cli._support.diagnosis import likeness
+from aionode.cli._support.lookup import ALIKE, close_to, likeness
 from aionode.cli._verbs.doctor import doctor, network_findings
 from aionode.errors import CommandError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
@@ -204,11 +204,36 @@ def test_a_normal_network_is_not_remarked_on() -> None:
         ("/word_count", "/word_counts", True),
         ("/chatter", "/odom", False),
         ("/left/image", "/left/depth", False),
+        ("/robot/chater", "/chatter", True),
+        ("/left/image", "/right/image", False),
+        ("/camera/image_raw", "/camera/image_info", False),
+        ("/first/get_parameters", "/talker/get_parameters", False),
     ],
 )
 def test_names_that_are_alike(one: str, other: str, alike: bool) -> None:
     """Different words are not a misspelling."""
-    assert (likeness(one, other) >= 0.8) is alike
+    assert (likeness(one, other) >= ALIKE) is alike
+
+
+def test_the_nearest_name_is_suggested() -> None:
+    """Not the first one with the same last part; and none that has nothing else in common."""
+    known = ["/arm/get_state", "/base/get_state"]
+
+    assert close_to("/bse/get_state", known) == ". Did you mean '/base/get_state'?"
+    assert close_to("get_state", known) == ". Did you mean '/arm/get_state'?"
+    assert close_to("/wheels/get_state", known) == ""
+
+
+async def test_services_of_another_node_are_no_misspelling(
+    tool: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """All nodes have services of these names: to rename one would not help."""
+    node_factory("first").create_service(AddTwoInts, "~/add", lambda request, response: response)
+    node_factory("client").create_client(AddTwoInts, "/second/add")
+
+    status, (found,) = await findings(tool, screen)
+
+    assert (status, found["text"]) == (0, "the client of /client is waiting: there is no server")
 
 
 async def test_two_servers_of_one_service_are_a_hint(

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import difflib
 from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from aionode.cli._support.lookup import ALIKE, likeness
 from aionode.graph import TOPIC_KINDS, EndpointKind
 from aionode.names import is_hidden
 
@@ -16,9 +16,6 @@ if TYPE_CHECKING:
     from aionode.graph import EndpointInfo, NodeInfo
 
 __all__ = ["Finding", "diagnose", "diagnose_names"]
-
-ALIKE = 0.8
-"""Minimum likeness, from 0 to 1, of two names to count as one of them misspelled."""
 
 USED_BY_TOOLS = {"/rosout", "/parameter_events", "/clock"}
 """Topics that normally have publishers without subscriptions, or the reverse."""
@@ -219,13 +216,3 @@ def nearest(waiting: EndpointInfo, candidates: Sequence[EndpointInfo]) -> Endpoi
     ]
     alike = [entry for entry in alike if entry[1] >= ALIKE]
     return max(alike, key=lambda entry: entry[:2])[2] if alike else None
-
-
-def likeness(one: str, other: str) -> float:
-    """Return how alike two names are, from 0 to 1; 1 if they differ only in case."""
-    if one.lower() == other.lower():
-        return 1.0
-    last, other_last = one.rpartition("/")[2], other.rpartition("/")[2]
-    if last == other_last:
-        return 0.95
-    return difflib.SequenceMatcher(None, one.lower(), other.lower()).ratio()

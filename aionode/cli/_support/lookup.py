@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from aionode._distribution import NO_TYPE_HASH
 from aionode.errors import CommandError, InterfaceNotFoundError
@@ -18,17 +18,22 @@ if TYPE_CHECKING:
     from aionode.node import Node
 
 __all__ = [
+    "ALIKE",
     "absolute",
     "close_to",
     "endpoints",
     "interface_class",
     "is_own",
+    "likeness",
     "names_and_types",
     "node_infos",
     "topic_type",
     "type_of",
     "unknown",
 ]
+
+ALIKE: Final = 0.75
+"""How alike two names are at least if one of them is taken for the other, misspelled."""
 
 
 def is_own(node: Node, info: NodeInfo) -> bool:
@@ -74,12 +79,27 @@ def names_and_types(
 # Errors with help
 
 
+def likeness(one: str, other: str) -> float:
+    """Return how alike two names are, from 0 to 1: as much as the parts that differ most.
+
+    Case is no difference, nor is a namespace that only one of them has. The parts are compared one
+    by one, so that a long namespace, or a last part such as ``get_parameters``, which many names
+    share, does not make different words alike.
+    """
+    pairs = zip(parts(one), parts(other), strict=False)
+    return min(difflib.SequenceMatcher(None, *pair).ratio() for pair in pairs)
+
+
+def parts(name: str) -> list[str]:
+    """Return the parts of a name in lower case, the last one first, each with its slash."""
+    return [f"/{part}" for part in reversed(name.lower().strip("/").split("/"))]
+
+
 def close_to(name: str, names: Iterable[str]) -> str:
     """Return a hint at the name that was probably meant, or an empty string."""
-    names = list(names)
-    same = [known for known in names if known.rpartition("/")[2] == name.rpartition("/")[2]]
-    close = same or difflib.get_close_matches(name, names, 1, 0.75)
-    return f". Did you mean '{close[0]}'?" if close else ""
+    known = sorted(names, key=lambda one: (len(one), one))  # of equals the shortest is taken
+    close = max(known, key=lambda one: likeness(name, one), default="")
+    return f". Did you mean '{close}'?" if close and likeness(name, close) >= ALIKE else ""
 
 
 def unknown(text: str, name: str, names: Iterable[str], shows: str) -> CommandError:

@@ -152,7 +152,7 @@ def chosen(node: Node, names: Sequence[str]) -> tuple[list[NodeInfo], list[Endpo
     near = {
         name
         for name in {one.name for one in endpoints}
-        if any(lookup.close_to(name, [each]) for each in wanted | of_nodes)
+        if any(lookup.likeness(name, each) >= lookup.ALIKE for each in wanted | of_nodes)
     }
     return (
         [one for one in nodes if one.fully_qualified_name in wanted] or nodes,
