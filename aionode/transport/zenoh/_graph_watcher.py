@@ -26,6 +26,9 @@ logger = logging.getLogger("aionode.transport.zenoh")
 CHECK_S: Final = 2.0
 """How long the tokens may take to come; it takes a millisecond."""
 
+ANSWER_S: Final = 60.0
+"""How long Zenoh waits for the tokens of all peers; a frozen one is cut long before."""
+
 NAMED: Final = 5
 """How many other domains are named in the log."""
 
@@ -50,8 +53,22 @@ class NodeDeclaration(Declaration):
         """Nor is there anything to withdraw."""
 
 
-def ignore(_: zenoh.Reply) -> None:
-    """Ignore a reply."""
+class Answer:
+    """The end of a query for all tokens.
+
+    Attributes:
+        answered: What waits for it.
+        complete: Whether no reply is missing.
+    """
+
+    def __init__(self, answered: asyncio.Future[bool]) -> None:
+        self.answered = answered
+        self.complete = True
+
+    def take(self, reply: zenoh.Reply) -> None:
+        """Note a failure; in a thread of Zenoh, before the end is."""
+        if reply.ok is None:
+            self.complete = False
 
 
 class Check:
@@ -117,15 +134,19 @@ class Watcher:
         """The domains of reachable nodes with another domain id; a hundred at most."""
         return frozenset(self._foreign)
 
-    def ask(self, session: zenoh.Session, answered: asyncio.Future[None]) -> None:
-        """Resolve `answered` when the tokens of all connected peers are in the graph."""
+    def ask(self, session: zenoh.Session, answered: asyncio.Future[bool]) -> None:
+        """Resolve `answered` when the tokens of all connected peers are in the graph.
+
+        With false if some may be missing, as a peer has not answered in time.
+        """
         self.newest_ns = perf_ns()  # from now on it is waited for the first one as well
+        answer = Answer(answered)
         # The subscriber gets the same tokens, and a reply may be older than an undeclaration that
-        # it has got since: only the end of the replies is of interest.
+        # it has got since: only the end of the replies is of interest, and whether one failed.
         session.liveliness().get(
             f"{PREFIX}/{self._state.domain_id}/**",
-            direct(ignore, lambda: self._queue.put(answered)),
-            timeout=10,
+            direct(answer.take, lambda: self._queue.put(answer)),
+            timeout=ANSWER_S,
         )
 
     def knows(self, key: str) -> bool:
@@ -149,7 +170,7 @@ class Watcher:
             timeout=CHECK_S,
         )
 
-    def _take(self, item: zenoh.Sample | zenoh.Reply | Check | asyncio.Future[None]) -> None:
+    def _take(self, item: zenoh.Sample | zenoh.Reply | Check | Answer) -> None:
         if isinstance(item, zenoh.Sample):
             self.newest_ns = perf_ns()
             key = str(item.key_expr)
@@ -170,8 +191,8 @@ class Watcher:
             self._end_check(item)
         else:
             self.newest_ns = perf_ns()
-            if not item.done():
-                item.set_result(None)
+            if not item.answered.done():
+                item.answered.set_result(item.complete)
 
     def _end_check(self, check: Check) -> None:
         if check is not self._check:

@@ -34,7 +34,7 @@ from aionode.transport.zenoh._handlers import direct
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["SocketOptions", "cut_stuck", "look"]
+__all__ = ["SocketOptions", "arrived_bytes", "cut_stuck", "look"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
@@ -157,6 +157,27 @@ def unanswered() -> set[str]:
         if one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8) == ZENOH_LINGER
         and one.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, RECEIVED.stop)[RECEIVED] == NOTHING
     }
+
+
+def arrived_bytes(session: zenoh.Session) -> dict[str, tuple[int, int]]:
+    """Return how many bytes have come from each peer, and how many of them Zenoh has not read yet.
+
+    Nothing where the system does not tell.
+    """
+    if not sys.platform.startswith("linux"):
+        return {}
+    import fcntl
+    import termios
+
+    peers = {address_of(link) for link in session.info.links()}
+    found = {}
+    for peer, one in connections():
+        if peer in peers:
+            info = one.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, RECEIVED.stop)
+            received = int.from_bytes(info[RECEIVED], sys.byteorder)
+            unread = fcntl.ioctl(one, termios.FIONREAD, bytes(4))
+            found[peer] = received, int.from_bytes(unread, sys.byteorder)
+    return found
 
 
 def look(session: zenoh.Session, participant: str) -> tuple[bool, int] | None:

@@ -24,7 +24,7 @@ from aionode.transport.zenoh._session import (
     run_in_own_thread,
 )
 from aionode.transport.zenoh._session_state import SessionState
-from aionode.transport.zenoh._sockets import SocketOptions, cut_stuck
+from aionode.transport.zenoh._sockets import SocketOptions, arrived_bytes, cut_stuck
 from aionode.transport.zenoh._subscription import ZenohReader
 
 if TYPE_CHECKING:
@@ -50,9 +50,11 @@ __all__ = ["ZenohTransport"]
 KNOWN_S = 0.3
 """How long `open` waits for the graph of connected peers; it takes a millisecond."""
 
-
 LOOK_AGAIN_S = 0.2
-"""How often it is looked which of the nodes that are waited for still exist."""
+"""How often it is looked which of the nodes that are waited for still exist, and what arrives."""
+
+TOKEN_BYTES = 100
+"""About the least that announces an endpoint; signs that a peer is alive are a few bytes."""
 
 NAMED_NS = 10_000_000_000
 """How long, in nanoseconds, a peer that others name is waited for while tokens of more arrive."""
@@ -81,7 +83,7 @@ class ZenohTransport(Transport):
         self._router_matching = RouterMatching(self._state, network)
         self.peer_directory = ZenohPeerDirectory(self._state, self._router_matching)
         # Done when the tokens of all connected peers are in the graph.
-        self._answered: asyncio.Future[None] | None = None
+        self._answered: asyncio.Future[bool] | None = None
         self._expected = 0  # how many peers accept connections, and so should be connected
         self._recovery = Recovery(self._state, network, self._watcher.check)
         self._local_router = LocalRouter(self._state, network)
@@ -151,7 +153,7 @@ class ZenohTransport(Transport):
             finally:
                 links.close()
             self._ask(session)
-        if not await self._has_answers(quiet_s):
+        if not await self._has_answers(session, quiet_s):
             return False
         # Peers that a router, or another peer, has named may not be connected yet: nothing but what
         # that sees tells of them.
@@ -173,7 +175,7 @@ class ZenohTransport(Transport):
                 return False
             missing = left
         self._ask(session)  # the tokens of these peers are complete after that
-        return await self._has_answers(quiet_s) and self._is_connected(session)
+        return await self._has_answers(session, quiet_s) and self._is_connected(session)
 
     def _is_connected(self, session: zenoh.Session) -> bool:
         """Return whether all peers that accept connections have been connected."""
@@ -190,19 +192,28 @@ class ZenohTransport(Transport):
             if perf_ns() > ends_ns:
                 return None
 
-    async def _has_answers(self, quiet_s: float) -> bool:
-        """Return whether all connected peers have told their tokens; wait while some arrive."""
+    async def _has_answers(self, session: zenoh.Session, quiet_s: float) -> bool:
+        """Return whether all connected peers have told their tokens; wait while some arrive.
+
+        On a busy machine Zenoh reads thousands of them for seconds, and then hands out all at once.
+        So it is waited as well while there is something to read.
+        """
         answered = self._answered
-        while answered is not None and not answered.done():
-            left_s = quiet_s - (perf_ns() - self._watcher.newest_ns) / 1e9
-            if left_s <= 0:
-                return False
+        before: dict[str, tuple[int, int]] = {}
+        while answered is not None:
             with suppress(TimeoutError):
-                async with asyncio.timeout(left_s):
-                    await asyncio.shield(answered)
+                async with asyncio.timeout(min(quiet_s, LOOK_AGAIN_S)):
+                    return await asyncio.shield(answered)
+            arrived = await run_in_own_thread(partial(arrived_bytes, session))
+            for peer, (received, unread) in arrived.items():
+                if received - before.get(peer, (0, 0))[0] + unread > TOKEN_BYTES:
+                    self._watcher.newest_ns = perf_ns()
+            before = arrived
+            if perf_ns() - self._watcher.newest_ns > quiet_s * 1e9:
+                return False
         return True
 
-    def _ask(self, session: zenoh.Session) -> asyncio.Future[None]:
+    def _ask(self, session: zenoh.Session) -> asyncio.Future[bool]:
         """Ask all connected peers for their tokens; return what is done when all have answered."""
         self._answered = answered = asyncio.get_running_loop().create_future()
         self._watcher.ask(session, answered)

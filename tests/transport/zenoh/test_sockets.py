@@ -18,7 +18,7 @@ from aionode._concurrency import checkpoint
 from aionode.context import Context
 from aionode.transport.zenoh import _sockets, _transport
 from aionode.transport.zenoh._session import close_session, open_router
-from tests.support.peers import two_contexts
+from tests.support.peers import quiet_node, two_contexts
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.skipif(
@@ -103,6 +103,16 @@ async def test_no_connection_of_a_router_waits_for_its_peer_when_it_is_closed(
             await until_set(router, (False, _sockets.UNREAD_MS))
     finally:
         await close_session(router)
+
+
+async def test_what_arrives_is_seen_while_zenoh_reads_it() -> None:
+    """Of each peer alone: others may send while one has stopped."""
+    async with two_contexts() as (first, second):
+        session = session_of(first)
+        ((peer, (before, _)),) = _sockets.arrived_bytes(session).items()
+        async with quiet_node("second", second):
+            await until(lambda: _sockets.arrived_bytes(session)[peer] > (before + 100, 0))
+            await until(lambda: _sockets.arrived_bytes(session)[peer][1] == 0)
 
 
 def test_only_new_descriptors_are_looked_at() -> None:

@@ -1,0 +1,73 @@
+"""How long it is waited for the tokens of connected peers."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from itertools import count
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from aionode.transport.zenoh import _transport
+from aionode.transport.zenoh._transport import ZenohTransport
+from tests.support.peers import quiet_node
+
+QUIET_S = 0.02
+ENOUGH = 20
+"""How many looks at what arrives take longer than `QUIET_S`."""
+
+
+@pytest.fixture
+async def transport(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[ZenohTransport]:
+    """An open transport, whose peers have not answered yet."""
+    monkeypatch.setattr(_transport, "LOOK_AGAIN_S", 0.002)
+    async with quiet_node("asking") as node:
+        opened: Any = node.context.transports[1]
+        opened._answered = asyncio.get_running_loop().create_future()
+        yield opened
+
+
+@pytest.mark.parametrize(
+    ("received", "unread"), [(1000, 0), (0, 1000)], ids=["something is read", "nothing is read"]
+)
+async def test_it_is_waited_while_something_arrives(
+    transport: ZenohTransport, monkeypatch: pytest.MonkeyPatch, received: int, unread: int
+) -> None:
+    """On a busy machine Zenoh reads thousands of tokens for seconds before it tells of one."""
+    loop = asyncio.get_running_loop()
+    numbers = count()
+
+    def arrived(_: object) -> dict[str, tuple[int, int]]:
+        number = next(numbers)
+        if number == ENOUGH and transport._answered is not None:
+            loop.call_soon_threadsafe(transport._answered.set_result, True)
+        return {"peer": (received * number, unread)}
+
+    monkeypatch.setattr(_transport, "arrived_bytes", arrived)
+
+    assert await transport.all_known(QUIET_S)
+
+
+async def test_signs_of_life_are_not_waited_for(
+    transport: ZenohTransport, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All other peers send them beside one that is frozen."""
+    numbers = count()
+    monkeypatch.setattr(_transport, "arrived_bytes", lambda _: {"peer": (4 * next(numbers), 4)})
+
+    assert not await transport.all_known(QUIET_S)
+
+
+async def test_an_answer_that_zenoh_has_given_up_is_incomplete(transport: ZenohTransport) -> None:
+    """It ends as well, with an error among what has come."""
+
+    def get(_: str, handler: Any, **__: object) -> None:
+        handler.callback(SimpleNamespace(ok=None))
+        handler.drop()
+
+    session: Any = SimpleNamespace(liveliness=lambda: SimpleNamespace(get=get))
+    transport._ask(session)
+
+    assert not await transport.all_known(QUIET_S)
