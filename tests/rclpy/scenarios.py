@@ -1059,6 +1059,32 @@ def services_of_managed_nodes(trace: Trace) -> None:
         )
 
 
+@scene
+def events_and_response_of_a_transition(trace: Trace) -> None:
+    order: list[str] = []
+    managed = LifecycleNode("managed")
+    node = rclpy.create_node("manager")
+    executor = SingleThreadedExecutor()
+    executor.add_node(managed)
+    executor.add_node(node)
+    node.create_subscription(
+        TransitionEvent,
+        "managed/transition_event",
+        lambda event: order.append(event.goal_state.label),
+        10,
+    )
+    client = node.create_client(ChangeState, "managed/change_state")
+    client.wait_for_service(PATIENCE_S)
+    until(lambda: managed.count_subscribers("managed/transition_event"))
+    for id_ in (1, 3, 4, 2):
+        request = ChangeState.Request()
+        request.transition.id = id_
+        client.call_async(request).add_done_callback(lambda _: order.append("response"))
+        until(lambda: len(order) == 3, lambda: executor.spin_once(timeout_sec=0.1))
+        trace(id_, list(order))
+        order.clear()
+
+
 def main() -> None:
     """Play the scenes, and print the traces."""
     traces: dict[str, list[Any]] = {}
