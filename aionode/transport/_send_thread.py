@@ -11,6 +11,7 @@ from collections.abc import Callable
 from queue import SimpleQueue
 from typing import TYPE_CHECKING, Final
 
+from aionode.clock import perf_ns
 from aionode.transport._loop_waker import ThreadsafeQueue
 
 if TYPE_CHECKING:
@@ -24,9 +25,16 @@ Job = Callable[[], None]
 EXIT_S: Final = 1.0
 """How long the process waits at exit for threads that are sending."""
 
+INSIDE_S: Final = 2.0
+"""How long it waits for other threads. Closing a session may take a second on a busy machine, and
+beside a frozen peer far longer than anybody would wait."""
+
+started: weakref.WeakSet[threading.Thread] = weakref.WeakSet()
+"""What `start_thread` has started, for `end_all`."""
+
 
 def start_thread(thread: threading.Thread) -> bool:
-    """Start a thread.
+    """Start a thread, for which the process waits at exit.
 
     Returns:
         False if the interpreter is shutting down: from Python 3.12 on none can be started then,
@@ -36,6 +44,7 @@ def start_thread(thread: threading.Thread) -> bool:
         thread.start()
     except RuntimeError:
         return False
+    started.add(thread)
     return True
 
 
@@ -93,6 +102,10 @@ def end_all() -> None:
         worker.end()
     for worker in running:
         worker.thread.join(EXIT_S / len(running))
+    # Python does not wait for those that a daemon has started, such as the thread of rclpy.
+    ends_ns = perf_ns() + int(INSIDE_S * 1e9)
+    for thread in list(started):
+        thread.join(max(0, ends_ns - perf_ns()) / 1e9)
 
 
 class SendThread:

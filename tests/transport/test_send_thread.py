@@ -178,3 +178,24 @@ began.wait()
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, check=False)
 
     assert (done.returncode, done.stdout, done.stderr) == (0, b"sent", b"")
+
+
+def test_a_process_that_exits_waits_for_a_thread_that_a_daemon_has_started() -> None:
+    """It is a daemon then, too: Python would end while it is inside Zenoh."""
+    program = """
+import os, threading, time
+from aionode.transport._send_thread import start_thread
+
+def close():
+    time.sleep(0.2)
+    os.write(1, b"closed")
+
+daemon = threading.Thread(
+    target=lambda: start_thread(threading.Thread(target=close)), daemon=True
+)
+daemon.start()
+daemon.join()
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, check=False)
+
+    assert (done.returncode, done.stdout, done.stderr) == (0, b"closed", b"")

@@ -33,8 +33,11 @@ PRECISE_S = 0.002
 milliseconds only.
 """
 
-STOP_S = 3.0
-"""How long the end of the process waits for the thread."""
+STOP_S = 5.0
+"""How long the end of the process waits for the thread: longer than its steps may take together.
+
+Inside Zenoh at the very end, it would abort the process.
+"""
 
 logger = logging.getLogger("aionode.rclpy")
 
