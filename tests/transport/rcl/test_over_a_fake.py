@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import socket
 from contextlib import AsyncExitStack
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +23,7 @@ from aionode.interfaces.std_msgs.msg import Int32, String, UInt8MultiArray
 from aionode.interfaces.test_msgs.srv import BasicTypes
 from aionode.node import Node
 from aionode.qos import KEEP_ALL_DEPTH, DurabilityPolicy, HistoryPolicy, QoSProfile
+from aionode.transport.rcl import _participants, _transport
 from aionode.transport.rcl._bindings import view
 from tests.support import fake_rcl
 
@@ -293,6 +295,40 @@ async def test_tools_wait_for_what_is_missing(pair: Pair, rcl: FakeRcl) -> None:
     await until(lambda: rcl.silent < 3)
     assert await pair.left.context.transports[1].all_known(0.2)
     assert pair.left.graph.count(EndpointKind.SERVER, "/add")
+
+
+async def test_tools_wait_for_processes_of_this_host_that_are_not_known(
+    pair: Pair, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Fast DDS tells of them when they announce themselves again."""
+    counts = iter((3, 3, 2))
+    monkeypatch.setattr(_participants, "count_on_this_host", lambda _: next(counts))
+    monkeypatch.setattr(_transport, "LACKING_QUIETS", 1000)
+    assert await pair.left.context.transports[1].all_known(0.2)
+    assert not list(counts)
+
+
+async def test_tools_wait_no_longer_than_it_takes_until_all_are_announced(
+    pair: Pair, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A process that is frozen, or no node of ROS, has a port as well."""
+    monkeypatch.setattr(_participants, "count_on_this_host", lambda _: 3)
+    monkeypatch.setattr(_transport, "MAX_QUIETS", 1000)
+    async with asyncio.timeout(10):
+        assert await pair.left.context.transports[1].all_known(0.2)
+
+
+def test_participants_of_this_host_are_counted_by_their_ports(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Those for discovery; the one after each is for messages."""
+    monkeypatch.setattr(_participants, "PARTICIPANTS", 1)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as bound:
+        bound.bind(("127.0.0.1", 0))
+        port = bound.getsockname()[1]
+        monkeypatch.setattr(_participants, "FIRST_PORT", port - _participants.DOMAIN_PORTS)
+        assert _participants.count_on_this_host(1) == 1
+    assert _participants.count_on_this_host(1) == 0
 
 
 async def test_nodes_of_one_name_are_told_apart(pair: Pair) -> None:
