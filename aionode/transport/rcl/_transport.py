@@ -96,7 +96,7 @@ class RclTransport(Transport):
         await self._until_quiet(
             quiet_s / 2, quiet_s * ALONE_QUIETS, quiet_s * LACKING_QUIETS, quiet_s * MAX_QUIETS
         )
-        return self._watcher.is_complete
+        return self._watcher.is_complete and not lacks_participants(self._state)
 
     async def _until_quiet(
         self, quiet_s: float, alone_s: float, lacking_s: float, limit_s: float
