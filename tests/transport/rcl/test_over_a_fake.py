@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from aionode._concurrency import checkpoint
 from aionode.context import Context
 from aionode.endpoints.publisher import Publisher
 from aionode.endpoints.subscription import Subscription
@@ -23,7 +24,7 @@ from aionode.interfaces.std_msgs.msg import Int32, String, UInt8MultiArray
 from aionode.interfaces.test_msgs.srv import BasicTypes
 from aionode.node import Node
 from aionode.qos import KEEP_ALL_DEPTH, DurabilityPolicy, HistoryPolicy, QoSProfile
-from aionode.transport.rcl import _participants, _transport
+from aionode.transport.rcl import _participants, _transport, _wake
 from aionode.transport.rcl._bindings import view
 from tests.support import fake_rcl
 
@@ -170,14 +171,20 @@ async def test_messages_without_numbers_are_not_taken_for_lost(pair: Pair, rcl: 
     assert reader.stats.lost == 0
 
 
-async def test_no_message_is_asked_for_in_vain(pair: Pair, rcl: FakeRcl) -> None:
+@pytest.mark.parametrize("slice_ns", [10**9, 0], ids=["in one slice", "in a slice each"])
+async def test_no_message_is_asked_for_in_vain(
+    pair: Pair, rcl: FakeRcl, monkeypatch: pytest.MonkeyPatch, slice_ns: int
+) -> None:
     """That would wait for the middleware's lock, which it holds while it receives the next."""
+    monkeypatch.setattr(_wake, "SLICE_NS", slice_ns)
     publisher, reader = await matched(pair)
     await until(lambda: rcl.takes)  # what came before the callback was set
     before = rcl.takes
     await three_arrive(publisher, reader)
     publisher.publish(Int32(data=3))
     assert (await reader.receive()).data == 3
+    for _ in range(8):  # one of these turns would ask
+        await checkpoint()
     assert rcl.takes - before == 4
 
 
