@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any, Final
 from aionode.transport.rcl._state import PREFIX_BYTES
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from aionode.transport.rcl._state import RclState
 
 __all__ = ["count_on_this_host", "lacks_participants"]
@@ -45,15 +47,35 @@ def lacks_participants(state: RclState) -> bool:
     hosts = {prefix[:HOST_BYTES] for prefix in state.own_prefixes}
     if state.rcl is None or not hosts:
         return False
-    with state.watcher:
-        infos: list[dict[str, Any]] = state.rcl.module.rclpy_get_publishers_info_by_topic(
-            state.watcher,
-            DISCOVERY_TOPIC,
-            True,  # its name is that of DDS
-        )
-    known = {bytes(info["endpoint_gid"][:PREFIX_BYTES]) for info in infos}
-    here = sum(prefix[:HOST_BYTES] in hosts for prefix in known)
-    return here < count_on_this_host(state.domain_id)
+    module, asker = state.rcl.module, state.watcher
+    count = count_on_this_host(state.domain_id)
+    return all(
+        sum(prefix[:HOST_BYTES] in hosts for prefix in discovered(module, asker)) < count
+        for discovered in (announced, with_endpoints)
+    )
+
+
+def announced(module: Any, asker: Any) -> set[bytes]:
+    """Return the participants of ROS 2 that have been discovered."""
+    return prefixes(module.rclpy_get_publishers_info_by_topic, asker, DISCOVERY_TOPIC)
+
+
+def with_endpoints(module: Any, asker: Any) -> set[bytes]:
+    """Return all participants that have been discovered with an endpoint; dearer to find."""
+    with asker:
+        topics = module.rclpy_get_topic_names_and_types(asker, True)
+    found: set[bytes] = set()
+    for topic, _ in topics:
+        found |= prefixes(module.rclpy_get_publishers_info_by_topic, asker, topic)
+        found |= prefixes(module.rclpy_get_subscriptions_info_by_topic, asker, topic)
+    return found
+
+
+def prefixes(ask: Callable[..., Any], asker: Any, topic: str) -> set[bytes]:
+    """Return the participants of the endpoints of a topic, which has the name of DDS."""
+    with asker:
+        infos = ask(asker, topic, True)
+    return {bytes(info["endpoint_gid"][:PREFIX_BYTES]) for info in infos}
 
 
 def count_on_this_host(domain_id: int) -> int:

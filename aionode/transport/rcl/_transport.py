@@ -36,10 +36,10 @@ With the 2 s of tools that is more than the 3 s after which Fast DDS announces a
 its first announcements were lost on a busy machine.
 """
 
-LACKING_QUIETS: Final = 2
+LACKING_QUIETS: Final = 3.5
 """For how many of its times of quiet `all_known` waits for other processes of this host.
 
-With the 2 s of tools that is more than the 3 s after which Fast DDS announces them again.
+With the 2 s of tools that is more than twice the 3 s after which Fast DDS announces them again.
 """
 
 MAX_QUIETS: Final = 5
@@ -90,8 +90,8 @@ class RclTransport(Transport):
         """Wait until the graph has not changed for half of `quiet_s`, and no part is missing.
 
         Without another node it waits longer than `quiet_s`. For processes of this host that are
-        not known it waits twice as long after `open`, and with changes that do not end for
-        `MAX_QUIETS` times as long.
+        not known it waits `LACKING_QUIETS` times as long after `open`, and with changes that do
+        not end `MAX_QUIETS` times as long.
         """
         await self._until_quiet(
             quiet_s / 2, quiet_s * ALONE_QUIETS, quiet_s * LACKING_QUIETS, quiet_s * MAX_QUIETS

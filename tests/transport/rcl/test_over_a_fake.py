@@ -325,6 +325,15 @@ async def test_tools_wait_no_longer_than_it_takes_until_all_are_announced(
         assert not await pair.left.context.transports[1].all_known(0.2)
 
 
+async def test_tools_know_processes_that_are_no_nodes_by_their_endpoints(
+    pair: Pair, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Programs of plain DDS say nothing on the topic of ROS 2."""
+    monkeypatch.setattr(_participants, "DISCOVERY_TOPIC", "unused")
+    monkeypatch.setattr(_participants, "count_on_this_host", lambda _: 2)
+    assert await pair.left.context.transports[1].all_known(0.2)
+
+
 def test_participants_of_this_host_are_counted_by_their_ports(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
