@@ -32,6 +32,7 @@ from aionode.transport.rcl._bindings import ByteArray
 
 __all__ = ["FakeRcl", "Reference", "install"]
 
+HOST = b"\x01\x0fme"  # how the gids of Fast DDS on one host begin
 NOTHING = 401  # RCL_RET_SUBSCRIPTION_TAKE_FAILED
 REFUSED = 1  # RCL_RET_ERROR
 
@@ -171,9 +172,14 @@ class ContextHandle(Handle):
 
     domain_id = 0
 
+    @property
+    def prefix(self) -> bytes:
+        """How its gids begin: all participants are on one host."""
+        return HOST + self.pointer.to_bytes(8, "little")
+
     def new_gid(self) -> bytes:
         """Return the gid of a new endpoint."""
-        return self.pointer.to_bytes(12, "little") + self.rcl.next_id().to_bytes(4, "little")
+        return self.prefix + self.rcl.next_id().to_bytes(4, "little")
 
 
 class NodeHandle(Handle):
@@ -399,7 +405,13 @@ class FakeRcl:
         return [(name, sorted(types)) for name, types in found.items()]
 
     def _infos(self, kind: type[Entity]) -> Any:
-        def ask(asker: NodeHandle, topic: str, _: bool) -> list[dict[str, Any]]:
+        def ask(asker: NodeHandle, topic: str, no_mangle: bool) -> list[dict[str, Any]]:
+            if no_mangle and topic == "ros_discovery_info":
+                return [
+                    {"endpoint_gid": list(one.new_gid())}
+                    for one in self.of(ContextHandle)
+                    if one.domain_id == asker.context.domain_id
+                ]
             return [one.info() for one in self._seen(asker, kind) if one.name == topic]
 
         return ask

@@ -47,13 +47,14 @@ class RclGraphWatcher:
     """Keeps the graph of the context up to date.
 
     Attributes:
-        changed_ns: When the middleware last told of a change, by `perf_ns`.
+        started_ns: When it began to watch, by `perf_ns`.
+        changed_ns: When the middleware last told of a change.
         rounds: How many times everything was asked for.
     """
 
     def __init__(self, state: RclState) -> None:
         self._state = state
-        self.changed_ns = 0
+        self.started_ns = self.changed_ns = 0
         self.rounds = 0
         self._thread: threading.Thread | None = None
         self._stop: Any = None  # a guard condition
@@ -87,7 +88,7 @@ class RclGraphWatcher:
         if loop is None:
             return
         context = self._state.context_handle
-        self.changed_ns = perf_ns()
+        self.started_ns = self.changed_ns = perf_ns()
         self._stopping = False
         self._fd = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
         loop.add_reader(self._fd, self._on_change)

@@ -43,6 +43,7 @@ class RclState:
         bulk: The thread that sends large messages.
         watcher: The node that asks for the graph while it is open; hidden from it.
         own_gids: Gids of this context's publishers and clients.
+        own_prefixes: How those begin over Fast DDS: each participant has one.
         malformed: How many malformed messages came on each topic or service.
         refused: How many messages rcl did not send, on each topic.
     """
@@ -57,9 +58,9 @@ class RclState:
         self.bulk = SendThread("aionode-rcl-bulk", self.waker)
         self.watcher: Any = None
         self.own_gids: set[bytes] = set()
+        self.own_prefixes: set[bytes] = set()
         self.malformed: Counter[str] = Counter()
         self.refused: Counter[str] = Counter()
-        self._prefixes: set[bytes] = set()
         self._context: Any = None
         self._nodes: dict[NodeInfo, Any] = {}  # with their handles, None while it is closed
         self._declarations: dict[RclDeclaration, None] = {}
@@ -120,7 +121,7 @@ class RclState:
         self.bulk.close()
         self.waker.close()
         self.own_gids.clear()
-        self._prefixes.clear()
+        self.own_prefixes.clear()
 
     def add(self, declaration: RclDeclaration) -> None:
         """Declare now, or as soon as it is open."""
@@ -180,11 +181,11 @@ class RclState:
         """Record the gid of a publisher or client of this context."""
         self.own_gids.add(gid)
         if self.rcl is not None and self.rcl.is_fast_dds:
-            self._prefixes.add(gid[:PREFIX_BYTES])
+            self.own_prefixes.add(gid[:PREFIX_BYTES])
 
     def is_own(self, gid: bytes) -> bool:
         """Return whether a message or request is of this context: `LocalTransport` has taken it."""
-        return gid in self.own_gids or gid[:PREFIX_BYTES] in self._prefixes
+        return gid in self.own_gids or gid[:PREFIX_BYTES] in self.own_prefixes
 
     def note_refused(self, topic: str) -> None:
         """Log why the last message on a topic was refused; only the first one of each topic."""

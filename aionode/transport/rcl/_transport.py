@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 from aionode.clock import perf_ns
 from aionode.transport.base import Registration, Transport
 from aionode.transport.rcl._graph_watcher import RclGraphWatcher
+from aionode.transport.rcl._participants import lacks_participants
 from aionode.transport.rcl._services import RclRequester, RclServer
 from aionode.transport.rcl._state import RclState
 from aionode.transport.rcl._topics import RclReader, RclWriter
@@ -33,6 +34,12 @@ ALONE_QUIETS: Final = 1.6
 
 With the 2 s of tools that is more than the 3 s after which Fast DDS announces a process again, if
 its first announcements were lost on a busy machine.
+"""
+
+LACKING_QUIETS: Final = 3.5
+"""For how many of its times of quiet `all_known` waits for other processes of this host.
+
+With the 2 s of tools that is more than twice the 3 s after which Fast DDS announces them again.
 """
 
 MAX_QUIETS: Final = 5
@@ -77,30 +84,38 @@ class RclTransport(Transport):
         self._state.open(asyncio.get_running_loop(), graph)
         if self._state.rcl is not None:
             self._watcher.start(self._state.rcl)
-        await self._until_quiet(QUIET_S, KNOWN_S, KNOWN_S)
+        await self._until_quiet(QUIET_S, KNOWN_S, 0, KNOWN_S)
 
     async def all_known(self, quiet_s: float) -> bool:
         """Wait until the graph has not changed for half of `quiet_s`, and no part is missing.
 
-        Without another node it waits longer than `quiet_s`, with changes that do not end for
-        `MAX_QUIETS` times as long.
+        Without another node it waits longer than `quiet_s`. For processes of this host that are
+        not known it waits `LACKING_QUIETS` times as long after `open`, and with changes that do
+        not end `MAX_QUIETS` times as long.
         """
-        await self._until_quiet(quiet_s / 2, quiet_s * ALONE_QUIETS, quiet_s * MAX_QUIETS)
-        return self._watcher.is_complete
+        await self._until_quiet(
+            quiet_s / 2, quiet_s * ALONE_QUIETS, quiet_s * LACKING_QUIETS, quiet_s * MAX_QUIETS
+        )
+        return self._watcher.is_complete and not lacks_participants(self._state)
 
-    async def _until_quiet(self, quiet_s: float, alone_s: float, limit_s: float) -> None:
-        """Wait until nothing has changed for a while, a longer one if no others are known."""
-        watcher = self._watcher
+    async def _until_quiet(
+        self, quiet_s: float, alone_s: float, lacking_s: float, limit_s: float
+    ) -> None:
+        """Wait until nothing has changed for a while, a longer one if something is missing."""
         ended = asyncio.get_running_loop().create_future()
         with suppress(TimeoutError):
             async with asyncio.timeout(limit_s):
-                while True:
-                    enough_s = quiet_s if watcher.has_foreign else alone_s
-                    if watcher.is_settled and perf_ns() - watcher.changed_ns >= enough_s * 1e9:
-                        return
+                while not self._is_quiet(quiet_s, alone_s, lacking_s):
                     with suppress(TimeoutError):
                         async with asyncio.timeout(quiet_s / 2):
                             await asyncio.shield(ended)
+
+    def _is_quiet(self, quiet_s: float, alone_s: float, lacking_s: float) -> bool:
+        watcher, now_ns = self._watcher, perf_ns()
+        enough_s = quiet_s if watcher.has_foreign else alone_s
+        if not watcher.is_settled or now_ns - watcher.changed_ns < enough_s * 1e9:
+            return False
+        return now_ns - watcher.started_ns >= lacking_s * 1e9 or not lacks_participants(self._state)
 
     async def close(self) -> None:
         """Withdraw everything and leave the domain; what a thread is sending has 0.8 s."""

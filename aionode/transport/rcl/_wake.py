@@ -83,8 +83,8 @@ class Wake:
     def _go_on(self, left: int) -> None:
         """Take so many more from the next turn of the loop on."""
         if self._fd >= 0:
-            self._left += left
-            os.eventfd_write(self._fd, 1)
+            self._left += left - 1
+            os.eventfd_write(self._fd, 1)  # counts as one
 
     def close(self) -> None:
         """Call `take` never again. To be called before the entity is destroyed."""

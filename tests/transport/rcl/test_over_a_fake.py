@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import socket
 from contextlib import AsyncExitStack
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from aionode._concurrency import checkpoint
 from aionode.context import Context
 from aionode.endpoints.publisher import Publisher
 from aionode.endpoints.subscription import Subscription
@@ -22,6 +24,7 @@ from aionode.interfaces.std_msgs.msg import Int32, String, UInt8MultiArray
 from aionode.interfaces.test_msgs.srv import BasicTypes
 from aionode.node import Node
 from aionode.qos import KEEP_ALL_DEPTH, DurabilityPolicy, HistoryPolicy, QoSProfile
+from aionode.transport.rcl import _participants, _transport, _wake
 from aionode.transport.rcl._bindings import view
 from tests.support import fake_rcl
 
@@ -168,14 +171,20 @@ async def test_messages_without_numbers_are_not_taken_for_lost(pair: Pair, rcl: 
     assert reader.stats.lost == 0
 
 
-async def test_no_message_is_asked_for_in_vain(pair: Pair, rcl: FakeRcl) -> None:
+@pytest.mark.parametrize("slice_ns", [10**9, 0], ids=["in one slice", "in a slice each"])
+async def test_no_message_is_asked_for_in_vain(
+    pair: Pair, rcl: FakeRcl, monkeypatch: pytest.MonkeyPatch, slice_ns: int
+) -> None:
     """That would wait for the middleware's lock, which it holds while it receives the next."""
+    monkeypatch.setattr(_wake, "SLICE_NS", slice_ns)
     publisher, reader = await matched(pair)
     await until(lambda: rcl.takes)  # what came before the callback was set
     before = rcl.takes
     await three_arrive(publisher, reader)
     publisher.publish(Int32(data=3))
     assert (await reader.receive()).data == 3
+    for _ in range(8):  # one of these turns would ask
+        await checkpoint()
     assert rcl.takes - before == 4
 
 
@@ -293,6 +302,49 @@ async def test_tools_wait_for_what_is_missing(pair: Pair, rcl: FakeRcl) -> None:
     await until(lambda: rcl.silent < 3)
     assert await pair.left.context.transports[1].all_known(0.2)
     assert pair.left.graph.count(EndpointKind.SERVER, "/add")
+
+
+async def test_tools_wait_for_processes_of_this_host_that_are_not_known(
+    pair: Pair, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Fast DDS tells of them when they announce themselves again."""
+    counts = iter((3, 3, 2, 2))
+    monkeypatch.setattr(_participants, "count_on_this_host", lambda _: next(counts))
+    monkeypatch.setattr(_transport, "LACKING_QUIETS", 1000)
+    assert await pair.left.context.transports[1].all_known(0.2)
+    assert not list(counts)
+
+
+async def test_tools_wait_no_longer_than_it_takes_until_all_are_announced(
+    pair: Pair, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A process that is frozen has a port as well; a command warns then."""
+    monkeypatch.setattr(_participants, "count_on_this_host", lambda _: 3)
+    monkeypatch.setattr(_transport, "MAX_QUIETS", 1000)
+    async with asyncio.timeout(10):
+        assert not await pair.left.context.transports[1].all_known(0.2)
+
+
+async def test_tools_know_processes_that_are_no_nodes_by_their_endpoints(
+    pair: Pair, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Programs of plain DDS say nothing on the topic of ROS 2."""
+    monkeypatch.setattr(_participants, "DISCOVERY_TOPIC", "unused")
+    monkeypatch.setattr(_participants, "count_on_this_host", lambda _: 2)
+    assert await pair.left.context.transports[1].all_known(0.2)
+
+
+def test_participants_of_this_host_are_counted_by_their_ports(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Those for discovery; the one after each is for messages."""
+    monkeypatch.setattr(_participants, "PARTICIPANTS", 1)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as bound:
+        bound.bind(("127.0.0.1", 0))
+        port = bound.getsockname()[1]
+        monkeypatch.setattr(_participants, "FIRST_PORT", port - _participants.DOMAIN_PORTS)
+        assert _participants.count_on_this_host(1) == 1
+    assert _participants.count_on_this_host(1) == 0
 
 
 async def test_nodes_of_one_name_are_told_apart(pair: Pair) -> None:
