@@ -8,7 +8,6 @@ import ctypes
 import dataclasses
 import math
 import os
-import secrets
 import threading
 import weakref
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, TypeVar
@@ -24,6 +23,7 @@ from aionode.errors import ConfigurationError, EntityDestroyedError, ForkedProce
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from aionode.logging import get_logger
 from aionode.message import type_name
+from aionode.transport._local_sessions import new_participant
 from aionode.transport._zenoh_config import network_from, unheard_middleware
 from aionode.transport.base import Registration, Transport
 from aionode.transport.local import LocalTransport
@@ -159,8 +159,7 @@ class Context:
         self._spin_ns = int(spin_us * 1e3)
         self._stop_spinning: Callable[[], None] | None = None
         self.ros_distro = choose_distribution(os.environ, ros_distro)
-        # Zenoh writes ids without leading zeros, and all peers must see the same text.
-        self.participant = secrets.token_hex(16).lstrip("0") or "1"
+        self.participant = new_participant()
         self.graph = Graph()
         MismatchReport(self.graph, self.participant)
         DuplicateReport(self.graph, self.participant)

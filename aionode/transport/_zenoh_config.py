@@ -3,9 +3,10 @@
 Pure functions; nothing is connected here, and zenoh is not imported.
 
 Without configuration the processes of one machine find each other over loopback: each tries to
-listen on one of three meeting ports, and dials the others and the port of a ROS 2 router. Gossip
-then introduces all of them to each other, and they connect directly. If other programs hold all
-three ports, there are three spare ones.
+listen on one of three meeting ports, and dials those that are listed (`_local_sessions`), other
+listeners on these ports, and the port of a ROS 2 router. Where the machine lists nothing, each
+dials the meeting ports, and gossip introduces all of them to each other; if other programs hold all
+three, there are three spare ones.
 """
 
 from __future__ import annotations
@@ -23,10 +24,13 @@ __all__ = [
     "MEETING_PORTS",
     "ROUTER_PORT",
     "DiscoveryRange",
+    "Neighbours",
     "Network",
     "introducers",
     "is_near",
+    "listening_address",
     "look_settings",
+    "near",
     "network_from",
     "peer_endpoints",
     "probed_ports",
@@ -82,6 +86,12 @@ reads (zenoh 1.10). It sees no token of that peer, and the peer refuses further 
 
 FAR_OPEN_MS: Final = 3_000
 """The same where other machines may be dialled: `close` waits for one that is switched off."""
+
+INTRODUCERS: Final = 8
+"""How many of the sessions that a machine lists tell all others by gossip of sessions that are not
+listed, such as those of other programs. One is too few: Zenoh drops what it hears on a connection
+that it is just taking into use. With all of them a hundred would send half a million messages.
+"""
 
 RETRY: Final = {"period_init_ms": 100, "period_max_ms": 2000, "period_increase_factor": 2}
 """How often what does not answer is dialled again."""
@@ -147,6 +157,19 @@ class Network:
         if self.discovery_range is DiscoveryRange.OFF:
             return ()
         return tuple(endpoint for endpoint in self.static_peers if is_near(endpoint))
+
+
+@dataclass(frozen=True, slots=True)
+class Neighbours:
+    """The other sessions of a machine that lists them, as one sees them that is about to open.
+
+    Attributes:
+        port: Where it will listen itself.
+        others: Where it dials others.
+    """
+
+    port: int
+    others: tuple[int, ...]
 
 
 def network_from(
@@ -345,26 +368,39 @@ def look_settings(endpoint: str) -> dict[str, Any]:
     }
 
 
-def session_settings(network: Network, taken: Iterable[int]) -> dict[str, Any]:
+def session_settings(
+    network: Network, taken: Iterable[int], neighbours: Neighbours | None = None
+) -> dict[str, Any]:
     """Return the settings of a session, by key path, without those of `network.overrides`.
 
     Args:
         network: The settings of the context.
         taken: Those of its meeting ports on which it cannot listen.
+        neighbours: What this machine lists; None if it lists nothing.
     """
     if network.config_file is not None:
         return {}
     taken = set(taken)
     mine = next((p for p in network.meeting_ports if p not in taken), None)
-    near = network.discovery_range in (DiscoveryRange.LOCALHOST, DiscoveryRange.SUBNET)
     off = network.discovery_range is DiscoveryRange.OFF
     subnet = network.discovery_range is DiscoveryRange.SUBNET
-    address = EVERYWHERE if subnet else LOOPBACK
-    listen = [mine, 0] if near and mine is not None else [0]
-    dial = [p for p in probed_ports(network) if p != mine]
+    gossip: dict[str, Any] = {"scouting/gossip/enabled": not off}
+    if neighbours is not None:
+        listen = [neighbours.port]
+        dial = [*neighbours.others, network.router_port]
+        introduces = (
+            len(neighbours.others) < INTRODUCERS or neighbours.port in network.meeting_ports
+        )
+        if not (introduces or subnet or network.near_peers):
+            gossip["scouting/gossip/target"] = {"router": ["router"], "peer": ["router"]}
+    else:
+        listen = [mine, 0] if near(network) and mine is not None else [0]
+        dial = [p for p in probed_ports(network) if p != mine]
     return {
         "mode": "peer",
-        "listen/endpoints": [] if off else [f"tcp/{address}:{p}" for p in listen],
+        "listen/endpoints": []
+        if off
+        else [f"tcp/{listening_address(network)}:{p}" for p in listen],
         # A lost race for the port is no error. Retrying would make close() wait for the port.
         "listen/timeout_ms": 0,
         "listen/exit_on_failure": False,
@@ -388,7 +424,7 @@ def session_settings(network: Network, taken: Iterable[int]) -> dict[str, Any]:
         "transport/unicast/open_timeout": FAR_OPEN_MS if network.may_reach_far else OPEN_MS,
         "transport/unicast/accept_timeout": OPEN_MS,
         "scouting/multicast/enabled": subnet,
-        "scouting/gossip/enabled": not off,
+        **gossip,
         # As rmw_zenoh: if both dialled, Zenoh might keep neither of the two connections.
         "scouting/gossip/autoconnect_strategy": {
             "peer": {"to_router": "always", "to_peer": "greater-zid"}
@@ -398,6 +434,19 @@ def session_settings(network: Network, taken: Iterable[int]) -> dict[str, Any]:
         # Histories are fetched with this timeout; every other query says its own.
         "queries_default_timeout": 600_000,
     }
+
+
+def near(network: Network) -> bool:
+    """Return whether a session looks for others of its machine by itself."""
+    return network.config_file is None and network.discovery_range in (
+        DiscoveryRange.LOCALHOST,
+        DiscoveryRange.SUBNET,
+    )
+
+
+def listening_address(network: Network) -> str:
+    """Return where a session listens: beyond loopback on request only."""
+    return EVERYWHERE if network.discovery_range is DiscoveryRange.SUBNET else LOOPBACK
 
 
 def router_settings(

@@ -10,9 +10,11 @@ import zenoh  # noqa: TID251  # asks Zenoh whether it knows the settings
 
 from aionode.errors import ConfigurationError
 from aionode.transport._zenoh_config import (
+    INTRODUCERS,
     MEETING_PORTS,
     ROUTER_PORT,
     DiscoveryRange,
+    Neighbours,
     Network,
     is_near,
     network_from,
@@ -149,6 +151,46 @@ def test_meeting_ports_beyond_three_are_spare() -> None:
 def settings(network: Network, *answering: int) -> dict[str, Any]:
     """Return the settings when other processes listen on these ports."""
     return session_settings(network, answering)
+
+
+def test_a_session_dials_those_that_are_listed_and_listens_at_one_port() -> None:
+    """A second way to the same session would be a connection that fails for ever."""
+    found = session_settings(Network(), (), Neighbours(H1, (40001, 40002)))
+
+    assert found["listen/endpoints"] == [f"tcp/127.0.0.1:{H1}"]
+    assert found["connect/endpoints"] == [
+        f"tcp/127.0.0.1:{port}" for port in (40001, 40002, ROUTER_PORT)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("network", "port", "introduces"),
+    [
+        (Network(), 40000, False),
+        (Network(), H2, True),
+        (Network(discovery_range=DiscoveryRange.SUBNET), 40000, True),
+        (Network(static_peers=("tcp/127.0.0.1:7000",)), 40000, True),
+        (Network(static_peers=("tcp/10.0.0.7:7000",)), 40000, False),
+    ],
+    ids=["listed", "at a meeting port", "subnet", "near peer", "far peer"],
+)
+def test_a_listed_session_introduces_peers_only_if_some_cannot_be_listed(
+    network: Network, port: int, *, introduces: bool
+) -> None:
+    """Each would tell all others of each new one; routers introduce as those of ROS do."""
+    others = tuple(range(41000, 41000 + INTRODUCERS))
+    found = session_settings(network, (), Neighbours(port, others))
+
+    target = found.get("scouting/gossip/target", {"peer": ["router", "peer"]})
+    assert ("peer" in target["peer"]) is introduces
+    assert "router" in target["peer"]
+
+
+def test_the_first_sessions_introduce_others_wherever_they_listen() -> None:
+    """More than one: what Zenoh hears on a connection that is being made is lost."""
+    few = tuple(range(41000, 41000 + INTRODUCERS - 1))
+
+    assert "scouting/gossip/target" not in session_settings(Network(), (), Neighbours(40000, few))
 
 
 def test_the_first_process_takes_the_first_meeting_port_and_dials_the_others() -> None:

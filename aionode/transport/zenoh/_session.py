@@ -12,17 +12,19 @@ import threading
 from contextlib import ExitStack, closing, contextmanager, suppress
 from dataclasses import replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
 
 import zenoh
 
 from aionode.clock import perf_ns
 from aionode.errors import ConfigurationError, TransportError
+from aionode.transport._local_sessions import announce, listed, reserve_port
 from aionode.transport._send_thread import start_thread
 from aionode.transport._zenoh_config import (
-    EVERYWHERE,
     LOOPBACK,
-    DiscoveryRange,
+    Neighbours,
+    listening_address,
+    near,
     network_from,
     probed_ports,
     router_settings,
@@ -60,11 +62,14 @@ A process of aionode may take longer where many start at once. Other programs mo
 the connection at once.
 """
 
-TURN_S = 1.0
-"""How long this process waits for its turn to open a session; each turn takes 10 ms."""
+TURN_S = 3.0
+"""How long this process waits for its turn, each of which takes one to ten milliseconds."""
 
 TURN_POLL_S = 0.002
-"""The polling interval for the turn: in a thread, and only while many start at once."""
+"""The first polling interval for the turn: in a thread, and only while many start at once."""
+
+LAST_POLL_S = 0.03
+"""The longest one: the more wait, the longer each does, and one of them still looks soon."""
 
 FIRST_LINK_S = 1.0
 """How long `open` waits for the first peer that accepts connections; a frozen one never answers."""
@@ -73,7 +78,7 @@ NEXT_LINK_S = 0.3
 """How long it waits for each further one."""
 
 QUIET_S = 0.015
-"""All peers are taken to be connected after so long without a new one: gossip is faster."""
+"""All peers are taken to be connected after so long without a new one."""
 
 CLOSE_S = 0.8
 """How long `close` may take. With a frozen peer it goes on in a thread."""
@@ -162,8 +167,7 @@ def meeting(network: Network, answering: set[int]) -> tuple[Network, set[int]]:
         answering: Those of its ports that accept a connection; if Zenoh answers at none of the
             meeting ports, these are removed, and spare ones where it does are added.
     """
-    subnet = network.discovery_range is DiscoveryRange.SUBNET
-    address = EVERYWHERE if subnet else LOOPBACK
+    address = listening_address(network)
     taken = {port for port in network.meeting_ports if not can_listen(address, port)}
     if taken < set(network.meeting_ports):
         return network, taken
@@ -232,19 +236,22 @@ def one_at_a_time(port: int | None) -> Iterator[None]:
     """Let the processes of this machine look for a free meeting port, and take it, in turn.
 
     Two that look at the same moment would both choose the first one; the loser would have none, and
-    not dial the winner either. The process that holds the UDP port of this number has the turn:
-    unlike a lock file it belongs to no user, and ends with its process.
+    not dial the winner either. Two that list each other would dial each other. The process that
+    holds the UDP port of this number has the turn: unlike a lock file it belongs to no user, and
+    ends with its process.
     """
     if port is None:
         yield
         return
     with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as turn:
         ends_ns = perf_ns() + int(TURN_S * 1e9)
+        poll_s = TURN_POLL_S
         while perf_ns() < ends_ns:
             with suppress(OSError):
                 turn.bind((LOOPBACK, port))
                 break
-            threading.Event().wait(TURN_POLL_S)
+            threading.Event().wait(poll_s)
+            poll_s = min(poll_s * 1.5, LAST_POLL_S)
         yield
 
 
@@ -288,32 +295,84 @@ def load_config(
     return config
 
 
-async def open_session(network: Network, participant: str) -> tuple[zenoh.Session, int]:
-    """Open a session; return it and the number of peers that are about to be connected.
+class Opened(NamedTuple):
+    """A session, and what comes with it.
+
+    Attributes:
+        session: The session.
+        expected: How many peers are about to be connected.
+        presence: What has it listed on this machine, until it is closed; None if nothing does.
+    """
+
+    session: zenoh.Session
+    expected: int
+    presence: socket.socket | None
+
+    def close(self) -> None:
+        """Close both."""
+        if self.presence is not None:
+            self.presence.close()
+        self.session.close()
+
+
+async def open_session(network: Network, participant: str) -> Opened:
+    """Open a session.
 
     Raises:
         ConfigurationError: the configuration cannot be used.
         TransportError: Zenoh cannot open a session.
     """
 
-    def work() -> tuple[zenoh.Session, int]:
-        ports = probed_ports(network)
+    def work() -> Opened:
         try:
-            with one_at_a_time(network.meeting_ports[0] if len(ports) > 1 else None):
-                answering = set(answering_ports(ports))
-                used, taken = meeting(network, answering) if len(ports) > 1 else (network, set())
-                settings = session_settings(used, taken)
-                session = zenoh.open(load_config(network, settings, participant))
+            if near(network) and listed(network.meeting_ports[0]) is not None:
+                return open_listed(network, participant)
+            return open_unlisted(network, participant)
         except zenoh.ZError as error:
             raise TransportError(
                 f"Zenoh: no session could be opened: {reason(error)}; look at "
                 "ZENOH_SESSION_CONFIG_URI, ZENOH_CONFIG_OVERRIDE and Context(config=...)"
             ) from error
-        # Configured peers may be absent; one of them is waited for.
-        configured = bool(network.near_peers or network.config_file)
-        return session, len(answering) + configured
 
-    return await run_in_own_thread(work, late=lambda opened: opened[0].close())
+    return await run_in_own_thread(work, late=Opened.close)
+
+
+def open_listed(network: Network, participant: str) -> Opened:
+    """Open a session on a machine that lists its sessions: it dials those that are there."""
+    group = network.meeting_ports[0]
+    address = listening_address(network)
+    with closing(reserve_port(address)) as reserved, ExitStack() as failed:
+        with one_at_a_time(group):
+            there = set((listed(group) or {}).values())
+            free = (p for p in network.meeting_ports if p not in there and can_listen(address, p))
+            mine = next(free, None)
+            port = mine or reserved.getsockname()[1]
+            presence = failed.enter_context(announce(group, participant, port))
+            # Listed again: one that did not get its turn may have come meanwhile.
+            others = {p for zid, p in (listed(group) or {}).items() if zid != participant}
+        # Other programs may listen there, or processes of aionode that cannot be listed.
+        unlisted = set(
+            answering_ports(p for p in probed_ports(network) if p not in {mine, *others})
+        )
+        dialled = sorted(others | (unlisted & set(network.meeting_ports)))
+        settings = session_settings(network, (), Neighbours(port, tuple(dialled)))
+        session = zenoh.open(load_config(network, settings, participant))
+        failed.pop_all()
+    met = others & set(network.meeting_ports)
+    return Opened(session, len(met) + len(unlisted) + bool(network.near_peers), presence)
+
+
+def open_unlisted(network: Network, participant: str) -> Opened:
+    """Open a session that meets others at ports known to all, or is told where they are."""
+    ports = probed_ports(network)
+    with one_at_a_time(network.meeting_ports[0] if near(network) else None):
+        answering = set(answering_ports(ports))
+        used, taken = meeting(network, answering) if near(network) else (network, set())
+        settings = session_settings(used, taken)
+        session = zenoh.open(load_config(network, settings, participant))
+    # Configured peers may be absent; one of them is waited for.
+    configured = bool(network.near_peers or network.config_file)
+    return Opened(session, len(answering) + configured, None)
 
 
 async def open_router(listen: Iterable[str], connect: Iterable[str] = ()) -> zenoh.Session:
@@ -380,7 +439,7 @@ class ConnectionWatcher:
         self._listener.undeclare()
 
     async def wait_until_connected(self, expected: int) -> None:
-        """Wait until `expected` peers, and those that gossip names, are connected.
+        """Wait until `expected` peers, and others that are dialled meanwhile, are connected.
 
         Give up if they do not connect in time, after about a second.
         """
@@ -390,9 +449,10 @@ class ConnectionWatcher:
             while (count := self._count()) < expected:
                 async with asyncio.timeout(NEXT_LINK_S if count else FIRST_LINK_S):
                     await self._next()
-            for _ in range(expected + 8):
-                async with asyncio.timeout(QUIET_S):
-                    await self._next()
+            async with asyncio.timeout(FIRST_LINK_S):
+                while True:
+                    async with asyncio.timeout(QUIET_S):
+                        await self._next()
         except TimeoutError:
             return
 

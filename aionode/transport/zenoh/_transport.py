@@ -28,6 +28,7 @@ from aionode.transport.zenoh._sockets import SocketOptions, arrived_bytes, cut_s
 from aionode.transport.zenoh._subscription import ZenohReader
 
 if TYPE_CHECKING:
+    import socket
     from collections import Counter
 
     import zenoh
@@ -88,6 +89,7 @@ class ZenohTransport(Transport):
         self._recovery = Recovery(self._state, network, self._watcher.check)
         self._local_router = LocalRouter(self._state, network)
         self._socket_options: SocketOptions | None = None
+        self._presence: socket.socket | None = None  # in the list of this machine's sessions
 
     def __repr__(self) -> str:
         state = "closed" if self._state.session is None else "open"
@@ -114,7 +116,9 @@ class ZenohTransport(Transport):
         """Connect; return when the running peers are known, as far as that can be determined."""
         try:
             await self._local_router.open()
-            session, expected = await open_session(self.network, self._state.participant)
+            session, expected, self._presence = await open_session(
+                self.network, self._state.participant
+            )
         except BaseException:
             await asyncio.shield(self._local_router.close())
             raise
@@ -223,6 +227,7 @@ class ZenohTransport(Transport):
         """Undeclare everything and disconnect, within a second after `SessionState.flush`."""
         state = self._state
         self._answered = None
+        self.abandon()  # nobody new dials this session
         await state.flush()
         if self._socket_options is not None:
             self._socket_options.close()
@@ -237,6 +242,12 @@ class ZenohTransport(Transport):
         await self._router_matching.close()
         await self._local_router.close()
         state.waker.close()
+
+    def abandon(self) -> None:
+        """Leave the place in the list of this machine's sessions."""
+        if self._presence is not None:
+            self._presence.close()
+            self._presence = None
 
     def create_node(self, node: NodeInfo) -> Registration:
         """Declare a node."""

@@ -8,7 +8,7 @@ import os
 import socket
 import threading
 from collections.abc import Iterable
-from contextlib import ExitStack, closing
+from contextlib import AsyncExitStack, ExitStack, closing
 from pathlib import Path
 
 import pytest
@@ -94,10 +94,16 @@ async def both_seen(node: Node) -> None:
         await node.graph.until(lambda: {"one", "two"} == {n.name for n in node.graph.nodes()})
 
 
+def list_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have sessions meet as on systems that do not list them."""
+    monkeypatch.setattr("aionode.transport._local_sessions.unix_sockets", lambda: None)
+
+
 async def test_processes_meet_elsewhere_if_others_have_all_their_ports(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """Programs that know nothing of aionode may use any port."""
+    list_nothing(monkeypatch)
     ports = meeting_ports(monkeypatch, 6)
     with ExitStack() as stack, caplog.at_level(logging.INFO, "aionode.transport.zenoh"):
         held(stack, ports[:3])
@@ -112,6 +118,7 @@ async def test_one_line_says_that_processes_cannot_meet(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """With what was found, and what to do."""
+    list_nothing(monkeypatch)
     ports = meeting_ports(monkeypatch, 3)
     with ExitStack() as stack, caplog.at_level(logging.INFO, "aionode.transport.zenoh"):
         held(stack, ports)
@@ -122,6 +129,38 @@ async def test_one_line_says_that_processes_cannot_meet(
     assert level == logging.WARNING
     assert ", ".join(map(str, ports)) in text
     assert "AIONODE_MEETING_PORTS" in text
+
+
+async def test_listed_processes_meet_whatever_ports_others_have(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Where the machine lists them they need no port that all know."""
+    ports = meeting_ports(monkeypatch, 3)
+    with ExitStack() as stack, caplog.at_level(logging.INFO, "aionode.transport.zenoh"):
+        held(stack, ports)
+        async with quiet_node("one") as one, quiet_node("two") as two:
+            for node in (one, two):
+                await both_seen(node)
+
+    assert sayings(caplog) == []
+
+
+@pytest.mark.parametrize("place", [0, 4, 5], ids=["first", "in between", "last"])
+async def test_a_process_that_cannot_list_or_be_listed_meets_all_others(
+    monkeypatch: pytest.MonkeyPatch, place: int
+) -> None:
+    """Those at the meeting ports introduce it, also to those that have no such port."""
+    names = [f"n{number}" for number in range(6)]
+    async with AsyncExitStack() as stack:
+        nodes = []
+        for number, name in enumerate(names):
+            with monkeypatch.context() as patch:
+                if number == place:
+                    list_nothing(patch)
+                nodes.append(await stack.enter_async_context(quiet_node(name)))
+        for node in nodes:
+            async with asyncio.timeout(20):
+                await node.graph.until(lambda n=node: {i.name for i in n.graph.nodes()} >= {*names})
 
 
 @pytest.mark.parametrize("listening", [True, False], ids=["listening", "bound"])

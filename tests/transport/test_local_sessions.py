@@ -1,0 +1,113 @@
+"""The list of a machine's sessions: who is in it, and for how long."""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from aionode.transport import _local_sessions
+from aionode.transport._local_sessions import announce, listed, new_participant, reserve_port
+
+pytestmark = pytest.mark.skipif(
+    not sys.platform.startswith("linux"), reason="only Linux has abstract names"
+)
+
+
+@pytest.fixture
+def group() -> int:
+    """Return a number that no other test has; it need not be a port."""
+    return 100_000 + os.getpid()
+
+
+def test_a_session_is_listed_with_its_port_until_it_is_closed(group: int) -> None:
+    """Also when its process is killed, which closes everything."""
+    with closing(announce(group, "f1", 4711)), closing(announce(group, "f2", 4712)):
+        assert listed(group) == {"f1": 4711, "f2": 4712}
+
+    assert listed(group) == {}
+
+
+def test_sessions_of_other_groups_are_not_listed(group: int) -> None:
+    """Their first port may even begin alike."""
+    with closing(announce(group * 10, "f1", 4711)):
+        assert listed(group) == {}
+
+
+def test_a_session_is_not_listed_any_more_when_its_process_was_killed(group: int) -> None:
+    """Nothing is left to be removed."""
+    program = (
+        "from aionode.transport._local_sessions import announce\n"
+        f"presence = announce({group}, 'f1', 4711)\n"
+        "print('there', flush=True)\n"
+        "input()\n"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "there\n"
+        assert listed(group) == {"f1": 4711}
+        process.kill()
+        process.wait()
+
+    assert listed(group) == {}
+
+
+@pytest.mark.parametrize("name", ["f1", "f1/", "f1/x", "f1/-1", "f1/0", "f1/65536", "f1/٣", "/"])
+def test_names_without_a_port_are_passed_over(group: int, name: str) -> None:
+    """Any program may bind any name."""
+    with closing(socket.socket(socket.AF_UNIX)) as one:
+        one.bind(f"\0aionode/{group}/{name}".encode())
+
+        assert listed(group) == {}
+
+
+def test_nobody_can_connect_to_the_socket_of_a_listed_session(group: int) -> None:
+    """Whatever user they are."""
+    with (
+        closing(announce(group, "f1", 4711)),
+        closing(socket.socket(socket.AF_UNIX)) as one,
+        pytest.raises(ConnectionRefusedError),
+    ):
+        one.connect(f"\0aionode/{group}/f1/4711")
+
+
+def test_there_is_no_list_where_the_system_hides_it(
+    group: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """As a sandbox may; gossip is used instead, and all others dial such a session."""
+    monkeypatch.setattr(_local_sessions, "UNIX_SOCKETS", tmp_path / "hidden")
+
+    assert listed(group) is None
+    assert new_participant()[0] == "1"
+
+
+def test_later_ids_are_greater_and_have_no_leading_zero() -> None:
+    """Of two sessions that gossip introduces, Zenoh has the one with the greater id dial."""
+    early = [new_participant() for _ in range(3)]
+    while (late := new_participant())[:13] == early[-1][:13]:
+        pass
+
+    assert max(early) < late
+    assert {len(one) for one in (*early, late)} == {32}
+    assert {one[0] for one in (*early, late)} == {"f"}
+
+
+def test_a_reserved_port_can_be_listened_on_and_is_given_to_nobody_else() -> None:
+    """Zenoh takes it before the reservation ends."""
+    with closing(reserve_port("127.0.0.1")) as reserved, closing(socket.socket()) as zenoh:
+        port = reserved.getsockname()[1]
+        zenoh.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        zenoh.bind(("127.0.0.1", port))
+        zenoh.listen()
+
+        with closing(socket.create_connection(("127.0.0.1", port))):
+            pass
+        with closing(reserve_port("127.0.0.1")) as other:
+            assert other.getsockname()[1] != port
