@@ -87,7 +87,7 @@ reads (zenoh 1.10). It sees no token of that peer, and the peer refuses further 
 FAR_OPEN_MS: Final = 3_000
 """The same where other machines may be dialled: `close` waits for one that is switched off."""
 
-INTRODUCERS: Final = 8
+INTRODUCERS: Final = 4
 """How many of the sessions that a machine lists tell all others by gossip of sessions that are not
 listed, such as those of other programs. One is too few: Zenoh drops what it hears on a connection
 that it is just taking into use. With all of them a hundred would send half a million messages.
