@@ -9,6 +9,7 @@ import socket
 import threading
 from collections.abc import Iterable
 from contextlib import AsyncExitStack, ExitStack, closing
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -88,10 +89,15 @@ def test_a_port_that_speaks_zenoh_is_told_from_others() -> None:
         assert speaking_ports([silent]) == set()
 
 
+def knows(node: Node, names: Iterable[str]) -> bool:
+    """Return whether a node knows just the nodes of these names."""
+    return {*names} == {other.name for other in node.graph.nodes()}
+
+
 async def both_seen(node: Node) -> None:
     """Wait until a node sees both of a test."""
     async with asyncio.timeout(20):
-        await node.graph.until(lambda: {"one", "two"} == {n.name for n in node.graph.nodes()})
+        await node.graph.until(partial(knows, node, ("one", "two")))
 
 
 def list_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -160,7 +166,7 @@ async def test_a_process_that_cannot_list_or_be_listed_meets_all_others(
                 nodes.append(await stack.enter_async_context(quiet_node(name)))
         for node in nodes:
             async with asyncio.timeout(20):
-                await node.graph.until(lambda n=node: {i.name for i in n.graph.nodes()} >= {*names})
+                await node.graph.until(partial(knows, node, names))
 
 
 @pytest.mark.parametrize("listening", [True, False], ids=["listening", "bound"])
