@@ -410,19 +410,22 @@ async def close_session(session: zenoh.Session) -> None:
     """Close a session; if that takes too long, it goes on in a thread."""
 
     def work() -> None:
+        done = threading.Event()
+        # Connections may have begun after `cut_stuck`, and others begin meanwhile.
+        cutting = threading.Thread(target=cut_unanswered, args=(done,), name="aionode-zenoh")
+        is_cutting = start_thread(cutting)
         try:
             session.close()
         except zenoh.ZError as error:
             logger.debug("session: not closed properly: %s", error)
+        finally:
+            done.set()
+            if is_cutting:
+                cutting.join()
 
-    cutting = asyncio.create_task(cut_unanswered())  # one may have begun after `cut_stuck`
-    try:
+    with suppress(TimeoutError):
         async with asyncio.timeout(CLOSE_S):
             await run_in_own_thread(work)
-    except TimeoutError:
-        return
-    finally:
-        cutting.cancel()
 
 
 class ConnectionWatcher:

@@ -278,16 +278,14 @@ def cut(peers: set[str]) -> None:
                 one.shutdown(socket.SHUT_RDWR)
 
 
-async def cut_unanswered() -> None:
-    """Cut connections that are being made with peers that do not answer, until cancelled.
+def cut_unanswered(done: threading.Event) -> None:
+    """Cut connections that are being made with peers that do not answer, until `done` is set.
 
-    A session that is being closed waits for each of them, for ten seconds.
+    A session that is being closed waits for each of them, for ten seconds, and dials those that it
+    has lost again meanwhile. Runs in a thread.
     """
     silent: set[str] = set()
-    while sys.platform.startswith("linux"):
-        with suppress(TimeoutError):
-            async with asyncio.timeout(STUCK_S):
-                await asyncio.get_running_loop().create_future()
+    while sys.platform.startswith("linux") and not done.wait(STUCK_S):
         before, silent = silent, unanswered()
         cut(before & silent)
 

@@ -7,6 +7,7 @@ import os
 import socket
 import struct
 import sys
+import threading
 from contextlib import AsyncExitStack, ExitStack
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,7 @@ import zenoh  # noqa: TID251  # type of sessions
 
 from aionode._concurrency import checkpoint
 from aionode.context import Context
-from aionode.transport.zenoh import _sockets, _transport
+from aionode.transport.zenoh import _session, _sockets, _transport
 from aionode.transport.zenoh._session import close_session, open_router
 from tests.support.peers import quiet_node, two_contexts
 from tests.support.waiting import until
@@ -165,6 +166,28 @@ def test_a_descriptor_whose_number_is_used_again_is_new() -> None:
 
 async def not_seen(_: zenoh.Session) -> None:
     """Find no connection to cut, as if it began only while the session is being closed."""
+
+
+async def test_a_close_that_goes_on_in_a_thread_does_not_wait_for_a_frozen_peer(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Python waits for that thread at exit."""
+    monkeypatch.setattr(_transport, "cut_stuck", not_seen)
+    monkeypatch.setattr(_session, "CLOSE_S", 0)
+    before = set(threading.enumerate())
+    with socket.socket() as silent:
+        silent.bind(("127.0.0.1", 0))
+        silent.listen()
+        dial = {"connect/endpoints": [f"tcp/127.0.0.1:{silent.getsockname()[1]}"]}
+        async with Context(config=dial), asyncio.timeout(20):
+            while not await asyncio.to_thread(_sockets.unanswered):
+                await checkpoint()
+        began_s = asyncio.get_running_loop().time()
+        async with asyncio.timeout(20):
+            while any(one.name == "aionode-zenoh" for one in {*threading.enumerate()} - before):
+                await checkpoint()
+
+        assert asyncio.get_running_loop().time() - began_s < 1.5  # Zenoh would wait for 3 s
 
 
 @pytest.mark.parametrize("begins", ["before", "meanwhile"])
