@@ -1009,19 +1009,22 @@ def callbacks_of_managed_nodes_that_fail(trace: Trace) -> None:
         trace(number, node.label)
 
 
-@scene
-def services_of_managed_nodes(trace: Trace) -> None:
-    events: list[tuple[str, str]] = []
+def managed_and_manager(note: Callable[[Any], None]) -> tuple[Any, Any, Any]:
+    """Return a managed node, one that takes note of its transitions, and the executor of both."""
     managed = LifecycleNode("managed")
     node = rclpy.create_node("manager")
     executor = SingleThreadedExecutor()
     executor.add_node(managed)
     executor.add_node(node)
-    node.create_subscription(
-        TransitionEvent,
-        "managed/transition_event",
-        lambda event: events.append((event.start_state.label, event.goal_state.label)),
-        10,
+    node.create_subscription(TransitionEvent, "managed/transition_event", note, 10)
+    return managed, node, executor
+
+
+@scene
+def services_of_managed_nodes(trace: Trace) -> None:
+    events: list[tuple[str, str]] = []
+    managed, node, executor = managed_and_manager(
+        lambda event: events.append((event.start_state.label, event.goal_state.label))
     )
     until(lambda: node.count_publishers("managed/transition_event"))
 
@@ -1062,16 +1065,8 @@ def services_of_managed_nodes(trace: Trace) -> None:
 @scene
 def events_and_response_of_a_transition(trace: Trace) -> None:
     order: list[str] = []
-    managed = LifecycleNode("managed")
-    node = rclpy.create_node("manager")
-    executor = SingleThreadedExecutor()
-    executor.add_node(managed)
-    executor.add_node(node)
-    node.create_subscription(
-        TransitionEvent,
-        "managed/transition_event",
-        lambda event: order.append(event.goal_state.label),
-        10,
+    managed, node, executor = managed_and_manager(
+        lambda event: order.append(event.goal_state.label)
     )
     client = node.create_client(ChangeState, "managed/change_state")
     client.wait_for_service(PATIENCE_S)
