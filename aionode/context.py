@@ -160,7 +160,7 @@ class Context:
         self._stop_spinning: Callable[[], None] | None = None
         self.ros_distro = choose_distribution(os.environ, ros_distro)
         self.participant = new_participant()
-        self.graph = Graph()
+        self.graph = Graph(self.participant)
         MismatchReport(self.graph, self.participant)
         DuplicateReport(self.graph, self.participant)
         self.time_base: TimeBase = clock if clock is not None else MachineTime()

@@ -201,18 +201,24 @@ class Graph:
     Endpoints are indexed by name and by node, so the cost of a query depends on its answer and not
     on the size of the system.
 
+    Args:
+        participant: Id of the context whose graph this is.
+
     Attributes:
         changes: Incremented by each change: an answer is valid while this stays the same.
         unreported: Which mismatches of an endpoint of this context are not logged, since its
             program gets them as events: ``"qos"``, ``"type"`` and ``"definition"``.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, participant: str = "") -> None:
         self.changes = 0
+        self._participant = participant
         self._nodes: dict[NodeInfo, None] = {}
         self._endpoints: dict[EndpointInfo, None] = {}
         self._by_name: dict[tuple[EndpointKind, str], dict[EndpointInfo, None]] = defaultdict(dict)
         self._by_node: dict[NodeInfo, dict[EndpointInfo, None]] = defaultdict(dict)
+        # Those of this context: to look for them among all would be quadratic.
+        self._own: dict[tuple[EndpointKind, str], dict[EndpointInfo, None]] = defaultdict(dict)
         # Of `changed`, by the name they wait for, None for any; until the next such change.
         self._waiters: dict[str | None, dict[asyncio.Future[None], None]] = {}
         self._nodes_by_name: dict[str, dict[NodeInfo, None]] = defaultdict(dict)
@@ -249,6 +255,8 @@ class Graph:
         self._endpoints[endpoint] = None
         self._by_name[endpoint.kind, endpoint.name][endpoint] = None
         self._by_node[endpoint.node][endpoint] = None
+        if self._is_own(endpoint):
+            self._own[endpoint.kind, endpoint.name][endpoint] = None
         self.changes += 1  # before listeners query the graph
         for listener in self._listeners:
             listener(endpoint)
@@ -262,6 +270,8 @@ class Graph:
         del self._endpoints[endpoint]
         _take_out(self._by_name, (endpoint.kind, endpoint.name), endpoint)
         _take_out(self._by_node, endpoint.node, endpoint)
+        if self._is_own(endpoint):
+            _take_out(self._own, (endpoint.kind, endpoint.name), endpoint)
         self.unreported.pop(endpoint, None)
         self._tell_watchers(endpoint, present=False)
         self._wake(endpoint.name)
@@ -274,11 +284,13 @@ class Graph:
         is_known = endpoint in self._endpoints
         if is_known:
             self._tell_watchers(endpoint, present=False)
-            indices: tuple[dict[EndpointInfo, None], ...] = (
+            indices = [
                 self._endpoints,
                 self._by_name[endpoint.kind, endpoint.name],
                 self._by_node[endpoint.node],
-            )
+            ]
+            if self._is_own(endpoint):
+                indices.append(self._own[endpoint.kind, endpoint.name])
             for index in indices:
                 del index[endpoint]
         unreported = self.unreported.pop(endpoint, None)
@@ -322,6 +334,9 @@ class Graph:
                 del self._watchers[kind, name]
 
         return unwatch
+
+    def _is_own(self, endpoint: EndpointInfo) -> bool:
+        return endpoint.node.participant == self._participant
 
     def _tell_watchers(self, endpoint: EndpointInfo, *, present: bool) -> None:
         for watcher in tuple(self._watchers.get((endpoint.kind, endpoint.name), ())):
@@ -386,6 +401,18 @@ class Graph:
             found = self._by_node.get(node, ()) if node is not None else self._endpoints
             found = (e for e in found if e.kind in kinds)
         return [e for e in found if node is None or e.node == node]
+
+    def own(self) -> list[EndpointInfo]:
+        """Return the endpoints of this context."""
+        return [endpoint for group in self._own.values() for endpoint in group]
+
+    def own_opposites(self, endpoint: EndpointInfo) -> list[EndpointInfo]:
+        """Return the endpoints of this context that have the name and the opposite kind."""
+        return list(self._own.get((endpoint.kind.opposite, endpoint.name), ()))
+
+    def opposites(self, endpoint: EndpointInfo) -> list[EndpointInfo]:
+        """Return all endpoints that have the name and the opposite kind."""
+        return list(self._by_name.get((endpoint.kind.opposite, endpoint.name), ()))
 
     def count(self, kind: EndpointKind, name: str) -> int:
         """Return how many endpoints of `kind` have the full name `name`."""

@@ -4,16 +4,53 @@ from __future__ import annotations
 
 import asyncio
 
-from aionode.graph import Graph, NodeInfo
+from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.interfaces.std_srvs.srv import Trigger
 from aionode.node import Node
+from aionode.qos import QoSProfile
 from aionode.testing import local_context, settle
 
 
 def node_info(name: str) -> NodeInfo:
     """Return a node of another context."""
     return NodeInfo("a1", 0, name, "/")
+
+
+def endpoint_info(participant: str, kind: EndpointKind, number: int) -> EndpointInfo:
+    """Return an endpoint of a context, on one topic."""
+    node = NodeInfo(participant, 0, "n", "/")
+    gid = f"{participant}{number}".encode().ljust(16)
+    return EndpointInfo(
+        kind, node, number, "/t", "std_msgs/msg/Int32", "", QoSProfile(depth=1), gid
+    )
+
+
+def test_the_endpoints_of_its_own_context_are_found_among_all() -> None:
+    """Each new endpoint of another context is compared with these only."""
+    graph = Graph("own")
+    subscription = endpoint_info("own", EndpointKind.SUBSCRIPTION, 1)
+    publisher = endpoint_info("own", EndpointKind.PUBLISHER, 2)
+    other = endpoint_info("a1", EndpointKind.PUBLISHER, 3)
+    for endpoint in (subscription, publisher, other):
+        graph.add_endpoint(endpoint)
+
+    assert graph.own() == [subscription, publisher]
+    assert graph.own_opposites(other) == [subscription]
+    assert graph.opposites(subscription) == [publisher, other]
+
+
+def test_an_endpoint_of_its_own_context_is_found_until_it_is_removed() -> None:
+    """Also if the middleware has given it another gid meanwhile."""
+    graph = Graph("own")
+    subscription = endpoint_info("own", EndpointKind.SUBSCRIPTION, 1)
+    other = endpoint_info("a1", EndpointKind.PUBLISHER, 2)
+    graph.add_endpoint(subscription)
+    graph.identify(subscription, b"another".ljust(16))
+
+    assert graph.own_opposites(other) == [subscription]
+    graph.remove_endpoint(subscription)
+    assert graph.own() == graph.own_opposites(other) == []
 
 
 async def test_a_wait_for_a_name_is_not_ended_by_changes_of_others() -> None:

@@ -93,6 +93,16 @@ listed, such as those of other programs. One is too few: Zenoh drops what it hea
 that it is just taking into use. With all of them a hundred would send half a million messages.
 """
 
+LEASE_MS: Final = 10_000
+"""After so long without a sign of a process its peers take it for dead."""
+
+LEASE_MS_EACH: Final = 500
+"""So much longer for each process that was there when it started.
+
+Where a hundred start at once, each is silent for more than ten seconds while it is connected with
+the others. Those that give it up connect anew, and all of it takes longer still.
+"""
+
 RETRY: Final = {"period_init_ms": 100, "period_max_ms": 2000, "period_increase_factor": 2}
 """How often what does not answer is dialled again."""
 
@@ -385,6 +395,7 @@ def session_settings(
     off = network.discovery_range is DiscoveryRange.OFF
     subnet = network.discovery_range is DiscoveryRange.SUBNET
     gossip: dict[str, Any] = {"scouting/gossip/enabled": not off}
+    listed = neighbours.others if neighbours is not None else ()
     if neighbours is not None:
         listen = [neighbours.port]
         dial = [*neighbours.others, network.router_port]
@@ -424,6 +435,7 @@ def session_settings(
         "transport/unicast/open_timeout": FAR_OPEN_MS if network.may_reach_far else OPEN_MS,
         "transport/unicast/accept_timeout": OPEN_MS,
         "scouting/multicast/enabled": subnet,
+        "transport/link/tx/lease": LEASE_MS + LEASE_MS_EACH * len(listed),
         **gossip,
         # As rmw_zenoh: if both dialled, Zenoh might keep neither of the two connections.
         "scouting/gossip/autoconnect_strategy": {

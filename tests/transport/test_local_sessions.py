@@ -15,35 +15,35 @@ from aionode.transport import _local_sessions
 from aionode.transport._local_sessions import announce, listed, new_participant, reserve_port
 
 pytestmark = pytest.mark.skipif(
-    not sys.platform.startswith("linux"), reason="only Linux has abstract names"
+    not sys.platform.startswith("linux"), reason="only Linux lists the sockets of others"
 )
 
 
 @pytest.fixture
 def group() -> int:
-    """Return a number that no other test has; it need not be a port."""
-    return 100_000 + os.getpid()
+    """Return a number that no other test has."""
+    return 1024 + os.getpid() % 16_384
 
 
 def test_a_session_is_listed_with_its_port_until_it_is_closed(group: int) -> None:
     """Also when its process is killed, which closes everything."""
-    with closing(announce(group, "f1", 4711)), closing(announce(group, "f2", 4712)):
-        assert listed(group) == {"f1": 4711, "f2": 4712}
+    with closing(announce(group, 4711)), closing(announce(group, 4712)):
+        assert listed(group) == {4711, 4712}
 
-    assert listed(group) == {}
+    assert listed(group) == set()
 
 
 def test_sessions_of_other_groups_are_not_listed(group: int) -> None:
-    """Their first port may even begin alike."""
-    with closing(announce(group * 10, "f1", 4711)):
-        assert listed(group) == {}
+    """They listen at other ports, and need not be reachable."""
+    with closing(announce(group + 16_384, 4711)):
+        assert listed(group) == set()
 
 
 def test_a_session_is_not_listed_any_more_when_its_process_was_killed(group: int) -> None:
     """Nothing is left to be removed."""
     program = (
         "from aionode.transport._local_sessions import announce\n"
-        f"presence = announce({group}, 'f1', 4711)\n"
+        f"presence = announce({group}, 4711)\n"
         "print('there', flush=True)\n"
         "input()\n"
     )
@@ -52,37 +52,49 @@ def test_a_session_is_not_listed_any_more_when_its_process_was_killed(group: int
     ) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "there\n"
-        assert listed(group) == {"f1": 4711}
+        assert listed(group) == {4711}
         process.kill()
         process.wait()
 
-    assert listed(group) == {}
+    assert listed(group) == set()
 
 
-@pytest.mark.parametrize("name", ["f1", "f1/", "f1/x", "f1/-1", "f1/0", "f1/65536", "f1/٣", "/"])
-def test_names_without_a_port_are_passed_over(group: int, name: str) -> None:
-    """Any program may bind any name."""
-    with closing(socket.socket(socket.AF_UNIX)) as one:
-        one.bind(f"\0aionode/{group}/{name}".encode())
+def test_a_socket_of_another_program_at_such_an_address_is_passed_over(group: int) -> None:
+    """It is not connected with itself."""
+    with closing(announce(group, 4711)) as presence, closing(udp_socket()) as one:
+        one.bind((presence.getsockname()[0], 4712))
 
-        assert listed(group) == {}
+        assert listed(group) == {4711}
 
 
-def test_nobody_can_connect_to_the_socket_of_a_listed_session(group: int) -> None:
-    """Whatever user they are."""
-    with (
-        closing(announce(group, "f1", 4711)),
-        closing(socket.socket(socket.AF_UNIX)) as one,
-        pytest.raises(ConnectionRefusedError),
-    ):
-        one.connect(f"\0aionode/{group}/f1/4711")
+def test_a_port_that_cannot_be_announced_is_told(group: int) -> None:
+    """A program that takes packets at every address has it for all of them."""
+    with closing(udp_socket()) as one:
+        one.bind(("0.0.0.0", 0))  # noqa: S104 - as such a program does
+
+        with pytest.raises(OSError, match="in use"):
+            announce(group, one.getsockname()[1])
+
+
+def test_nobody_can_send_to_a_listed_session(group: int) -> None:
+    """Whatever user they are: nothing that is sent there is kept."""
+    with closing(announce(group, 4711)) as presence, closing(udp_socket()) as one:
+        one.sendto(b"anything", presence.getsockname())
+
+        with pytest.raises(BlockingIOError):
+            presence.recv(100, socket.MSG_DONTWAIT)
+
+
+def udp_socket() -> socket.socket:
+    """Return one that is not bound yet."""
+    return socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 
 
 def test_there_is_no_list_where_the_system_hides_it(
     group: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """As a sandbox may; gossip is used instead, and all others dial such a session."""
-    monkeypatch.setattr(_local_sessions, "UNIX_SOCKETS", tmp_path / "hidden")
+    monkeypatch.setattr(_local_sessions, "UDP_SOCKETS", tmp_path / "hidden")
 
     assert listed(group) is None
     assert new_participant()[0] == "1"

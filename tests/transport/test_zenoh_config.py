@@ -193,6 +193,16 @@ def test_the_first_sessions_introduce_others_wherever_they_listen() -> None:
     assert "scouting/gossip/target" not in session_settings(Network(), (), Neighbours(40000, few))
 
 
+def test_a_session_that_connects_with_many_may_be_silent_for_longer() -> None:
+    """Otherwise those that are connected first give it up while it connects with the last ones."""
+    lease = "transport/link/tx/lease"
+
+    assert session_settings(Network(), ())[lease] == 10_000
+    assert session_settings(Network(), (), Neighbours(40000, ()))[lease] == 10_000
+    many = Neighbours(40000, tuple(range(41000, 41100)))
+    assert session_settings(Network(), (), many)[lease] == 60_000
+
+
 def test_the_first_process_takes_the_first_meeting_port_and_dials_the_others() -> None:
     """Later processes find it there; the port of a ROS router is never taken."""
     found = settings(Network())

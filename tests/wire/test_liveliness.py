@@ -198,6 +198,17 @@ def test_what_a_later_release_appends_is_left_alone() -> None:
     assert liveliness.parse_qos("::,10:,:,:,,:more") == liveliness.parse_qos("::,10:,:,:,,")
 
 
+def test_a_profile_that_is_changed_is_not_that_of_another_endpoint() -> None:
+    """Profiles of equal chunks are remembered."""
+    first = liveliness.parse_qos("::,10:,:,:,,")
+    assert first is not None
+    first.depth = 3
+
+    second = liveliness.parse_qos("::,10:,:,:,,")
+    assert second is not None
+    assert second.depth == 10
+
+
 def test_a_depth_of_zero_is_the_default_depth() -> None:
     """As rmw_zenoh takes it."""
     qos = liveliness.parse_qos("::,0:,:,:,,")

@@ -10,7 +10,7 @@ from aionode.names import logger_name
 from aionode.qos import incompatible_qos_text
 
 if TYPE_CHECKING:
-    from aionode.graph import EndpointInfo, Graph
+    from aionode.graph import EndpointInfo, Graph, Mismatch
 
 __all__ = ["MismatchReport"]
 
@@ -28,28 +28,22 @@ class MismatchReport:
 
     def examine(self, new: EndpointInfo) -> None:
         """Log every mismatch between `new` and the endpoints of its name."""
-        for known in self._graph.endpoints(new.kind.opposite, name=new.name):
-            own, other = (known, new) if self._is_own(known) else (new, known)
-            if not self._is_own(own):
-                continue
+        graph = self._graph
+        for one in graph.opposites(new) if self._is_own(new) else graph.own_opposites(new):
+            own, other = (one, new) if self._is_own(one) else (new, one)
             found = own.compare(other)
-            if found is not None and found.aspect in self._graph.unreported.get(own, ()):
-                continue
-            text = mismatch_text(own, other)
-            if text is not None:
+            if found is not None and found.aspect not in graph.unreported.get(own, ()):
+                text = mismatch_text(own, other, found)
                 get_logger(logger_name(own.node.namespace, own.node.name)).warning(text)
 
     def _is_own(self, endpoint: EndpointInfo) -> bool:
         return endpoint.node.participant == self._participant
 
 
-def mismatch_text(own: EndpointInfo, other: EndpointInfo) -> str | None:
-    """Return why `own` and `other` cannot communicate, and what to change; None if they can."""
+def mismatch_text(own: EndpointInfo, other: EndpointInfo, found: Mismatch) -> str:
+    """Return why `own` and `other` cannot communicate, and what to change."""
     where = f"{'topic' if own.kind in TOPIC_KINDS else 'service'} '{own.name}'"
     peer = f"{other.kind.value} of node {other.node.fully_qualified_name}"
-    found = own.compare(other)
-    if found is None:
-        return None
     if found.aspect == "type":
         return (
             f"{where}: the {peer} has type {other.type_name}, this {own.kind.value} "

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
+from aionode.graph import EndpointKind
 from aionode.qos import DurabilityPolicy
 
 if TYPE_CHECKING:
     from aionode.graph import EndpointInfo
 
-__all__ = ["EndpointTable", "can_link"]
+__all__ = ["EndpointTable", "can_link", "communicate_by_link"]
 
 
 class HasEndpoint(Protocol):
@@ -63,3 +64,11 @@ def can_link(publisher: EndpointInfo) -> bool:
     has to carry them all.
     """
     return publisher.qos.resolved().durability is not DurabilityPolicy.TRANSIENT_LOCAL
+
+
+def communicate_by_link(ours: EndpointInfo, theirs: EndpointInfo) -> bool:
+    """Whether two endpoints match, and the publisher, if one is, can send over a link."""
+    if not ours.matches(theirs):
+        return False
+    publisher = ours if ours.kind is EndpointKind.PUBLISHER else theirs
+    return publisher.kind is not EndpointKind.PUBLISHER or can_link(publisher)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import socket
 import stat
 import struct
@@ -28,6 +29,9 @@ BACKLOG: Final = 1024
 
 UNIX_SOCKETS: Final = Path("/proc/net/unix")
 """Lists the sockets of this system, or of this container, with the paths they were bound to."""
+
+SOCKET_ID: Final = re.compile(rb"/([0-9a-f]{1,32})\.(?:sock|new)$", re.MULTILINE)
+"""The id of a context in the path of its socket, at the end of a line of that list."""
 
 CREDENTIALS: Final = struct.Struct("3i")
 
@@ -208,14 +212,12 @@ class Listener:
                 age_ns = MachineTime().system_ns() - path.lstat().st_mtime_ns
                 if age_ns > NEW_S * S_TO_NS:
                     path.unlink()
-        listed: set[str] = set()
-        with suppress(OSError):
-            listed.update(
-                Path(line.rpartition(" ")[2]).stem
-                for line in UNIX_SOCKETS.read_text(errors="replace").splitlines()
-            )
-        for path in self._folder.glob("*.sock"):
-            if path.stem in listed:
+        paths = [*self._folder.glob("*.sock")]
+        listed: set[bytes] = set()
+        with suppress(OSError):  # thousands of lines where many are linked
+            listed.update(SOCKET_ID.findall(UNIX_SOCKETS.read_bytes() if paths else b""))
+        for path in paths:
+            if path.stem.encode() in listed:
                 continue  # dialling all those that live would keep them busy while many start
             probe = new_socket()
             try:

@@ -11,7 +11,7 @@ from aionode.clock import MachineTime
 from aionode.errors import FrameError, TransportError
 from aionode.graph import EndpointKind
 from aionode.transport.ipc._connection import Connection
-from aionode.transport.ipc._endpoint_table import EndpointTable, can_link
+from aionode.transport.ipc._endpoint_table import EndpointTable, communicate_by_link
 from aionode.transport.ipc._protocol import (
     VERSION,
     Cancel,
@@ -318,19 +318,19 @@ class LinkManager:
 
     def _has_matches(self, participant: str, endpoint: EndpointInfo | None) -> bool:
         """Whether a context, or its new endpoint, matches an endpoint of this context."""
-        if self._graph is None:
+        graph = self._graph
+        if graph is None:
             return False
         # Of each new endpoint only itself is looked at: all of them each time would be quadratic.
-        for theirs in self._graph.endpoints() if endpoint is None else (endpoint,):
-            if theirs.node.participant != participant:
-                continue
-            for ours in self._graph.endpoints(theirs.kind.opposite, name=theirs.name):
-                if ours.node.participant != self.participant or not ours.matches(theirs):
-                    continue
-                publisher = ours if ours.kind is EndpointKind.PUBLISHER else theirs
-                if publisher.kind is not EndpointKind.PUBLISHER or can_link(publisher):
-                    return True
-        return False
+        if endpoint is not None:
+            return any(
+                communicate_by_link(ours, endpoint) for ours in graph.own_opposites(endpoint)
+            )
+        return any(
+            theirs.node.participant == participant and communicate_by_link(ours, theirs)
+            for ours in graph.own()
+            for theirs in graph.opposites(ours)
+        )
 
     def _open_publishers(self, connection: Connection) -> None:
         """Ask for what the publishers at the other end have for our subscriptions."""

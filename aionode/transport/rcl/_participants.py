@@ -22,6 +22,9 @@ __all__ = ["count_on_this_host", "lacks_participants"]
 UDP_SOCKETS: Final = Path("/proc/net/udp")
 """The UDP sockets of this host or container: a heading, then one in each line."""
 
+NOT_CONNECTED: Final = "00000000:0000"
+"""The other end of a socket that takes messages from anybody."""
+
 FIRST_PORT: Final = 7410
 """The port for discovery of the first participant of domain 0 (RTPS 2.5, 9.6.2.3)."""
 
@@ -85,5 +88,10 @@ def count_on_this_host(domain_id: int) -> int:
     except OSError:
         return 0
     first = FIRST_PORT + DOMAIN_PORTS * domain_id
-    ports = {int(line.split()[1].rpartition(":")[2], 16) for line in lines}
+    fields = (line.split(maxsplit=3) for line in lines)
+    ports = {
+        int(local.rpartition(":")[2], 16)
+        for _, local, remote, _ in fields
+        if remote == NOT_CONNECTED  # others are not for discovery
+    }
     return len(ports.intersection(range(first, first + 2 * PARTICIPANTS, 2)))

@@ -79,6 +79,10 @@ class ZenohPeerDirectory:
         # Contexts that have announced unannounced peers that only they see.
         self._hosts: set[str] = set()
         self._connected: dict[str, zenoh.WhatAmI] = {}
+        # Those of them that are routers, and those that have announced nothing, as a router. To
+        # look for them at each token would be quadratic.
+        self._routers: set[str] = set()
+        self._unknown: set[str] = set()
         self._declared: list[Any] = []
         self._warning: zenoh.LivelinessToken | None = None
         # The contexts that are linked with this one.
@@ -129,9 +133,9 @@ class ZenohPeerDirectory:
                     ),
                     liveliness.declare_token(self._prefix + self.advertisement),
                 ]
-        self._connected = {
-            str(transport.zid): transport.whatami for transport in session.info.transports()
-        }
+        self._connected.clear()
+        for transport in session.info.transports():
+            self._connect(str(transport.zid), transport.whatami)
         self._update()
 
     def stop(self) -> None:
@@ -158,6 +162,8 @@ class ZenohPeerDirectory:
         self._known.clear()
         self._hosts.clear()
         self._connected.clear()
+        self._routers.clear()
+        self._unknown.clear()
         self._router_matching.stop()
         self._has_plain_peers = False
         self.has_unannounced_peers = False
@@ -284,38 +290,50 @@ class ZenohPeerDirectory:
         elif zid in self._known:
             self._known[zid].discard(key)
             self._forget(zid)
+        self._classify(zid)
 
     def _forget(self, zid: str) -> None:
         """Forget a session that announces nothing and is not connected."""
         if zid not in self._connected and not self._known.get(zid, True):
             del self._known[zid]
 
+    def _connect(self, zid: str, whatami: zenoh.WhatAmI) -> None:
+        self._connected[zid] = whatami
+        if whatami == zenoh.WhatAmI.ROUTER:
+            self._routers.add(zid)
+        self._classify(zid)
+
+    def _classify(self, zid: str) -> None:
+        """Note whether a session is connected that has announced nothing."""
+        if zid in self._connected and zid not in self._known and not is_look(zid):
+            self._unknown.add(zid)
+        else:
+            self._unknown.discard(zid)
+
     def _take_change(self, event: zenoh.TransportEvent) -> None:
         # `transports()` may still list one whose end is being reported.
         zid = str(event.transport.zid)
         if event.kind == zenoh.SampleKind.PUT:
-            self._connected[zid] = event.transport.whatami
+            self._connect(zid, event.transport.whatami)
         else:
             self._connected.pop(zid, None)
+            self._routers.discard(zid)
             self._forget(zid)
+            self._classify(zid)
         self._update()
-
-    def _of_kind(self, kind: zenoh.WhatAmI) -> set[str]:
-        return {zid for zid, whatami in self._connected.items() if whatami == kind}
 
     def _update(self) -> None:
         """Update `has_unannounced_peers`, and call back if it has changed."""
         if self._session is None:
             return
-        # A router announces nothing, and stays unknown.
-        unknown = {zid for zid in self._connected if zid not in self._known and not is_look(zid)}
         # All other contexts reach the clients of this session, but do not see them.
-        self._warn(needed=bool(unknown & self._of_kind(zenoh.WhatAmI.CLIENT)))
-        routers = self._of_kind(zenoh.WhatAmI.ROUTER)
-        self._router_matching.set_routers(routers)
+        self._warn(
+            needed=any(self._connected[zid] == zenoh.WhatAmI.CLIENT for zid in self._unknown)
+        )
+        self._router_matching.set_routers(self._routers)
         had = self.has_unannounced_peers, self._has_plain_peers
-        has_unannounced_peers = bool(unknown or self._hosts)
-        self._has_plain_peers = bool(unknown - routers or self._hosts)
+        has_unannounced_peers = bool(self._unknown or self._hosts)
+        self._has_plain_peers = bool(self._unknown - self._routers or self._hosts)
         self._state.note_unannounced_peers(there_are=has_unannounced_peers)
         self.has_unannounced_peers = has_unannounced_peers
         if had != (has_unannounced_peers, self._has_plain_peers):

@@ -9,8 +9,9 @@ import os
 import selectors
 import socket
 import threading
-from contextlib import ExitStack, closing, contextmanager, suppress
+from contextlib import ExitStack, suppress
 from dataclasses import replace
+from itertools import chain
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
 
@@ -32,6 +33,7 @@ from aionode.transport._zenoh_config import (
 )
 from aionode.transport.zenoh._handlers import direct, reason
 from aionode.transport.zenoh._sockets import SocketOptions, cut_unanswered
+from aionode.transport.zenoh._turns import one_at_a_time
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -62,14 +64,8 @@ A process of aionode may take longer where many start at once. Other programs mo
 the connection at once.
 """
 
-TURN_S = 3.0
-"""How long this process waits for its turn, each of which takes one to ten milliseconds."""
-
-TURN_POLL_S = 0.002
-"""The first polling interval for the turn: in a thread, and only while many start at once."""
-
-LAST_POLL_S = 0.03
-"""The longest one: the more wait, the longer each does, and one of them still looks soon."""
+PORTS = 3
+"""How many ports are tried: another program may have a UDP socket with the same number."""
 
 FIRST_LINK_S = 1.0
 """How long `open` waits for the first peer that accepts connections; a frozen one never answers."""
@@ -231,30 +227,6 @@ def speaking_ports(ports: Iterable[int]) -> set[int]:
     return speaking
 
 
-@contextmanager
-def one_at_a_time(port: int | None) -> Iterator[None]:
-    """Let the processes of this machine look for a free meeting port, and take it, in turn.
-
-    Two that look at the same moment would both choose the first one; the loser would have none, and
-    not dial the winner either. Two that list each other would dial each other. The process that
-    holds the UDP port of this number has the turn: unlike a lock file it belongs to no user, and
-    ends with its process.
-    """
-    if port is None:
-        yield
-        return
-    with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as turn:
-        ends_ns = perf_ns() + int(TURN_S * 1e9)
-        poll_s = TURN_POLL_S
-        while perf_ns() < ends_ns:
-            with suppress(OSError):
-                turn.bind((LOOPBACK, port))
-                break
-            threading.Event().wait(poll_s)
-            poll_s = min(poll_s * 1.5, LAST_POLL_S)
-        yield
-
-
 def load_config(
     network: Network,
     settings: dict[str, Any],
@@ -325,9 +297,8 @@ async def open_session(network: Network, participant: str) -> Opened:
 
     def work() -> Opened:
         try:
-            if near(network) and listed(network.meeting_ports[0]) is not None:
-                return open_listed(network, participant)
-            return open_unlisted(network, participant)
+            opened = open_listed(network, participant) if near(network) else None
+            return opened or open_unlisted(network, participant)
         except zenoh.ZError as error:
             raise TransportError(
                 f"Zenoh: no session could be opened: {reason(error)}; look at "
@@ -337,22 +308,30 @@ async def open_session(network: Network, participant: str) -> Opened:
     return await run_in_own_thread(work, late=Opened.close)
 
 
-def open_listed(network: Network, participant: str) -> Opened:
-    """Open a session on a machine that lists its sessions: it dials those that are there."""
+def open_listed(network: Network, participant: str) -> Opened | None:
+    """Open a session on a machine that lists its sessions: it dials those that are there.
+
+    None if the machine has no list, or this session cannot be in it.
+    """
     group = network.meeting_ports[0]
     address = listening_address(network)
-    with closing(reserve_port(address)) as reserved, ExitStack() as failed:
+    with ExitStack() as reserved, ExitStack() as failed:
         with one_at_a_time(group):
-            there = set((listed(group) or {}).values())
+            there = listed(group)
+            if there is None:
+                return None
             free = (p for p in network.meeting_ports if p not in there and can_listen(address, p))
-            mine = next(free, None)
-            port = mine or reserved.getsockname()[1]
-            presence = failed.enter_context(announce(group, participant, port))
-            # Listed again: one that did not get its turn may have come meanwhile.
-            others = {p for zid, p in (listed(group) or {}).items() if zid != participant}
+            found = announced(group, chain(free, reserved_ports(address, reserved)))
+            if found is None:
+                return None
+            presence, port = found
+            failed.push(presence)
+            # Listed again: one that did not get its turn may have come meanwhile, and if one has
+            # ended while the list was read, another may be missing in it.
+            others = (there | (listed(group) or set())) - {port}
         # Other programs may listen there, or processes of aionode that cannot be listed.
         unlisted = set(
-            answering_ports(p for p in probed_ports(network) if p not in {mine, *others})
+            answering_ports(p for p in probed_ports(network) if p not in {port, *others})
         )
         dialled = sorted(others | (unlisted & set(network.meeting_ports)))
         settings = session_settings(network, (), Neighbours(port, tuple(dialled)))
@@ -360,6 +339,20 @@ def open_listed(network: Network, participant: str) -> Opened:
         failed.pop_all()
     met = others & set(network.meeting_ports)
     return Opened(session, len(met) + len(unlisted) + bool(network.near_peers), presence)
+
+
+def announced(group: int, ports: Iterable[int]) -> tuple[socket.socket, int] | None:
+    """Announce the first of some ports that can be; return what does, and the port."""
+    for port in ports:
+        with suppress(OSError):
+            return announce(group, port), port
+    return None
+
+
+def reserved_ports(address: str, reserved: ExitStack) -> Iterator[int]:
+    """Yield ports on which a session can listen; nobody else, as long as they are reserved."""
+    for _ in range(PORTS):
+        yield reserved.enter_context(reserve_port(address)).getsockname()[1]
 
 
 def open_unlisted(network: Network, participant: str) -> Opened:

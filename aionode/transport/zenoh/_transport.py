@@ -26,6 +26,7 @@ from aionode.transport.zenoh._session import (
 from aionode.transport.zenoh._session_state import SessionState
 from aionode.transport.zenoh._sockets import SocketOptions, arrived_bytes, cut_stuck
 from aionode.transport.zenoh._subscription import ZenohReader
+from aionode.transport.zenoh._turns import connecting
 
 if TYPE_CHECKING:
     import socket
@@ -114,6 +115,10 @@ class ZenohTransport(Transport):
 
     async def open(self, graph: Graph) -> None:
         """Connect; return when the running peers are known, as far as that can be determined."""
+        async with connecting(self.network):
+            await self._open(graph)
+
+    async def _open(self, graph: Graph) -> None:
         try:
             await self._local_router.open()
             session, expected, self._presence = await open_session(

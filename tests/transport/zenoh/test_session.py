@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import logging
 import os
 import socket
@@ -103,7 +104,7 @@ async def both_seen(node: Node) -> None:
 
 def list_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """Have sessions meet as on systems that do not list them."""
-    monkeypatch.setattr("aionode.transport._local_sessions.unix_sockets", lambda: None)
+    monkeypatch.setattr("aionode.transport._local_sessions.udp_sockets", lambda: None)
 
 
 async def test_processes_meet_elsewhere_if_others_have_all_their_ports(
@@ -150,6 +151,21 @@ async def test_listed_processes_meet_whatever_ports_others_have(
                 await both_seen(node)
 
     assert sayings(caplog) == []
+
+
+async def test_a_session_that_cannot_be_announced_meets_others_all_the_same(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Other programs may have the same ports for UDP: then it meets as where nothing is listed."""
+
+    def refuse(*_: object) -> socket.socket:
+        raise OSError(errno.EADDRINUSE, "in use")
+
+    async with quiet_node("one") as one:
+        monkeypatch.setattr("aionode.transport.zenoh._session.announce", refuse)
+        async with quiet_node("two") as two:
+            for node in (one, two):
+                await both_seen(node)
 
 
 @pytest.mark.parametrize("place", [0, 2, 3], ids=["first", "in between", "last"])

@@ -1,0 +1,124 @@
+"""Turns: what the processes of one machine do one after another when they start together.
+
+Who has bound a UDP port of loopback has the turn that it stands for. Unlike a lock file it belongs
+to no user, and ends with its process, however that ends.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import socket
+import threading
+from contextlib import asynccontextmanager, closing, contextmanager, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from aionode.clock import perf_ns
+from aionode.transport._local_sessions import listed
+from aionode.transport._zenoh_config import LOOPBACK, near
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator, Iterator
+
+    from aionode.transport._zenoh_config import Network
+
+__all__ = ["connecting", "one_at_a_time"]
+
+TURN_S: Final = 3.0
+"""How long a process waits for one that has the turn and does not go on."""
+
+FIRST_POLL_S: Final = 0.002
+"""The first interval at which a process looks whether it is its turn."""
+
+POLL_GROWTH: Final = 1.5
+"""How much longer the next one is: the more wait, the longer each does, and one looks soon."""
+
+LAST_POLL_S: Final = 0.03
+"""The longest interval for a place in the list of sessions, which takes a millisecond."""
+
+LAST_CONNECTING_POLL_S: Final = 0.5
+"""The longest interval for connecting, which takes up to a second."""
+
+LOAD: Final = Path("/proc/loadavg")
+"""Says how many threads of this machine run or could run."""
+
+CONNECTING: Final = 98
+"""The second number of the addresses that stand for connecting."""
+
+
+@contextmanager
+def one_at_a_time(port: int | None) -> Iterator[None]:
+    """Let the processes of this machine look for a free meeting port, and take it, in turn.
+
+    Two that look at the same moment would both choose the first one; the loser would have none, and
+    not dial the winner either. Two that list each other would dial each other. Blocks.
+
+    Args:
+        port: The first meeting port; None if there is none.
+    """
+    if port is None:
+        yield
+        return
+    with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as turn:
+        ends_ns = perf_ns() + int(TURN_S * 1e9)
+        poll_s = FIRST_POLL_S
+        while perf_ns() < ends_ns and not takes(turn, LOOPBACK, port):
+            threading.Event().wait(poll_s)
+            poll_s = min(poll_s * POLL_GROWTH, LAST_POLL_S)
+        yield
+
+
+@asynccontextmanager
+async def connecting(network: Network) -> AsyncIterator[None]:
+    """Let as many processes of this machine connect at a time as it has processors for.
+
+    Each is connected with all others. If a hundred start together, and all connect at once, each of
+    4950 connections is made while hundreds of threads wait for a processor, and the first processes
+    that are ready have to wait for the last ones. While a processor is free, or where the machine
+    does not list its sessions, nobody waits.
+    """
+    group = network.meeting_ports[0]
+    others = listed(group) if near(network) else None
+    if not others:
+        yield
+        return
+    loop = asyncio.get_running_loop()
+    with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as turn:
+        poll_s, ends_s = FIRST_POLL_S, loop.time() + TURN_S
+        while not (any(takes(turn, one, group) for one in connecting_addresses()) or is_idle()):
+            await asyncio.sleep(poll_s)
+            poll_s = min(poll_s * POLL_GROWTH, LAST_CONNECTING_POLL_S)
+            if loop.time() > ends_s:
+                before, others = others, listed(group)
+                if others == before:
+                    break  # nobody has begun to connect meanwhile: those that do are stuck
+                ends_s = loop.time() + TURN_S
+        yield
+
+
+def connecting_addresses() -> list[str]:
+    """Return an address for each process that may connect now: one for two processors."""
+    return [f"127.{CONNECTING}.{number}.1" for number in range(max(processors() // 2, 1))]
+
+
+def is_idle() -> bool:
+    """Return whether a processor of this machine is free, or may be as far as it tells."""
+    try:
+        running, _, _ = LOAD.read_text("ascii").split()[3].partition("/")
+        return int(running) <= processors()  # this thread is among those that run
+    except (OSError, ValueError, IndexError):  # a sandbox may hide it
+        return True
+
+
+def processors() -> int:
+    """Return how many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1
+
+
+def takes(turn: socket.socket, address: str, port: int) -> bool:
+    """Return whether the turn was free."""
+    with suppress(OSError):
+        turn.bind((address, port))
+        return True
+    return False

@@ -1,0 +1,149 @@
+"""What processes that start together do one after another."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from aionode._concurrency import checkpoint
+from aionode.transport._local_sessions import announce
+from aionode.transport._zenoh_config import DiscoveryRange, Network, network_from
+from aionode.transport.zenoh import _turns
+from aionode.transport.zenoh._turns import connecting, is_idle
+from tests.support.peers import free_ports
+
+pytestmark = [
+    pytest.mark.one_loop,
+    pytest.mark.skipif(
+        not sys.platform.startswith("linux"), reason="only Linux lists the sessions of others"
+    ),
+]
+
+
+@pytest.fixture
+def network(monkeypatch: pytest.MonkeyPatch) -> Iterator[Network]:
+    """Return the settings of a process beside another one, on a busy machine with a processor."""
+    monkeypatch.setenv("AIONODE_MEETING_PORTS", str(free_ports(1)[0]))
+    monkeypatch.setattr(_turns, "is_idle", lambda: False)
+    monkeypatch.setattr(_turns, "processors", lambda: 1)
+    found = network_from(os.environ)
+    with closing(announce(found.meeting_ports[0], 4711)):
+        yield found
+
+
+class Visits:
+    """How many connect at a time, and in all."""
+
+    def __init__(self) -> None:
+        self.now = self.most = self.all = 0
+
+    async def visit(self, network: Network) -> None:
+        """Connect, for some turns of the loop."""
+        async with connecting(network):
+            self.now += 1
+            self.all += 1
+            self.most = max(self.most, self.now)
+            for _ in range(20):
+                await checkpoint()
+            self.now -= 1
+
+    async def visit_together(self, network: Network) -> None:
+        """Connect five times, at the same time if that is possible."""
+        async with asyncio.TaskGroup() as tasks:
+            for _ in range(5):
+                tasks.create_task(self.visit(network))
+
+
+@pytest.mark.parametrize(("processors", "most"), [(1, 1), (2, 1), (4, 2), (9, 4)])
+async def test_one_process_connects_at_a_time_for_two_processors(
+    network: Network, monkeypatch: pytest.MonkeyPatch, processors: int, most: int
+) -> None:
+    """All others wait for it, and each has its turn."""
+    monkeypatch.setattr(_turns, "processors", lambda: processors)
+    visits = Visits()
+    await visits.visit_together(network)
+
+    assert (visits.most, visits.all) == (most, 5)
+
+
+async def test_nobody_waits_while_a_processor_is_free(
+    network: Network, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One that connects may be waiting for another process, which may be frozen."""
+    monkeypatch.setattr(_turns, "is_idle", lambda: True)
+    visits = Visits()
+    await visits.visit_together(network)
+
+    assert visits.most == 5
+
+
+async def test_nobody_waits_if_there_is_no_other_process(network: Network) -> None:
+    """Nor if a context does not look for any."""
+    alone = network_from({"AIONODE_MEETING_PORTS": str(free_ports(1)[0])})
+    off = network_from(os.environ, discovery_range=DiscoveryRange.OFF)
+    for one in (alone, off):
+        visits = Visits()
+        await visits.visit_together(one)
+
+        assert visits.most == 5
+
+
+async def test_a_process_that_does_not_go_on_is_not_waited_for(
+    network: Network, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It may be frozen while it connects; then no other one appears either."""
+    monkeypatch.setattr(_turns, "TURN_S", 0.01)
+    async with connecting(network), asyncio.timeout(20), connecting(network):
+        pass
+
+
+async def test_it_is_waited_longer_while_others_appear(
+    network: Network, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where a hundred start the last one waits for a minute."""
+    lists = iter([{1}, {1, 2}, {1, 2, 3}, {1, 2, 3}])
+    monkeypatch.setattr(_turns, "TURN_S", 0.01)
+    monkeypatch.setattr(_turns, "listed", lambda _: next(lists))
+    async with connecting(network), connecting(network):
+        pass
+
+    assert next(lists, None) is None
+
+
+async def test_waiting_for_the_turn_can_be_cancelled(network: Network) -> None:
+    """Ctrl-C does not wait for others."""
+    async with connecting(network):
+        waiting = asyncio.get_running_loop().create_task(Visits().visit(network))
+        await checkpoint()
+        waiting.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await waiting
+
+
+@pytest.mark.parametrize(
+    ("text", "idle"),
+    [
+        ("0.5 0.4 0.3 2/512 12345\n", True),
+        ("9.5 0.4 0.3 3/512 12345\n", False),
+        ("nothing\n", True),
+        ("", True),
+        ("0.5 0.4 0.3 x/512 12345\n", True),
+    ],
+)
+def test_a_machine_is_busy_if_more_threads_run_than_it_has_processors(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str, *, idle: bool
+) -> None:
+    """Where it does not tell, nobody is to wait."""
+    load = tmp_path / "loadavg"
+    monkeypatch.setattr(_turns, "LOAD", load)
+    monkeypatch.setattr(_turns, "processors", lambda: 2)
+
+    assert is_idle()
+    load.write_text(text)
+    assert is_idle() is idle
