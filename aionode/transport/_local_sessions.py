@@ -1,10 +1,10 @@
 """The Zenoh sessions of this machine, as Linux lists them.
 
-Each session that other processes may dial binds a UDP socket: the address says which sessions it
-meets, and the port is that on which Zenoh listens. ``/proc/net/udp`` lists these sockets, so that a
-session knows all others before it is opened, and dials them. They belong to a network namespace, as
-loopback does: whoever is listed can be dialled, whatever user or container it belongs to. A socket
-ends with its process, however that ends.
+Each session that other processes may dial connects a UDP socket, which sends nothing: the remote
+address says which sessions it meets, and the remote port is that on which Zenoh listens.
+``/proc/net/udp`` lists these sockets, so that a session knows all others before it is opened, and
+dials them. They belong to a network namespace, as loopback does: whoever is listed can be dialled,
+whatever user or container it belongs to. A socket ends with its process, however that ends.
 
 Unix sockets with abstract names would do as well, but ``/proc/net/unix`` lists all connections too:
 with a hundred processes that are linked it takes 10 ms to read, when all of them start and wait.
@@ -22,17 +22,19 @@ from __future__ import annotations
 import secrets
 import socket
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
 from aionode.clock import perf_ns
+from aionode.transport._zenoh_config import LOOPBACK
 
 __all__ = ["announce", "listed", "new_participant", "reserve_port"]
 
 UDP_SOCKETS: Final = Path("/proc/net/udp")
 
 PRESENCE: Final = 97
-"""The second number of the addresses that are bound, all of which belong to loopback."""
+"""The second number of these addresses, all of which belong to loopback."""
 
 LATER: Final = "f"
 """The first digit of the id of a session that looks others up: it dials all others."""
@@ -57,17 +59,11 @@ def announce(group: int, port: int) -> socket.socket:
     Args:
         group: The first of the ports on which sessions meet; those with others do not meet.
         port: Where it listens on loopback.
-
-    Raises:
-        OSError: the port cannot be announced, as another socket is bound to it.
     """
     presence = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    try:
-        presence.bind((address_of(group), port))
-        presence.connect(presence.getsockname())  # so that nobody else can send to it
-    except OSError:
-        presence.close()
-        raise
+    presence.bind((LOOPBACK, 0))
+    with suppress(OSError):  # loopback is down, and nobody could dial it
+        presence.connect((address_of(group), port))
     return presence
 
 
@@ -80,9 +76,9 @@ def listed(group: int) -> set[int] | None:
     start = f"{address:08X}:"
     ports = set()
     for line in lines:
-        _, local, remote, _ = line.split(maxsplit=3)
-        if local == remote and local.startswith(start):
-            ports.add(int(local.removeprefix(start), 16))
+        remote = line.split(maxsplit=3)[2]
+        if remote.startswith(start):
+            ports.add(int(remote.removeprefix(start), 16))
     return ports
 
 
@@ -109,5 +105,5 @@ def udp_sockets() -> list[str] | None:
 
 
 def address_of(group: int) -> str:
-    """Return the address that the sessions of a group bind."""
+    """Return the address with which the sessions of a group are connected."""
     return f"127.{PRESENCE}.{group >> 8}.{group & 0xFF}"

@@ -9,9 +9,8 @@ import os
 import selectors
 import socket
 import threading
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack, closing, suppress
 from dataclasses import replace
-from itertools import chain
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
 
@@ -36,7 +35,7 @@ from aionode.transport.zenoh._sockets import SocketOptions, cut_unanswered
 from aionode.transport.zenoh._turns import one_at_a_time
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from aionode.transport._loop_waker import ThreadsafeQueue
     from aionode.transport._zenoh_config import Network
@@ -63,9 +62,6 @@ SPEAK_S = 2.0
 A process of aionode may take longer where many start at once. Other programs mostly answer or close
 the connection at once.
 """
-
-PORTS = 3
-"""How many ports are tried: another program may have a UDP socket with the same number."""
 
 FIRST_LINK_S = 1.0
 """How long `open` waits for the first peer that accepts connections; a frozen one never answers."""
@@ -311,21 +307,19 @@ async def open_session(network: Network, participant: str) -> Opened:
 def open_listed(network: Network, participant: str) -> Opened | None:
     """Open a session on a machine that lists its sessions: it dials those that are there.
 
-    None if the machine has no list, or this session cannot be in it.
+    None if the machine has no list.
     """
     group = network.meeting_ports[0]
     address = listening_address(network)
-    with ExitStack() as reserved, ExitStack() as failed:
+    with closing(reserve_port(address)) as reserved, ExitStack() as failed:
         with one_at_a_time(group):
             there = listed(group)
             if there is None:
                 return None
             free = (p for p in network.meeting_ports if p not in there and can_listen(address, p))
-            found = announced(group, chain(free, reserved_ports(address, reserved)))
-            if found is None:
-                return None
-            presence, port = found
-            failed.push(presence)
+            mine = next(free, None)
+            port = mine or reserved.getsockname()[1]
+            presence = failed.enter_context(announce(group, port))
             # Listed again: one that did not get its turn may have come meanwhile, and if one has
             # ended while the list was read, another may be missing in it.
             others = (there | (listed(group) or set())) - {port}
@@ -339,20 +333,6 @@ def open_listed(network: Network, participant: str) -> Opened | None:
         failed.pop_all()
     met = others & set(network.meeting_ports)
     return Opened(session, len(met) + len(unlisted) + bool(network.near_peers), presence)
-
-
-def announced(group: int, ports: Iterable[int]) -> tuple[socket.socket, int] | None:
-    """Announce the first of some ports that can be; return what does, and the port."""
-    for port in ports:
-        with suppress(OSError):
-            return announce(group, port), port
-    return None
-
-
-def reserved_ports(address: str, reserved: ExitStack) -> Iterator[int]:
-    """Yield ports on which a session can listen; nobody else, as long as they are reserved."""
-    for _ in range(PORTS):
-        yield reserved.enter_context(reserve_port(address)).getsockname()[1]
 
 
 def open_unlisted(network: Network, participant: str) -> Opened:

@@ -43,9 +43,6 @@ LAST_CONNECTING_POLL_S: Final = 0.5
 LOAD: Final = Path("/proc/loadavg")
 """Says how many threads of this machine run or could run."""
 
-CONNECTING: Final = 98
-"""The second number of the addresses that stand for connecting."""
-
 
 @contextmanager
 def one_at_a_time(port: int | None) -> Iterator[None]:
@@ -63,7 +60,7 @@ def one_at_a_time(port: int | None) -> Iterator[None]:
     with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as turn:
         ends_ns = perf_ns() + int(TURN_S * 1e9)
         poll_s = FIRST_POLL_S
-        while perf_ns() < ends_ns and not takes(turn, LOOPBACK, port):
+        while perf_ns() < ends_ns and not takes(turn, port):
             threading.Event().wait(poll_s)
             poll_s = min(poll_s * POLL_GROWTH, LAST_POLL_S)
         yield
@@ -86,7 +83,7 @@ async def connecting(network: Network) -> AsyncIterator[None]:
     loop = asyncio.get_running_loop()
     with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as turn:
         poll_s, ends_s = FIRST_POLL_S, loop.time() + TURN_S
-        while not (any(takes(turn, one, group) for one in connecting_addresses()) or is_idle()):
+        while not (any(takes(turn, port) for port in connecting_ports(network)) or is_idle()):
             await asyncio.sleep(poll_s)
             poll_s = min(poll_s * POLL_GROWTH, LAST_CONNECTING_POLL_S)
             if loop.time() > ends_s:
@@ -97,9 +94,10 @@ async def connecting(network: Network) -> AsyncIterator[None]:
         yield
 
 
-def connecting_addresses() -> list[str]:
-    """Return an address for each process that may connect now: one for two processors."""
-    return [f"127.{CONNECTING}.{number}.1" for number in range(max(processors() // 2, 1))]
+def connecting_ports(network: Network) -> tuple[int, ...]:
+    """Return a port for each process that may connect now: one for two processors."""
+    ports = (*network.meeting_ports[1:], *network.spare_ports)
+    return ports[: max(processors() // 2, 1)]
 
 
 def is_idle() -> bool:
@@ -116,9 +114,9 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1
 
 
-def takes(turn: socket.socket, address: str, port: int) -> bool:
+def takes(turn: socket.socket, port: int) -> bool:
     """Return whether the turn was free."""
     with suppress(OSError):
-        turn.bind((address, port))
+        turn.bind((LOOPBACK, port))
         return True
     return False
