@@ -70,10 +70,8 @@ class DuplicateReport:
             elif self._is_own(known):
                 self._report(known, new, known.node)
             else:
-                for client in self._graph.endpoints(EndpointKind.CLIENT, name=new.name):
-                    if self._is_own(client):
-                        self._report(known, new, client.node)
-                        break
+                for client in self._graph.own_opposites(new)[:1]:
+                    self._report(known, new, client.node)
 
     def _report(self, one: EndpointInfo, other: EndpointInfo, reader: NodeInfo) -> None:
         """Log to the node `reader` that two servers have one name."""

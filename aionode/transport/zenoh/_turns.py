@@ -68,22 +68,23 @@ def one_at_a_time(port: int | None) -> Iterator[None]:
 
 @asynccontextmanager
 async def connecting(network: Network) -> AsyncIterator[None]:
-    """Let as many processes of this machine connect at a time as it has processors for.
+    """Let one process of this machine connect at a time for two processors that it has.
 
     Each is connected with all others. If a hundred start together, and all connect at once, each of
     4950 connections is made while hundreds of threads wait for a processor, and the first processes
     that are ready have to wait for the last ones. While a processor is free, or where the machine
-    does not list its sessions, nobody waits.
+    does not list its sessions, or there is one meeting port only, nobody waits.
     """
     group = network.meeting_ports[0]
     others = listed(group) if near(network) else None
-    if not others:
+    ports = connecting_ports(network)
+    if not (others and ports):
         yield
         return
     loop = asyncio.get_running_loop()
     with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as turn:
         poll_s, ends_s = FIRST_POLL_S, loop.time() + TURN_S
-        while not (any(takes(turn, port) for port in connecting_ports(network)) or is_idle()):
+        while not (any(takes(turn, port) for port in ports) or is_idle()):
             await asyncio.sleep(poll_s)
             poll_s = min(poll_s * POLL_GROWTH, LAST_CONNECTING_POLL_S)
             if loop.time() > ends_s:

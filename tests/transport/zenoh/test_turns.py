@@ -7,6 +7,7 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -83,13 +84,18 @@ async def test_nobody_waits_while_a_processor_is_free(
     assert visits.most == 8
 
 
-async def test_nobody_waits_if_there_is_no_other_process(network: Network) -> None:
-    """Nor if a context does not look for any."""
+async def test_nobody_waits_if_there_is_no_other_process(
+    network: Network, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nor if a context does not look for any, or no port can stand for the turn."""
+    monkeypatch.setattr(_turns, "TURN_S", 1000.0)
     alone = network_from({"AIONODE_MEETING_PORTS": ",".join(map(str, free_ports(6)))})
     off = network_from(os.environ, discovery_range=DiscoveryRange.OFF)
-    for one in (alone, off):
+    single = replace(network, meeting_ports=network.meeting_ports[:1], spare_ports=())
+    for one in (alone, off, single):
         visits = Visits()
-        await visits.visit_together(one)
+        async with asyncio.timeout(20):
+            await visits.visit_together(one)
 
         assert visits.most == 8
 
