@@ -55,9 +55,8 @@ class TimeSource:
             self._subscription = self._node.create_subscription(
                 ClockMsg, "/clock", self._on_tick, CLOCK_QOS
             )
-            self._subscription._stage = (
-                EndStage.GOALS
-            )  # until callbacks have ended: their cleanup may sleep
+            # Until callbacks have ended: their cleanup may sleep.
+            self._node._node_shutdown.postpone(self._subscription, EndStage.GOALS)
         elif not active and self._subscription is not None:
             self._subscription.destroy()
             self._subscription = None

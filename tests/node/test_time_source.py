@@ -50,6 +50,44 @@ async def test_simulated_time_can_be_switched_on_and_off(node: Node) -> None:
     assert node.count_subscribers("/clock") == 0
 
 
+async def test_a_node_that_was_given_simulated_time_while_it_ran_ends_at_once(
+    context: Context, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its end waits for callbacks; the one that follows /clock goes on until they have ended."""
+    async with Node("sim", context=context) as sim:
+        sim.set_parameters([Parameter("use_sim_time", value=True)])
+        await settle()
+
+    assert "the node ends" not in capsys.readouterr().err
+
+
+async def test_a_callback_sleeps_in_finally_on_simulated_time_that_was_set_while_it_ran(
+    context: Context, node: Node
+) -> None:
+    """A robot may need a second to come to rest, in the time of its simulation."""
+    slept: list[int] = []
+    source = node.create_publisher(ClockMsg, "/clock", QoSProfile(depth=1))
+
+    async with Node("sim", context=context) as sim:
+
+        async def drive() -> None:
+            try:
+                await asyncio.Event().wait()
+            finally:
+                await sim.get_clock().sleep(1.0)
+                slept.append(sim.get_clock().now_ns())
+
+        sim.create_timer(0.0, drive)
+        sim.set_parameters([Parameter("use_sim_time", value=True)])
+        source.publish(ClockMsg(clock=TimeMsg(sec=1)))
+        await settle()
+        sim.destroy_node()
+        await settle()
+        source.publish(ClockMsg(clock=TimeMsg(sec=2)))
+
+    assert slept == [2_000_000_000]
+
+
 async def test_use_sim_time_must_be_true_or_false(node: Node) -> None:
     """A typing mistake must not freeze a robot."""
     (result,) = node.set_parameters([Parameter("use_sim_time", value="yes")])

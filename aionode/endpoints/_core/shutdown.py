@@ -53,6 +53,12 @@ class Shutdown:
         """Let the first step last until `task` is done: it runs callbacks."""
         self._hold(task, self._running)
 
+    def postpone(self, entity: Entity, stage: EndStage) -> None:
+        """Destroy `entity` in `stage`, which comes after its own; the first step does not wait."""
+        entity._stage = stage
+        if entity._task is not None:
+            self._running.discard(entity._task)
+
     def expect(self, answer: asyncio.Future[Any]) -> None:
         """Keep the clients until `answer`, to a cancel request, is done."""
         self._hold(answer, self._answers)
