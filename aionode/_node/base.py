@@ -15,6 +15,7 @@ from aionode.endpoints._core.callback_runner import Callbacks
 from aionode.endpoints._core.endpoint import Endpoint
 from aionode.endpoints._core.entity import EndStage
 from aionode.endpoints._core.loop_affinity import in_loop_thread
+from aionode.endpoints._core.node_tasks import NodeTasks
 from aionode.endpoints._core.shutdown import Shutdown
 from aionode.errors import EntityDestroyedError
 from aionode.logging import get_logger
@@ -81,6 +82,7 @@ class NodeBase:
         self._warned_about: set[str] = set()  # kinds of timers' third argument
         self._entities: dict[Entity, None] = {}  # in order of creation; destroyed ones leave it
         self._tasks: asyncio.TaskGroup | None = None  # of the entities, once the node has started
+        self._node_tasks = NodeTasks()
         self._running = False
         self._destroyed = asyncio.Event()
         self._end_record = EndRecord(f"node {full_name}")
@@ -123,6 +125,7 @@ class NodeBase:
             self._running = False
             raise
         self._end_record.begin()
+        self._node_tasks.enter_body()
         self._tasks = await asyncio.TaskGroup().__aenter__()
         for entity in list(self._entities):
             self._start_entity(entity, self._tasks)
@@ -146,6 +149,7 @@ class NodeBase:
         """
         tasks = self._tasks
         assert tasks is not None  # noqa: S101  # set by __aenter__
+        self._node_tasks.note_error(exc)
         with self._end_record.recorded(exc):
             self.destroy_node()
             try:
@@ -333,7 +337,7 @@ class NodeBase:
         An action server or client, made of other entities, adds itself here.
         """
         self._entities[entity] = None
-        entity._adopt(self._forget_entity, self._affinity)
+        entity._adopt(self._forget_entity, self._affinity, self._node_tasks)
         if isinstance(entity, Endpoint):
             entity._enter_graph()
         if self._tasks is not None:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from aionode._concurrency import SLICE_NS, checkpoint, run_in_thread
 from aionode.clock import perf_ns
+from aionode.endpoints._core.node_tasks import create_own_task
 from aionode.errors import CallbackCancelledError, CallbackSignatureError, brief
 
 if TYPE_CHECKING:
@@ -424,7 +425,7 @@ async def _consume_concurrently(
                 continue
             rest = handle(*message_queue.pop())
             if rest is not None:
-                task = tasks.create_task(rest)
+                task = create_own_task(tasks, rest)
                 running.add(task)
                 task.add_done_callback(running.discard)
             if perf_ns() >= turn_ends_ns:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from aionode.endpoints._core.loop_affinity import LoopAffinity
+    from aionode.endpoints._core.node_tasks import NodeTasks
 
 __all__ = ["EndStage", "Entity"]
 
@@ -55,11 +56,18 @@ class Entity:
         self._task: asyncio.Task[None] | None = None
         self._on_destroy: Callable[[Entity], None] | None = None
         self._node_affinity: LoopAffinity | None = None
+        self._node_tasks: NodeTasks | None = None
 
-    def _adopt(self, on_destroy: Callable[[Entity], None], affinity: LoopAffinity) -> None:
-        """Set what is called when the entity is destroyed, and where. Called once, by the node."""
+    def _adopt(
+        self, on_destroy: Callable[[Entity], None], affinity: LoopAffinity, node_tasks: NodeTasks
+    ) -> None:
+        """Set what is called when the entity is destroyed, and where. Called once, by the node.
+
+        `node_tasks` says which tasks are the node's own.
+        """
         self._on_destroy = on_destroy
         self._node_affinity = affinity
+        self._node_tasks = node_tasks
 
     def _start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:
         """Start `_run` as a task of `tasks`; return it, or None if there is no work."""
@@ -71,6 +79,8 @@ class Entity:
                 # The node is failing already; it will destroy the entity in a moment.
                 work.close()
                 raise
+            if self._node_tasks is not None:
+                self._node_tasks.add(self._task)
         return self._task
 
     def _run(self) -> Coroutine[Any, Any, None] | None:

@@ -13,6 +13,7 @@ from aionode.clock import perf_ns
 from aionode.endpoints._core.callback_runner import accepts, checked_concurrency, consume
 from aionode.endpoints._core.loop_affinity import in_thread_of_node
 from aionode.endpoints._core.message_queue import MessageQueue
+from aionode.endpoints._core.node_tasks import create_own_task
 from aionode.endpoints.actions._common import (
     AbortReason,
     ActionEntity,
@@ -365,10 +366,11 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         """Pass goals to `handle_accepted_callback` and execute them, until cancelled."""
         self._loop = asyncio.get_running_loop()
         async with asyncio.TaskGroup() as tasks:
-            tasks.create_task(
-                consume(self._accepted, lambda _, goal: self._hand_over.run(goal), concurrent=True)
+            hand_over = consume(
+                self._accepted, lambda _, goal: self._hand_over.run(goal), concurrent=True
             )
-            tasks.create_task(consume(self._waiting, self._begin, self._concurrent))
+            create_own_task(tasks, hand_over)
+            create_own_task(tasks, consume(self._waiting, self._begin, self._concurrent))
 
     def _enqueue(
         self,
@@ -399,8 +401,8 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         goal._begin()
         try:
             async with asyncio.TaskGroup() as tasks:  # cancelling a goal cancels only its own task
-                tasks.create_task(
-                    self._call_execute(goal, runner), name=f"{self._subject} goal {goal.text}"
+                create_own_task(
+                    tasks, self._call_execute(goal, runner), f"{self._subject} goal {goal.text}"
                 )
         finally:
             if goal.is_active:  # the node stopped before the callback started
