@@ -5,12 +5,20 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING
 
+from aionode.clock._clocks import ClockChange, JumpThreshold
+from aionode.clock._values import ClockType, Duration
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from aionode.clock._clocks import Clock, JumpHandle, TimeJump
     from aionode.clock._time_base import Alarm, TimeBase
 
 __all__ = ["SilenceAlarm"]
+
+EVERY_JUMP = JumpThreshold(
+    min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1)
+)
 
 
 class SilenceAlarm:
@@ -18,16 +26,24 @@ class SilenceAlarm:
 
     A sign costs one reading of the clock: the alarm is set again only when it rings.
 
+    With a `clock` that shows ROS time, a period is over when the clock has gone forward by so much
+    since the last sign, or has stood still for so long on the steady clock, as it does when its
+    publisher is lost. A jump back takes nothing from what has passed. Any other clock counts as the
+    steady one.
+
     Args:
         time_base: Whose steady clock counts.
         period_ns: The longest silence.
         on_silence: Called with the number of periods that are over since the last sign or call;
             returns whether to go on counting without another sign.
+        clock: What the period is measured with, if not with the steady clock.
     """
 
     __slots__ = (
         "_alarm",
+        "_jumps",
         "_on_silence",
+        "_passed_ns",
         "_period_ns",
         "_runs",
         "_since_ns",
@@ -36,15 +52,24 @@ class SilenceAlarm:
     )
 
     def __init__(
-        self, time_base: TimeBase, period_ns: int, on_silence: Callable[[int], bool]
+        self,
+        time_base: TimeBase,
+        period_ns: int,
+        on_silence: Callable[[int], bool],
+        clock: Clock | None = None,
     ) -> None:
         self._time_base = time_base
         self._steady_ns = time_base.steady_ns
         self._period_ns = period_ns
         self._on_silence = on_silence
-        self._since_ns: int | None = None  # the last sign, or the end of the last silent period
+        # The last sign, or the end of the last silent period, or the last movement of the clock.
+        self._since_ns: int | None = None
+        self._passed_ns = 0  # by how much the clock has gone forward since the last sign
         self._alarm: Alarm | None = None
         self._runs = False
+        self._jumps: JumpHandle | None = None
+        if clock is not None and clock.clock_type is ClockType.ROS_TIME:
+            self._jumps = clock.create_jump_callback(EVERY_JUMP, post_callback=self._on_jump)
 
     def start(self) -> None:
         """Begin to ring: an event loop runs now. Signs count before that, too."""
@@ -52,36 +77,68 @@ class SilenceAlarm:
         if self._alarm is None and self._since_ns is not None:
             self._set()
 
-    def note(self) -> None:
-        """Take a sign."""
-        self._since_ns = self._steady_ns()
+    def note(self, at_ns: int | None = None) -> None:
+        """Take a sign, of now or of a time of the steady clock."""
+        self._since_ns = self._steady_ns() if at_ns is None else at_ns
+        self._passed_ns = 0
         if self._alarm is None and self._runs:
             self._set()
+
+    def periods(self) -> int:
+        """Return how many whole periods are over since the last sign; 0 before the first."""
+        if self._since_ns is None:
+            return 0
+        return max(self._steady_ns() - self._since_ns, self._passed_ns) // self._period_ns
+
+    def forget(self) -> None:
+        """Wait for a sign as at first."""
+        self._since_ns = None
+        self._cancel()
 
     def stop(self) -> None:
         """Ring no more."""
         self._runs = False
-        if self._alarm is not None:
-            self._alarm.cancel()
-            self._alarm = None
+        self._cancel()
+        if self._jumps is not None:
+            self._jumps.unregister()
+
+    def _on_jump(self, jump: TimeJump) -> None:
+        """Note that the clock has moved: ROS time is set from outside, never by itself."""
+        if self._since_ns is None or jump.clock_change is not ClockChange.ROS_TIME_NO_CHANGE:
+            return
+        self._since_ns = self._steady_ns()
+        self._passed_ns += max(jump.delta.nanoseconds, 0)
+        if self._passed_ns >= self._period_ns and self._alarm is not None:
+            self._ring()
 
     def _set(self) -> None:
         assert self._since_ns is not None  # noqa: S101  # there was a sign
+        self._cancel()
         self._alarm = self._time_base.call_at(self._since_ns + self._period_ns, self._ring)
+
+    def _cancel(self) -> None:
+        if self._alarm is not None:
+            self._alarm.cancel()
+            self._alarm = None
 
     def _ring(self) -> None:
         # After a stall of the loop, what came in time may still wait to be read: that takes a turn
         # of the loop, and what it wakes another one.
         loop = asyncio.get_running_loop()
-        loop.call_soon(loop.call_soon, self._judge)
+        loop.call_soon(loop.call_soon, self._judge, self._alarm)
 
-    def _judge(self) -> None:
-        if not self._runs or self._since_ns is None:
-            return
-        periods = (self._steady_ns() - self._since_ns) // self._period_ns
+    def _judge(self, rung: Alarm | None) -> None:
+        if rung is not self._alarm or self._since_ns is None:
+            return  # it was stopped meanwhile, or has been judged already
+        periods = self.periods()
         if periods > 0:
-            self._since_ns += periods * self._period_ns
+            if self._jumps is None:
+                self._since_ns += periods * self._period_ns
+            else:
+                self._since_ns = self._steady_ns()
+                self._passed_ns = max(self._passed_ns - periods * self._period_ns, 0)
             if not self._on_silence(periods):
-                self._alarm = None  # until the next sign
+                self._cancel()  # until the next sign
                 return
-        self._set()
+        if self._runs:
+            self._set()

@@ -10,6 +10,7 @@ import asyncio
 import time
 from abc import ABC, abstractmethod
 from contextlib import suppress
+from functools import partial
 from typing import TYPE_CHECKING, Protocol
 from weakref import WeakKeyDictionary
 
@@ -47,6 +48,14 @@ class TimeBase(ABC):
     def steady_ns(self) -> int:
         """Return nanoseconds of a clock that never goes back."""
 
+    def through_suspend(self) -> TimeBase:
+        """Return the time base whose steady clock goes on while the host is suspended.
+
+        For limits that protect people: a machine that wakes up has been silent meanwhile. It is
+        this one where the time is no machine's.
+        """
+        return self
+
     @abstractmethod
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
         """Have the running loop call `callback` at `steady_ns` of the steady clock, never earlier.
@@ -62,56 +71,83 @@ class MachineTime(TimeBase):
     system_ns = staticmethod(time.time_ns)
     steady_ns = staticmethod(time.monotonic_ns)
 
+    def through_suspend(self) -> TimeBase:
+        """Return the time base that counts with CLOCK_BOOTTIME, where the system has it."""
+        return BOOT_TIME
+
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
         """Have the running loop call `callback` at `steady_ns`.
 
         On Linux it does so within about 0.1 ms, elsewhere within 1 or 2 ms.
         """
         loop = asyncio.get_running_loop()
-        alarms = kernel_alarms(loop)
+        alarms = self._kernel_alarms(loop)
         if alarms is not None:
             with suppress(OSError):  # too many open files just now
                 return alarms.add(steady_ns, callback)
-        return LoopAlarm(loop, steady_ns, callback)
+        return LoopAlarm(loop, steady_ns, callback, self.steady_ns)
+
+    def _kernel_alarms(self, loop: asyncio.AbstractEventLoop) -> KernelAlarms | None:
+        return kernel_alarms(loop)
 
 
-KERNEL_ALARMS: WeakKeyDictionary[asyncio.AbstractEventLoop, KernelAlarms | None] = (
+class BootTime(MachineTime):
+    """The clocks of the machine, with a steady clock that goes on while the host is suspended."""
+
+    # macOS has no CLOCK_BOOTTIME, and its clocks need not agree on a suspended host.
+    if hasattr(time, "CLOCK_BOOTTIME"):
+        steady_ns = staticmethod(partial(time.clock_gettime_ns, time.CLOCK_BOOTTIME))
+
+    def _kernel_alarms(self, loop: asyncio.AbstractEventLoop) -> KernelAlarms | None:
+        return kernel_alarms(loop, through_suspend=True)
+
+
+BOOT_TIME = BootTime()
+
+KERNEL_ALARMS: WeakKeyDictionary[asyncio.AbstractEventLoop, dict[bool, KernelAlarms | None]] = (
     WeakKeyDictionary()
 )
 
 
-def kernel_alarms(loop: asyncio.AbstractEventLoop) -> KernelAlarms | None:
+def kernel_alarms(
+    loop: asyncio.AbstractEventLoop, *, through_suspend: bool = False
+) -> KernelAlarms | None:
     """Return the kernel's alarms for `loop`, or None if they are not available."""
     try:
-        return KERNEL_ALARMS[loop]
+        return KERNEL_ALARMS[loop][through_suspend]
     except KeyError:
         pass
-    from aionode.clock._timerfd import KernelAlarms  # with the first alarm of a loop
+    from aionode.clock._timerfd import CLOCK_BOOTTIME, KernelAlarms  # with the first alarm
 
     try:
-        alarms = KernelAlarms(loop)
+        alarms = KernelAlarms(loop, CLOCK_BOOTTIME) if through_suspend else KernelAlarms(loop)
     except (OSError, NotImplementedError):
         alarms = None
-    KERNEL_ALARMS[loop] = alarms
+    KERNEL_ALARMS.setdefault(loop, {})[through_suspend] = alarms
     return alarms
 
 
 class LoopAlarm:
     """A timer of the event loop that sleeps again if the loop wakes it early."""
 
-    __slots__ = ("_callback", "_handle", "_loop", "_when_ns")
+    __slots__ = ("_callback", "_handle", "_loop", "_now_ns", "_when_ns")
 
     def __init__(
-        self, loop: asyncio.AbstractEventLoop, when_ns: int, callback: Callable[[], None]
+        self,
+        loop: asyncio.AbstractEventLoop,
+        when_ns: int,
+        callback: Callable[[], None],
+        now_ns: Callable[[], int] = time.monotonic_ns,
     ) -> None:
         self._loop = loop
         self._when_ns = when_ns
         self._callback = callback
-        delay_s = max(0.0, (when_ns - time.monotonic_ns()) / 1e9)
+        self._now_ns = now_ns
+        delay_s = max(0.0, (when_ns - now_ns()) / 1e9)
         self._handle: asyncio.TimerHandle = loop.call_later(delay_s, self._check)
 
     def _check(self) -> None:
-        left_ns = self._when_ns - time.monotonic_ns()
+        left_ns = self._when_ns - self._now_ns()
         if left_ns <= 0:
             self._callback()
             return

@@ -28,6 +28,7 @@ __all__ = ["KernelAlarms", "PeriodicAlarm"]
 # From <time.h> and <sys/timerfd.h>.
 CLOCK_REALTIME = 0
 CLOCK_MONOTONIC = 1
+CLOCK_BOOTTIME = 7
 TFD_TIMER_ABSTIME = 1
 TFD_TIMER_CANCEL_ON_SET = 2
 
@@ -37,15 +38,20 @@ class KernelAlarms(TimerHeap):
 
     The file is open only while an alarm is pending, so the process is left with no open file.
 
+    Args:
+        loop: The event loop.
+        clock: The clock that they are set by.
+
     Raises:
         OSError: The system has no `timerfd`, or the process has too many open files.
         NotImplementedError: The loop cannot wait for files.
     """
 
-    __slots__ = ("__weakref__", "_fd", "_loop", "_set_ns", "_spec")
+    __slots__ = ("__weakref__", "_clock", "_fd", "_loop", "_set_ns", "_spec")
 
-    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+    def __init__(self, loop: asyncio.AbstractEventLoop, clock: int = CLOCK_MONOTONIC) -> None:
         super().__init__()
+        self._clock = clock
         self._loop = weakref.ref(loop)  # weak: the registry of loops holds this object
         self._fd = -1
         self._set_ns = 0  # when the file becomes readable; 0 if never
@@ -68,7 +74,7 @@ class KernelAlarms(TimerHeap):
             self._close_soon()
 
     def _open(self, loop: asyncio.AbstractEventLoop) -> None:
-        fd = open_timer()
+        fd = open_timer(self._clock)
         try:
             loop.add_reader(fd, self._expired)
         except BaseException:
@@ -90,7 +96,7 @@ class KernelAlarms(TimerHeap):
             return  # it was set to an earlier time just as it expired, and expires again
         self._set_ns = 0
         try:
-            self.fire(time.monotonic_ns())
+            self.fire(time.clock_gettime_ns(self._clock))
         finally:
             next_ns = self.first_ns()
             if next_ns is None:

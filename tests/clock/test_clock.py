@@ -9,7 +9,8 @@ import math
 import operator
 import sys
 import time  # noqa: TID251  # clocks are compared with the machine's
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -34,6 +35,7 @@ from aionode.clock import (
     ROSClock,
     SteadyClock,
     Time,
+    TimeBase,
     TimeJump,
 )
 from aionode.clock import (
@@ -457,7 +459,7 @@ async def test_sleeping_for_nothing_takes_one_turn(
 def alarms(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """With the kernel's timers, and as on systems that have none."""
     if request.param == "loop":
-        monkeypatch.setattr(time_base, "kernel_alarms", lambda _: None)
+        monkeypatch.setattr(time_base, "kernel_alarms", lambda *_, **__: None)
 
 
 @pytest.mark.usefixtures("alarms")
@@ -605,9 +607,9 @@ async def test_setting_the_system_clock_changes_no_sleep() -> None:
 
 
 @pytest.mark.usefixtures("alarms")
-async def test_a_machine_alarm_rings_once_and_not_too_early() -> None:
-    """However the loop rounds."""
-    machine = MachineTime()
+@pytest.mark.parametrize("machine", [MachineTime(), MachineTime().through_suspend()])
+async def test_a_machine_alarm_rings_once_and_not_too_early(machine: TimeBase) -> None:
+    """However the loop rounds, and whichever steady clock it goes by."""
     rung: asyncio.Future[int] = asyncio.get_running_loop().create_future()
     when_ns = machine.steady_ns() + 1_400_000
     machine.call_at(when_ns, lambda: rung.set_result(machine.steady_ns()))
@@ -676,6 +678,35 @@ async def test_no_file_is_left_when_no_alarm_waits() -> None:
     cancelled.cancel()
     await settle()
     assert open_files() == before
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="Linux has timerfd")
+async def test_an_alarm_may_count_what_the_host_is_suspended() -> None:
+    """A robot that wakes up has heard nothing meanwhile, and CLOCK_MONOTONIC has stood still."""
+    base = MachineTime().through_suspend()
+    before = set(timer_clocks())
+    alarm = base.call_at(base.steady_ns() + 10**15, print)
+    [added] = set(timer_clocks()) - before
+    assert added[1] == time.CLOCK_BOOTTIME
+    assert abs(base.steady_ns() - time.clock_gettime_ns(time.CLOCK_BOOTTIME)) < 10**9
+    assert base.system_ns is MachineTime.system_ns
+    alarm.cancel()
+    await settle()
+
+
+def timer_clocks() -> Iterator[tuple[str, int]]:
+    """Yield each file that is a timer, with its clock."""
+    for entry in Path("/proc/self/fdinfo").iterdir():
+        with suppress(OSError):
+            for line in entry.read_text(encoding="ascii").splitlines():
+                if line.startswith("clockid:"):
+                    yield entry.name, int(line.split()[1])
+
+
+def test_time_that_is_stepped_is_suspended_with_nothing() -> None:
+    """A manual clock steps every time there is."""
+    clock = ManualClock()
+    assert clock.through_suspend() is clock
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="Linux has timerfd")
@@ -754,7 +785,7 @@ async def test_without_the_kernels_timers_the_loop_rings(
 ) -> None:
     """A system without them, or one that has no file to spare, is less exact, not broken."""
 
-    def fail() -> None:
+    def fail(*_: object) -> None:
         raise OSError(errno.EMFILE, "too many")
 
     machine = MachineTime()
