@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING
 
-from aionode.clock._clocks import ClockChange, JumpThreshold
 from aionode.clock._values import ClockType, Duration
 
 if TYPE_CHECKING:
@@ -15,10 +14,6 @@ if TYPE_CHECKING:
     from aionode.clock._time_base import Alarm, TimeBase
 
 __all__ = ["SilenceAlarm"]
-
-EVERY_JUMP = JumpThreshold(
-    min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1)
-)
 
 
 class SilenceAlarm:
@@ -69,7 +64,11 @@ class SilenceAlarm:
         self._runs = False
         self._jumps: JumpHandle | None = None
         if clock is not None and clock.clock_type is ClockType.ROS_TIME:
-            self._jumps = clock.create_jump_callback(EVERY_JUMP, post_callback=self._on_jump)
+            from aionode.clock._clocks import JumpThreshold  # few silences go by such a clock
+
+            shortest = Duration(nanoseconds=1)
+            every = JumpThreshold(min_forward=shortest, min_backward=-shortest)
+            self._jumps = clock.create_jump_callback(every, post_callback=self._on_jump)
 
     def start(self) -> None:
         """Begin to ring: an event loop runs now. Signs count before that, too."""
@@ -104,8 +103,8 @@ class SilenceAlarm:
 
     def _on_jump(self, jump: TimeJump) -> None:
         """Note that the clock has moved: ROS time is set from outside, never by itself."""
-        if self._since_ns is None or jump.clock_change is not ClockChange.ROS_TIME_NO_CHANGE:
-            return
+        if self._since_ns is None or not jump.delta.nanoseconds:
+            return  # without a sign, or a change of the source: then the clock has not moved
         self._since_ns = self._steady_ns()
         self._passed_ns += max(jump.delta.nanoseconds, 0)
         if self._passed_ns >= self._period_ns and self._alarm is not None:
