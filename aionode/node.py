@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from aionode.action import ActionClient, ActionServer, ServerGoalHandle
     from aionode.endpoints._core.callback_runner import OnError
+    from aionode.graph import EndpointInfo
     from aionode.message import ActionClass
     from aionode.parameter import Parameter
     from aionode.qos import QoSProfile
@@ -175,3 +176,28 @@ class Node(NodeEndpoints, NodeGraphQueries):
         from aionode.action import ActionClient  # nodes without actions start faster
 
         return ActionClient(self, action_type, action_name)
+
+    async def find_type(self, name: str, *, endpoints: Sequence[EndpointInfo] | None = None) -> Any:
+        """Return the message, service or action class of a type that is known by its name.
+
+        That is the class of this program or of aionode. If neither has it, or the nodes that use
+        the type have another definition of it, the class is made from the description that one of
+        these nodes sends: five nodes are asked at most, each for at most 2 s. Such a class is
+        accepted only if it has the type hash that the graph shows. Cancelling is safe. The result
+        is `Any` to type checkers::
+
+            message = await node.find_type("my_robot_msgs/msg/Words")
+            node.create_subscription(message, "/words", print)
+
+        Args:
+            name: Its ROS name.
+            endpoints: Ask only the nodes of these endpoints; by default of all that use the type.
+
+        Raises:
+            InterfaceNotFoundError: the type is not known here, and no node describes it within the
+                limits of a description; the text says what was wrong (a LookupError).
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        from aionode._node.type_lookup import find_type  # most programs know their types
+
+        return await find_type(self, name, endpoints)

@@ -53,8 +53,9 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
     ├── RequestTimeoutError (TimeoutError)
     ├── TimeSourceChangedError (RuntimeError)
     ├── TransitionError (RuntimeError)
-    └── TransportError (ConnectionError)
-        └── FrameError
+    ├── TransportError (ConnectionError)
+    │   └── FrameError
+    └── TypeDescriptionError (ValueError)
 """
 
 from __future__ import annotations
@@ -135,6 +136,7 @@ __all__ = [
     "TimeSourceChangedError",
     "TransitionError",
     "TransportError",
+    "TypeDescriptionError",
     "UnknownROSArgsError",
 ]
 
@@ -522,13 +524,29 @@ class InterfaceNotFoundError(AionodeError, LookupError):
     Attributes:
         name: The name that was looked up.
         suggestions: Existing names that are similar, the closest first.
+        problem: Why there is none.
     """
 
     def __init__(self, name: str, suggestions: tuple[str, ...] = (), problem: str = "") -> None:
         self.name = name
         self.suggestions = suggestions
+        self.problem = problem or "no such interface"
         hint = f"did you mean {' or '.join(suggestions)}?" if suggestions else HOW_TO_FIND
-        super().__init__(f"{name}: {problem or 'no such interface'}; {hint}")
+        super().__init__(f"{name}: {self.problem}; {hint}")
+
+
+class TypeDescriptionError(AionodeError, ValueError):
+    """The description of a type, which a node sent, is invalid or exceeds a limit.
+
+    Attributes:
+        name: The type that was asked for.
+        problem: What is wrong with its description.
+    """
+
+    def __init__(self, name: str, problem: str) -> None:
+        self.name = name
+        self.problem = problem
+        super().__init__(f"description of {brief(name)}: {problem}")
 
 
 HOW_TO_FIND = (

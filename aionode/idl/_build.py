@@ -92,7 +92,7 @@ class Builder:
         return new_class(
             name,
             (BASES[kind],),
-            {"typename": text.typename},
+            {"typename": text.typename, "by_name": False},
             lambda namespace: namespace.update(body),
         )
 
@@ -108,7 +108,8 @@ class Builder:
             if member.value is not None:
                 body[member.name] = member.value
         body["__annotations__"] = annotations
-        options = {} if "." in body["__qualname__"] else {"typename": text.typename}
+        nested = "." in body["__qualname__"]
+        options = {} if nested else {"typename": text.typename, "by_name": False}
         return new_class(name, (Message,), options, lambda space: space.update(body))
 
     def field_type(self, text: InterfaceText, member: MemberText) -> FieldType:
@@ -162,7 +163,7 @@ def existing(typename: str, made: type[Interface]) -> type[Interface] | None:
     So a workspace with its own std_msgs can be used together with the shipped one.
     """
     try:
-        found = get_interface(typename)
+        found: type[Interface] = get_interface(typename)
     except InterfaceNotFoundError:
         return None
     halves = HALVES[split_type_name(typename)[1]]

@@ -1,8 +1,8 @@
 """ROS 2's standard interfaces as Python classes, under their ROS names.
 
 ``std_msgs/msg/String`` is `aionode.interfaces.std_msgs.msg.String`. The modules of the packages are
-generated from ROS 2 Jazzy's definitions; this one finds a class by its name. Nothing is imported
-before it is asked for.
+generated from ROS 2 Jazzy's definitions; this one finds a class by its name, also one that the
+program itself has written. Nothing is imported before it is asked for.
 
 Where a ROS 2 is sourced (``AMENT_PREFIX_PATH``), its packages can be imported here as well, and
 types that it defines differently are its own. ``ROS_DISTRO`` alone brings the known differences.
@@ -24,6 +24,7 @@ from typing import Any
 
 from aionode.errors import InterfaceNotFoundError
 from aionode.message import ActionType, Message, ServiceType
+from aionode.message._message import TYPES_BY_NAME
 
 __all__ = [
     "get_action",
@@ -39,10 +40,12 @@ CLOSE = 0.85
 """How like a name has to be to be suggested, from 0 to 1."""
 
 
-def get_interface(name: str) -> type[Any]:
+def get_interface(name: str) -> Any:
     """Return the class of a message, service or action type.
 
-    Type checkers know nothing of a class that is found by name, so it is of `Any` to them.
+    Type checkers know nothing of a class that is found by name: the result is `Any` to them, and
+    fits wherever a class of its kind is wanted. A type that neither aionode nor the program has is
+    known to the nodes that use it: `Node.find_type` asks those.
 
     Args:
         name: Its ROS name, such as ``std_msgs/msg/String``; ``std_msgs/String`` is understood if
@@ -61,24 +64,24 @@ def get_interface(name: str) -> type[Any]:
     raise not_found(name, parts)
 
 
-def get_message(name: str) -> type[Any]:
+def get_message(name: str) -> Any:
     """Return the class of a message type; see `get_interface`."""
     return of_kind(name, Message, "a message")
 
 
-def get_service(name: str) -> type[Any]:
+def get_service(name: str) -> Any:
     """Return the class of a service type; see `get_interface`."""
     return of_kind(name, ServiceType, "a service")
 
 
-def get_action(name: str) -> type[Any]:
+def get_action(name: str) -> Any:
     """Return the class of an action type; see `get_interface`."""
     return of_kind(name, ActionType, "an action")
 
 
 def of_kind(name: str, base: type[Any], what: str) -> type[Any]:
     """Return the class of a type that has to be of one kind."""
-    found = get_interface(name)
+    found: type[Any] = get_interface(name)
     if not issubclass(found, base):
         raise InterfaceNotFoundError(name, problem=f"not {what}")
     return found
@@ -106,11 +109,12 @@ def interface_names(package: str | None = None) -> tuple[str, ...]:
 
 
 def known_packages() -> frozenset[str]:
-    """Return the names of all packages: shipped, loaded, or of the ROS 2 that is sourced."""
+    """Return the names of all packages: shipped, loaded, written, or of the sourced ROS 2."""
+    here = shipped_packages() | loaded_packages() | {name.split("/")[0] for name in TYPES_BY_NAME}
     if not is_sourced():
-        return shipped_packages() | loaded_packages()
+        return here
     installed = import_module("aionode.idl._installed")  # by name: it is made of this package
-    names: frozenset[str] = shipped_packages() | loaded_packages() | installed.packages()
+    names: frozenset[str] = here | installed.packages()
     return names
 
 
@@ -125,9 +129,23 @@ def loaded_packages() -> frozenset[str]:
 
 
 def types_of(package: str, kind: str) -> dict[str, type[Any]]:
-    """Return the types of one kind in a package, by name; none if there is no such package."""
+    """Return the types of one kind in a package, by name; none if there is no such package.
+
+    Those of the program are among them, unless the package has one of the same name.
+    """
     if not package.isidentifier() or kind not in KINDS:
         return {}
+    prefix = f"{package}/{kind}/"
+    written = {
+        name.removeprefix(prefix): value
+        for name, value in list(TYPES_BY_NAME.items())
+        if name.startswith(prefix)
+    }
+    return written | imported_types(package, kind)
+
+
+def imported_types(package: str, kind: str) -> dict[str, type[Any]]:
+    """Return the types of one kind that the module of a package has, by name."""
     module_name = f"{__name__}.{package}.{kind}"
     try:
         module = import_module(module_name)
@@ -135,11 +153,10 @@ def types_of(package: str, kind: str) -> dict[str, type[Any]]:
         if error.name is not None and module_name.startswith(error.name):
             return {}
         raise
-    prefix = f"{package}/{kind}/"
     return {
         name: value
         for name, value in vars(module).items()
-        if getattr(value, "__ros_type__", "") == f"{prefix}{name}"
+        if getattr(value, "__ros_type__", "") == f"{package}/{kind}/{name}"
     }
 
 

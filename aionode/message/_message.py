@@ -12,7 +12,8 @@ import re
 import sys
 from importlib import import_module
 from keyword import iskeyword
-from typing import TYPE_CHECKING, Any, ClassVar, dataclass_transform, get_args, get_origin
+from typing import TYPE_CHECKING, Any, ClassVar, Final, dataclass_transform, get_args, get_origin
+from weakref import WeakValueDictionary
 
 import msgspec
 
@@ -23,7 +24,16 @@ from aionode.message._validation import default_value, plain_default, same, show
 if TYPE_CHECKING:
     from types import FrameType
 
-__all__ = ["DEFAULT", "Message", "MessageMeta", "constants", "fields", "message_class", "type_name"]
+__all__ = [
+    "DEFAULT",
+    "TYPES_BY_NAME",
+    "Message",
+    "MessageMeta",
+    "constants",
+    "fields",
+    "message_class",
+    "type_name",
+]
 
 DEFAULT: Any = object()
 """The zero value of any field type: ``header: Header = DEFAULT``.
@@ -34,6 +44,13 @@ omitted.
 
 TYPE_NAME = re.compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Z][A-Za-z0-9_]*")
 FIELD_NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
+
+TYPES_BY_NAME: Final[WeakValueDictionary[str, type[Any]]] = WeakValueDictionary()
+"""The newest message, service or action class of each ROS name that this program has defined.
+
+Classes made from the descriptions of other nodes are not among them: a peer must not decide what a
+name means here.
+"""
 
 
 class MessageMeta(msgspec.StructMeta):
@@ -46,9 +63,19 @@ class MessageMeta(msgspec.StructMeta):
         namespace: dict[str, Any],
         *,
         typename: str = "",
+        by_name: bool = True,
         **options: Any,
     ) -> MessageMeta:
-        """Create the class; `typename` is its ROS name, such as ``std_msgs/msg/String``."""
+        """Create the class.
+
+        Args:
+            name: Its name in Python.
+            bases: Its base classes.
+            namespace: Its attributes and annotations.
+            typename: Its ROS name, such as ``std_msgs/msg/String``.
+            by_name: Whether `aionode.interfaces.get_interface` finds it by its ROS name.
+            options: Options of `msgspec.Struct`.
+        """
         if typename:
             namespace["__ros_type__"] = checked_type_name(typename)
         own: list[Field] = []
@@ -70,7 +97,10 @@ class MessageMeta(msgspec.StructMeta):
         namespace["__ros_fields__"] = (*inherited, *own)
         namespace["__ros_constants__"] = tuple(known)
         namespace["__ros_functions__"] = {}
-        return super().__new__(mcls, name, bases, namespace, eq=False, **options)
+        cls = super().__new__(mcls, name, bases, namespace, eq=False, **options)
+        if typename and by_name:
+            TYPES_BY_NAME[typename] = cls
+        return cls
 
 
 def annotations_of(namespace: dict[str, Any], frame: FrameType) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from types import new_class
 from typing import Any, ClassVar, Protocol, TypeAlias, TypeVar
 
 from aionode.message._field_types import Sequence, int8
-from aionode.message._message import Message, MessageMeta, checked_type_name
+from aionode.message._message import TYPES_BY_NAME, Message, MessageMeta, checked_type_name
 
 __all__ = ["ActionClass", "ActionType", "Interface", "ServiceClass", "ServiceType"]
 
@@ -37,7 +37,7 @@ def shipped(package: str, kind: str, name: str) -> Any:
     return getattr(import_module(f"aionode.interfaces.{package}.{kind}"), name)
 
 
-def name_halves(cls: type, typename: str, halves: tuple[str, ...]) -> None:
+def name_halves(cls: type, typename: str, halves: tuple[str, ...], *, by_name: bool) -> None:
     """Set the ROS names of a service or action class and its nested messages."""
     cls.__ros_type__ = checked_type_name(typename)  # type: ignore[attr-defined] # both declare it
     for half in halves:
@@ -46,6 +46,8 @@ def name_halves(cls: type, typename: str, halves: tuple[str, ...]) -> None:
             msg = f"{typename}: needs a nested class {half}(Message), even one without fields"
             raise TypeError(msg)
         message.__ros_type__ = f"{typename}_{half}"  # type: ignore[attr-defined] # of Message
+    if by_name:
+        TYPES_BY_NAME[typename] = cls
 
 
 def make_event(cls: type[ServiceType]) -> type[Message]:
@@ -61,7 +63,8 @@ def make_event(cls: type[ServiceType]) -> type[Message]:
             "response": Sequence[cls.Response, 1],  # type: ignore[attr-defined] # nested classes
         },
     }
-    return MessageMeta("Event", (Message,), namespace, typename=f"{cls.__ros_type__}_Event")  # type: ignore[return-value] # a class of Message
+    name = f"{cls.__ros_type__}_Event"
+    return MessageMeta("Event", (Message,), namespace, typename=name, by_name=False)  # type: ignore[return-value] # a class of Message
 
 
 class ServiceType:
@@ -83,9 +86,9 @@ class ServiceType:
     __ros_type__: ClassVar[str] = ""
     Event: ClassVar[Any] = Hidden(make_event)
 
-    def __init_subclass__(cls, *, typename: str) -> None:
+    def __init_subclass__(cls, *, typename: str, by_name: bool = True) -> None:
         """Set the ROS names of the service and its messages."""
-        name_halves(cls, typename, ("Request", "Response"))
+        name_halves(cls, typename, ("Request", "Response"), by_name=by_name)
 
 
 def make_impl(cls: type[ActionType]) -> type:
@@ -101,7 +104,8 @@ def make_impl(cls: type[ActionType]) -> type:
             "__doc__": doc,
             "__annotations__": annotations,
         }
-        return MessageMeta(name.rpartition(".")[2], (Message,), namespace, typename=typename)
+        short_name = name.rpartition(".")[2]
+        return MessageMeta(short_name, (Message,), namespace, typename=typename, by_name=False)
 
     def service(name: str, request: dict[str, Any], response: dict[str, Any]) -> Any:
         typename = f"{cls.__ros_type__}_{name.removesuffix('Service')}"
@@ -112,9 +116,8 @@ def make_impl(cls: type[ActionType]) -> type:
             "Request": message(f"{name}.Request", request, f"A request to {typename}."),
             "Response": message(f"{name}.Response", response, f"A response of {typename}."),
         }
-        return new_class(
-            name, (ServiceType,), {"typename": typename}, lambda ns: ns.update(namespace)
-        )
+        options = {"typename": typename, "by_name": False}
+        return new_class(name, (ServiceType,), options, lambda ns: ns.update(namespace))
 
     parts = {
         "__module__": cls.__module__,
@@ -153,9 +156,9 @@ class ActionType:
     __ros_type__: ClassVar[str] = ""
     Impl: ClassVar[Any] = Hidden(make_impl)
 
-    def __init_subclass__(cls, *, typename: str) -> None:
+    def __init_subclass__(cls, *, typename: str, by_name: bool = True) -> None:
         """Set the ROS names of the action and its messages."""
-        name_halves(cls, typename, ("Goal", "Result", "Feedback"))
+        name_halves(cls, typename, ("Goal", "Result", "Feedback"), by_name=by_name)
 
 
 Interface: TypeAlias = Message | ServiceType | ActionType

@@ -11,8 +11,15 @@ from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.geometry_msgs.msg import TwistStamped
 from aionode.interfaces.std_msgs.msg import String
+from aionode.message import Message
 
 __all__ = ["AddServer", "FibServer", "ParamNode", "Talker"]
+
+
+class Words(Message, typename="robot_msgs/msg/Words"):
+    """A type that exists as a Python class only."""
+
+    text: str = ""
 
 
 class Talker(Node):
@@ -22,6 +29,7 @@ class Talker(Node):
         super().__init__("talker")
         chatter = self.create_publisher(String, "/chatter", 10)
         stamped = self.create_publisher(TwistStamped, "/stamped", 10)
+        self.create_publisher(Words, "/_words", 10)  # hidden: only its type is asked for
         self.create_timer(0.05, lambda: chatter.publish(String(data="Hello")))
         self.create_timer(0.05, lambda: stamped.publish(self.stamp()))
 

@@ -102,6 +102,11 @@ def test_node_list(terminals: Terminals) -> None:
     )
 
 
+def test_a_type_that_only_the_robot_has_can_be_shown(terminals: Terminals) -> None:
+    """It is written in Python there, and the node that uses it describes it."""
+    assert terminals.shown("interface", "show", "robot_msgs/msg/Words") == ("string text\n", 0)
+
+
 def test_topic_info(terminals: Terminals) -> None:
     """Type and counts."""
     assert terminals.shown("topic", "info", "/chatter") == (

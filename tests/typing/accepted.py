@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from aionode import GoalResponse, Health, Node, NodeEnd, ServerGoalHandle, Supervisor
+from aionode.interfaces import get_action, get_message, get_service
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.geometry_msgs.msg import Point, PoseStamped, Twist, Vector3
@@ -191,6 +192,14 @@ async def goals(node: Node) -> None:
     node.create_action_server(
         Fibonacci, "fibonacci", execute, goal_callback=lambda _goal: GoalResponse.ACCEPT
     )
+
+
+async def types_by_name(node: Node) -> None:
+    """A class that is found by its name fits wherever one of its kind is wanted."""
+    node.create_client(get_service("std_srvs/srv/Trigger"), "trigger")
+    node.create_action_client(get_action("example_interfaces/action/Fibonacci"), "fibonacci")
+    node.create_publisher(get_message("std_msgs/msg/String"), "text", 1)
+    node.create_service(await node.find_type("std_srvs/srv/Trigger"), "trigger", print)
 
 
 async def calls(node: Node) -> None:

@@ -12,11 +12,14 @@ import click
 from aionode.cli._commands.completion import complete_interfaces
 from aionode.cli._support.options import interfaces_option, json_option
 from aionode.cli._support.output import Output
+from aionode.cli._support.session import run_verb
 from aionode.cli._verbs.interface import KINDS, list_interfaces, package, packages, proto, show
-from aionode.errors import CommandError
+from aionode.errors import CommandError, InterfaceNotFoundError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from aionode.node import Node
 
 __all__ = ["interface"]
 
@@ -69,6 +72,22 @@ def packages_command(output: Output, kinds: tuple[str, ...]) -> None:
     packages(output=output, kinds=kinds)
 
 
+def with_class(type_name: str, print_class: Callable[[Any, Output], None], json: bool) -> None:
+    """Call `print_class` with the class of a type; the nodes are asked for one not known here."""
+    from aionode.interfaces import get_interface
+
+    try:
+        cls = get_interface(type_name)
+    except InterfaceNotFoundError:
+
+        async def ask(node: Node, output: Output) -> None:
+            print_class(await node.find_type(type_name), output)
+
+        run_verb(ask, json=json)
+    else:
+        print_class(cls, Output(json=json))
+
+
 @interface.command("show")
 @click.argument("type_name", metavar="TYPE", shell_complete=complete_interfaces())
 @click.option("--all-comments", is_flag=True, help="Print the comments of nested types as well.")
@@ -86,7 +105,8 @@ def show_command(type_name: str, all_comments: bool, no_comments: bool, json: bo
         if not type_name:
             raise CommandError("The passed value is empty: no type name came from the pipe")
     comments: Literal["none", "all", "outer"] = "all" if all_comments else "outer"
-    show(type_name, output=Output(json=json), comments="none" if no_comments else comments)
+    comments = "none" if no_comments else comments
+    with_class(type_name, lambda cls, output: show(cls, output=output, comments=comments), json)
 
 
 @interface.command("proto")
@@ -96,7 +116,7 @@ def show_command(type_name: str, all_comments: bool, no_comments: bool, json: bo
 @interfaces_option
 def proto_command(type_name: str, no_quotes: bool, json: bool) -> None:
     """Print the default values of a type in YAML."""
-    proto(type_name, quotes=not no_quotes, output=Output(json=json))
+    with_class(type_name, lambda cls, output: proto(cls, output=output, quotes=not no_quotes), json)
 
 
 @interface.command("generate")

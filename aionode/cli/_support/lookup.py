@@ -5,7 +5,6 @@ from __future__ import annotations
 import difflib
 from typing import TYPE_CHECKING, Any, Final
 
-from aionode._distribution import NO_TYPE_HASH
 from aionode.errors import CommandError, InterfaceNotFoundError
 from aionode.graph import TOPIC_KINDS, EndpointKind
 from aionode.names import is_hidden
@@ -29,6 +28,7 @@ __all__ = [
     "node_infos",
     "topic_type",
     "type_of",
+    "type_of_action",
     "unknown",
 ]
 
@@ -167,40 +167,32 @@ async def topic_type(node: Node, topic: str, given: str | None = None) -> type[M
 async def type_of(node: Node, users: list[EndpointInfo]) -> Any:
     """Return the class for endpoints that all have the same type.
 
-    That is the class of aionode.interfaces if the type hash is the same; otherwise the nodes are
-    asked for the definition.
+    Raises:
+        CommandError: the type is not known here, and no node describes it.
+    """
+    return await described(node, users[0].type_name, users[0].name, users)
+
+
+async def type_of_action(node: Node, name: str, type_name: str) -> Any:
+    """Return the class of the type of an action.
 
     Raises:
-        CommandError: no node describes the type.
+        CommandError: the type is not known here, and no node describes it.
     """
-    from aionode.interfaces import get_interface
-    from aionode.wire.typehash import type_hash
+    hidden = f"{name}/_action/"
+    users = [one for one in endpoints(node, *EndpointKind) if one.name.startswith(hidden)]
+    return await described(node, type_name, name, users)
 
-    name = users[0].type_name
+
+async def described(node: Node, type_name: str, name: str, users: list[EndpointInfo]) -> Any:
+    """Return the class of a type that some endpoints use, if need be as their nodes describe it."""
     try:
-        known: Any = get_interface(name)
-    except InterfaceNotFoundError:
-        known = None
-    hashes = {user.type_hash for user in users}
-    if known is not None and hashes & {type_hash(known), NO_TYPE_HASH, ""}:
-        return known
-    from aionode.cli._support.type_discovery import fetch_type
-
-    for user in users:
-        fetched = await fetch_type(node, user)
-        if fetched is not None:
-            return fetched
-    problem = (
-        f"'{name}' is not known here"
-        if known is None
-        else f"'{name}' has a different definition here ({type_hash(known)}) than there "
-        f"({', '.join(sorted(hashes))})"
-    )
-    where = ", ".join(sorted({user.node.fully_qualified_name for user in users}))
-    raise CommandError(
-        f"Type of '{users[0].name}': {problem}, and {where} does not describe it; give a folder "
-        "with its definition: --interfaces PATH (in Python: aionode.idl.load_interfaces)"
-    )
+        return await node.find_type(type_name, endpoints=users)
+    except InterfaceNotFoundError as error:
+        raise CommandError(
+            f"Type of '{name}': {error.problem}; give a folder with its definition: "
+            "--interfaces PATH (in Python: aionode.idl.load_interfaces)"
+        ) from error
 
 
 def absolute(node_name: str) -> str:

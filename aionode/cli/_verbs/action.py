@@ -79,7 +79,7 @@ async def send_goal(
     from aionode.action import ActionClient
 
     name = ACTION.resolve(node, action_name)
-    action_class = class_of(node, name, action_type)
+    action_class = await class_of(node, name, action_type)
     goal = message_from_yaml(action_class.Goal, values)
     client: ActionClient[Any, Any, Any] = ActionClient(node, action_class, name)
     output.progress("Waiting for an action server to become available...")
@@ -102,15 +102,17 @@ async def send_goal(
     return print_outcome(handle, outcome, output)
 
 
-def class_of(node: Node, name: str, action_type: str) -> Any:
+async def class_of(node: Node, name: str, action_type: str) -> Any:
     """Return the class for the action type that the user gave.
 
     Raises:
         CommandError: there is no such type, or the action has another one.
     """
-    found = lookup.interface_class("action", action_type)
     types = ACTION.types_by_name(node).get(name, [])
-    if types and action_type not in types and found.__ros_type__ not in types:
+    if action_type in types:
+        return await lookup.type_of_action(node, name, action_type)
+    found = lookup.interface_class("action", action_type)
+    if types and found.__ros_type__ not in types:
         raise CommandError(
             f"The passed action type is invalid: '{name}' has type {', '.join(types)}, "
             f"not {action_type}"

@@ -59,7 +59,7 @@ def of_kinds(names: tuple[str, ...], kinds: tuple[str, ...]) -> list[str]:
 
 
 def show(
-    type_name: str,
+    cls: Any,
     *,
     output: Output,
     comments: Literal["none", "outer", "all"] = "outer",
@@ -67,27 +67,23 @@ def show(
     """Print the definition of a type, with the definitions of nested types indented.
 
     Args:
-        type_name: The type.
+        cls: The class of the type.
         output: Where to print.
         comments: Whether to print what fields mean: never, for the type itself, or for nested ones
             as well. The comments are those of the sourced ROS 2, or else aionode's own.
     """
     from aionode.idl import definition_text
-    from aionode.interfaces import get_interface
 
-    cls = get_interface(type_name)
     if output.json:
         output.item("", {"name": cls.__ros_type__, "definition": definition_text(cls)})
     else:
         output.raw(definition_text(cls, nested=True, comments=comments))
 
 
-def proto(type_name: str, *, output: Output, quotes: bool = True) -> None:
+def proto(cls: Any, *, output: Output, quotes: bool = True) -> None:
     """Print the default values of a type in YAML, as a template for ``pub`` and ``call``."""
-    from aionode.interfaces import get_interface
     from aionode.message import ActionType, ServiceType, to_builtins, to_yaml
 
-    cls: Any = get_interface(type_name)
     part = cls.Goal if issubclass(cls, ActionType) else cls
     part = cls.Request if issubclass(cls, ServiceType) else part
     text = to_yaml(part())

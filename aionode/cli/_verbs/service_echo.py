@@ -107,8 +107,8 @@ async def service_class(node: Node, name: str, given: str | None) -> Any:
         )
     action, _, part = types[0].rpartition("_")
     if "/action/" in types[0] and part in ACTION_SERVICES:
-        impl = lookup.interface_class("action", action).Impl
-        return getattr(impl, ACTION_SERVICES[part])
+        found = await lookup.type_of_action(node, name.rpartition("/_action/")[0], action)
+        return getattr(found.Impl, ACTION_SERVICES[part])
     if users:
         return await lookup.type_of(node, users)
     return lookup.interface_class("service", types[0])

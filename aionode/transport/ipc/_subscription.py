@@ -26,7 +26,6 @@ from collections import defaultdict, deque
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from aionode.errors import DecodeError, FrameError
-from aionode.message import fields
 from aionode.qos import ReliabilityPolicy, depth_of, keeps_all
 from aionode.transport.base import ReaderRegistration, Registration
 from aionode.transport.ipc._endpoint_table import can_link
@@ -44,7 +43,7 @@ if TYPE_CHECKING:
     from aionode.transport.ipc._registry import LinkRegistry
     from aionode.wire.cdr import Data
 
-__all__ = ["IpcReader", "RemotePublisher", "Route", "heard_from", "may_be_large"]
+__all__ = ["IpcReader", "RemotePublisher", "Route", "heard_from"]
 
 WINDOW: Final = 1_000
 """How many messages a KEEP_ALL subscription lets a publisher send ahead of what it has used."""
@@ -544,17 +543,6 @@ class IpcReader(ReaderRegistration):
         for remote_publisher in self.remote_publishers.values():
             remote_publisher.close()
         self.remote_publishers.clear()
-
-
-def may_be_large(msg_type: type[Any]) -> bool:
-    """Whether messages contain unbounded numbers or bytes, at any depth."""
-    types = [field.type for field in fields(msg_type)]
-    return any(
-        may_be_large(type_.nested)
-        if type_.nested is not None
-        else type_.container == "unbounded" and type_.kind not in ("string", "wstring")
-        for type_ in types
-    )
 
 
 def heard_from(

@@ -13,7 +13,8 @@ from aionode.transport.ipc._listener import Advertisement, Listener, socket_fold
 from aionode.transport.ipc._manager import LinkManager
 from aionode.transport.ipc._publisher import IpcWriter
 from aionode.transport.ipc._service import IpcRequester, IpcServer
-from aionode.transport.ipc._subscription import IpcReader, may_be_large
+from aionode.transport.ipc._subscription import IpcReader
+from aionode.wire import cdr
 
 if TYPE_CHECKING:
     from aionode.clock import TimeBase
@@ -144,7 +145,7 @@ class IpcTransport(Transport):
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
     ) -> Registration:
         """Announce a subscription."""
-        if may_be_large(msg_type):
+        if cdr.has_buffers(msg_type):
             # Shared memory is read through it: the first message would wait for the import.
             import numpy  # noqa: F401, ICN001
         ipc_reader = IpcReader(self.manager, msg_type, reader)

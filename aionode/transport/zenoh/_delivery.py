@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import logging
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import zenoh
 
-from aionode.message import fields
 from aionode.qos import DurabilityPolicy, ReliabilityPolicy
 from aionode.transport._zenoh_config import BLOCK_US, FLUSH_S
 from aionode.transport.base import SampleInfo
@@ -26,7 +25,6 @@ __all__ = [
     "GIVEN_UP_NS",
     "STILL_NS",
     "UNKNOWN_GID",
-    "has_buffers",
     "is_reliable",
     "is_transient",
     "sample_info_of",
@@ -53,21 +51,6 @@ GIVEN_UP_NS = BLOCK_US * 900
 BLOCK = zenoh.CongestionControl.BLOCK
 
 DROP = zenoh.CongestionControl.DROP
-
-
-def has_buffers(msg_type: type[Any]) -> bool:
-    """Whether messages hold sequences of numbers without a bound, at any depth.
-
-    Such messages may be large, and from ROS 2 Lyrical on their publishers use a second key.
-    """
-    for field in fields(msg_type):
-        kind = field.type
-        if kind.kind == "message":
-            if kind.nested is not None and has_buffers(kind.nested):
-                return True
-        elif kind.container == "unbounded" and kind.kind not in ("string", "wstring"):
-            return True
-    return False
 
 
 def is_reliable(qos: QoSProfile) -> bool:

@@ -23,7 +23,6 @@ from aionode.transport.zenoh._delivery import (
     FLUSH_NS,
     GIVEN_UP_NS,
     STILL_NS,
-    has_buffers,
     is_reliable,
     is_transient,
     withdraw,
@@ -113,7 +112,7 @@ class ZenohWriter(Declaration, Writer):
             state.acknowledgements.writers[self.gid] = self
         # Large messages, and small ones after them to keep the order.
         self._large = self._send_queue(state.bulk, keep_all=False)
-        self._bulk_only = self._transient and not self.bounded and has_buffers(msg_type)
+        self._bulk_only = self._transient and not self.bounded and cdr.has_buffers(msg_type)
         # Whether any reader wants a message; None if one wants all, or may be there unseen.
         self._wants: Callable[[Any], bool] | None = None
         self._filtered = 0

@@ -19,7 +19,6 @@ from aionode.transport._writer_proxy import WriterProxy
 from aionode.transport.base import ReaderRegistration, SampleInfo
 from aionode.transport.zenoh._delivery import (
     UNKNOWN_GID,
-    has_buffers,
     is_reliable,
     is_transient,
 )
@@ -75,7 +74,7 @@ class ZenohReader(Declaration, ReaderRegistration):
     def __init__(
         self, state: SessionState, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
     ) -> None:
-        self._buffers = has_buffers(msg_type)
+        self._buffers = cdr.has_buffers(msg_type)
         transient = is_transient(endpoint.qos)
         self._second_key = self._buffers and not transient and self.recovers
         backends = CPU_BACKEND if self._second_key else ""

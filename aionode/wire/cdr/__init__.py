@@ -19,7 +19,7 @@ from aionode.wire.cdr._decoder import generate_decoder
 from aionode.wire.cdr._encoder import FALLBACK_ERRORS, JOIN, generate_encoder, views
 from aionode.wire.cdr._fallback_decoder import decode_slowly
 from aionode.wire.cdr._family import OWN, MessageFamily
-from aionode.wire.cdr._layout import has_views
+from aionode.wire.cdr._layout import has_buffers, has_views
 
 __all__ = [
     "Data",
@@ -28,6 +28,7 @@ __all__ = [
     "decoder",
     "encode",
     "encoder",
+    "has_buffers",
     "has_views",
     "parts_encoder",
 ]

@@ -28,6 +28,7 @@ __all__ = [
     "Primitive",
     "TextPacking",
     "first_alignment",
+    "has_buffers",
     "has_views",
     "is_small",
     "lay_out",
@@ -93,6 +94,7 @@ def padding(offset: int, alignment: int) -> int:
     return (len(HEADER) - offset) % alignment
 
 
+@cache
 def first_alignment(kind: FieldType) -> int:
     """Return the alignment of a field, which is that of its first value."""
     if kind.container in ("bounded", "unbounded"):
@@ -126,10 +128,24 @@ def has_views(cls: Any) -> bool:
 
     These can be large, and are sent from their own memory without a copy.
     """
+    return holds_numbers_in(cls, ("bounded", "unbounded"))
+
+
+def has_buffers(cls: Any) -> bool:
+    """Return whether messages contain such sequences without a bound.
+
+    From ROS 2 Lyrical on, their publishers use a second key.
+    """
+    return holds_numbers_in(cls, ("unbounded",))
+
+
+@cache
+def holds_numbers_in(cls: Any, containers: tuple[str, ...]) -> bool:
+    """Return whether messages contain numbers or bytes in one of these containers."""
     return any(
-        has_views(kind.nested)
+        holds_numbers_in(kind.nested, containers)
         if kind.nested is not None
-        else kind.container in ("bounded", "unbounded") and kind.kind in PRIMITIVES
+        else kind.container in containers and kind.kind in PRIMITIVES
         for kind in (field.type for field in fields(cls))
     )
 

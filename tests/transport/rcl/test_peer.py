@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from aionode._node.type_lookup import described
 from aionode.action import ActionServer, CancelResponse, GoalStatus, ServerGoalHandle
-from aionode.cli._support.type_discovery import fetch_type
 from aionode.clock import Duration
 from aionode.context import Context
 from aionode.endpoints.events import (
@@ -320,10 +320,10 @@ async def test_it_describes_its_types(node: Node) -> None:
     """A class made of the description has the hash that the graph shows."""
     while not node.count_publishers("/chatter"):
         await node.graph.changed()
-    (user,) = node.graph.endpoints(EndpointKind.PUBLISHER, name="/chatter")
+    users = node.graph.endpoints(EndpointKind.PUBLISHER, name="/chatter")
     while not node.graph.count(EndpointKind.SERVER, "/peer/get_type_description"):
         await node.graph.changed()
-    made = await fetch_type(node, user)
+    made = await described(node, "std_msgs/msg/String", users, [])
     assert made is not None
     assert made is not String
     assert type_hash(made) == type_hash(String)

@@ -1,4 +1,4 @@
-"""Types without a local definition."""
+"""Types that only other nodes define."""
 
 from __future__ import annotations
 
@@ -9,50 +9,29 @@ import pytest
 
 from aionode import Node
 from aionode.cli._support.lookup import topic_type
-from aionode.cli._support.type_discovery import type_from
+from aionode.cli._verbs.action import send_goal
 from aionode.cli._verbs.service import call
 from aionode.cli._verbs.topic_echo import echo
 from aionode.errors import CommandError
-from aionode.interfaces import get_interface
-from aionode.interfaces.example_interfaces.srv import AddTwoInts
-from aionode.interfaces.std_msgs.msg import Header
-from aionode.message import (
-    DEFAULT,
-    Array,
-    Bounded,
-    Message,
-    Sequence,
-    ServiceType,
-    byte,
-    float64,
-    int32,
-    wstring,
-)
+from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.message import ActionType, Message, ServiceType, int32
 from aionode.testing import settle
-from aionode.wire._type_description import description_message
 from aionode.wire.typehash import type_hash
 
+# `by_name=False`: the command finds none of them, as if they were in another process.
 
-class Words(Message, typename="tutorial/msg/Words"):
-    """A type of the user's own."""
 
-    header: Header = DEFAULT
+class Words(Message, typename="foreign/msg/Words", by_name=False):
+    """A message of the other program."""
+
     text: str = ""
-    bounded: Bounded[str, 7] = ""
-    wide: wstring = ""
-    one: byte = b"\x00"
-    scores: Sequence[float64] = DEFAULT
-    few: Sequence[int32, 3] = DEFAULT
-    nine: Array[float64, 9] = DEFAULT
-    names: Sequence[Bounded[str, 5], 2] = DEFAULT
-    stamps: Sequence[Header] = DEFAULT
 
 
-class Reverse(ServiceType, typename="tutorial/srv/Reverse"):
-    """A service of the user's own."""
+class Reverse(ServiceType, typename="foreign/srv/Reverse", by_name=False):
+    """A service of the other program."""
 
     class Request(Message):
-        """What to reverse."""
+        """The text to reverse."""
 
         text: str = ""
 
@@ -62,21 +41,23 @@ class Reverse(ServiceType, typename="tutorial/srv/Reverse"):
         text: str = ""
 
 
-@pytest.mark.parametrize(
-    "cls",
-    [
-        Words,
-        Reverse,
-        AddTwoInts,
-        *map(get_interface, ("std_msgs/msg/Empty", "sensor_msgs/msg/PointCloud2")),
-        *map(get_interface, ("rcl_interfaces/msg/ParameterEvent", "std_srvs/srv/Empty")),
-    ],
-)
-def test_a_class_made_of_a_description_has_the_same_hash(cls: Any) -> None:
-    """The type hash decides whether two endpoints communicate."""
-    made = type_from(description_message(cls))
+class Walk(ActionType, typename="foreign/action/Walk", by_name=False):
+    """An action of the other program."""
 
-    assert type_hash(made) == type_hash(cls)
+    class Goal(Message):
+        """The way to go."""
+
+        steps: int32 = 0
+
+    class Result(Message):
+        """The way that was gone."""
+
+        walked: int32 = 0
+
+    class Feedback(Message):
+        """The way so far."""
+
+        walked: int32 = 0
 
 
 async def test_echo_learns_a_type_from_the_node_that_publishes_it(
@@ -105,10 +86,30 @@ async def test_call_learns_a_service_type(
     node_factory("server").create_service(Reverse, "/reverse", reverse)
 
     await call(
-        tool, "/reverse", "tutorial/srv/Reverse", values="{text: abc}", output=screen.json_output
+        tool, "/reverse", "foreign/srv/Reverse", values="{text: abc}", output=screen.json_output
     )
 
     assert screen.records == [{"text": "cba"}]
+
+
+async def test_send_goal_learns_an_action_type(
+    tool: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """The tutorial's /navigate_to has a type that exists as a Python class only."""
+
+    async def walk(goal: Any) -> Walk.Result:
+        goal.succeed()
+        return Walk.Result(walked=goal.request.steps)
+
+    node_factory("server").create_action_server(Walk, "/walk", walk)
+    await settle()
+
+    status = await send_goal(
+        tool, "/walk", "foreign/action/Walk", values="{steps: 3}", output=screen.json_output
+    )
+
+    assert status == 0
+    assert screen.records[-1]["result"] == {"walked": 3}
 
 
 async def test_a_type_that_no_node_describes_is_an_error_with_a_way_out(
@@ -118,7 +119,7 @@ async def test_a_type_that_no_node_describes_is_an_error_with_a_way_out(
     silent = node_factory("silent", parameter_overrides=[silence()])
     silent.create_publisher(Words, "/words", 1)
 
-    with pytest.raises(CommandError, match="'tutorial/msg/Words' is not known here") as raised:
+    with pytest.raises(CommandError, match="Type of '/words': it is not known here") as raised:
         await echo(tool, "/words", output=screen.output)
 
     assert "/silent does not describe it" in str(raised.value)
@@ -130,7 +131,7 @@ async def test_another_definition_of_a_known_type_is_learnt(
 ) -> None:
     """A robot may have a newer version of a standard package."""
 
-    class String(Message, typename="std_msgs/msg/String"):
+    class String(Message, typename="std_msgs/msg/String", by_name=False):
         data: str
         language: str
 
@@ -140,6 +141,11 @@ async def test_another_definition_of_a_known_type_is_learnt(
 
     assert found is not None
     assert type_hash(found) == type_hash(String)
+
+
+async def test_an_action_that_is_known_is_not_asked_for(tool: Node) -> None:
+    """The common case costs no request."""
+    assert await tool.find_type("example_interfaces/action/Fibonacci") is Fibonacci
 
 
 def silence() -> Any:

@@ -1,0 +1,159 @@
+"""The class of a type that is known by its name: of this program, or as the nodes describe it.
+
+A node with ``~/get_type_description`` describes its types. A class made from a description is
+accepted if it has the type hash that the graph shows; behind a bridge, it may show none.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode._distribution import NO_TYPE_HASH
+from aionode.errors import AionodeError, InterfaceNotFoundError, TypeDescriptionError
+from aionode.graph import EndpointKind
+from aionode.interfaces import get_interface
+from aionode.wire._described_type import action_from_descriptions, type_from_description
+from aionode.wire.typehash import type_hash
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from aionode._node.endpoints import NodeEndpoints
+    from aionode.graph import EndpointInfo, Graph
+
+__all__ = ["find_type"]
+
+ANSWER_S: Final = 2.0
+"""Timeout for one description, in seconds of real time; a node answers within milliseconds."""
+
+MOST_ASKED: Final = 5
+"""How many nodes are asked for one type: those that do not answer must not add up."""
+
+ACTION_PARTS: Final = ("SendGoal", "GetResult", "FeedbackMessage")
+"""The types by which an action is known in the graph, as suffixes of its name."""
+
+
+async def find_type(
+    node: NodeEndpoints, name: str, endpoints: Sequence[EndpointInfo] | None
+) -> Any:
+    """Return the class of a type; see `Node.find_type`."""
+    users = users_of(node.graph, name) if endpoints is None else list(endpoints)
+    try:
+        known = get_interface(name)
+    except InterfaceNotFoundError:
+        if not users:
+            raise
+        known = None
+    hashes = {user.type_hash for user in users if user.type_name == name}
+    if known is not None and (not hashes or hashes & {type_hash(known), NO_TYPE_HASH, ""}):
+        return known
+    problems: list[str] = []
+    found = await described(node, name, users, problems)
+    if found is None:
+        raise InterfaceNotFoundError(name, problem=problem_of(known, users, hashes, problems))
+    return found
+
+
+def users_of(graph: Graph, name: str) -> list[EndpointInfo]:
+    """Return the endpoints that use a type, or the parts of an action of this name."""
+    names = {name, *(f"{name}_{part}" for part in ACTION_PARTS)}
+    return [endpoint for endpoint in graph.endpoints() if endpoint.type_name in names]
+
+
+def problem_of(
+    known: Any, users: Iterable[EndpointInfo], hashes: set[str], problems: list[str]
+) -> str:
+    """Return why no class was found."""
+    what = "it is not known here"
+    if known is not None:
+        what = (
+            f"its definition here ({type_hash(known)}) is not that of the nodes that use it "
+            f"({', '.join(sorted(hashes))})"
+        )
+    where = sorted({user.node.fully_qualified_name for user in users})
+    more = f" and {len(where) - MOST_ASKED} more" if len(where) > MOST_ASKED else ""
+    missing = f"{', '.join(where[:MOST_ASKED])}{more} does not describe it"
+    return f"{what}, and {'; '.join(problems) or missing}"
+
+
+async def described(
+    node: NodeEndpoints, name: str, users: list[EndpointInfo], problems: list[str]
+) -> Any | None:
+    """Return the class that one of the nodes describes; None if none does.
+
+    Args:
+        node: The node that asks.
+        name: The type.
+        users: Endpoints of that type, or of the parts of that action.
+        problems: Takes the reasons why a description was not accepted.
+    """
+    by_node: dict[str, dict[str, EndpointInfo]] = {}
+    for user in users:
+        by_node.setdefault(user.node.fully_qualified_name, {})[user.type_name] = user
+    for endpoints in list(by_node.values())[:MOST_ASKED]:
+        try:
+            found = await described_by(node, name, endpoints)
+        except TypeDescriptionError as error:
+            problems.append(str(error))
+        else:
+            if found is not None:
+                return found
+    return None
+
+
+async def described_by(
+    node: NodeEndpoints, name: str, users: dict[str, EndpointInfo]
+) -> Any | None:
+    """Return the class that one node describes, which has endpoints of these types.
+
+    Raises:
+        TypeDescriptionError: what it describes is invalid, or is not what the graph shows.
+    """
+    if name in users:
+        description = await description_of(node, users[name])
+        made = None if description is None else type_from_description(description)
+        return made if made is None else with_hash(made, users[name])
+    parts = [users.get(f"{name}_{part}") for part in ACTION_PARTS]
+    descriptions = [None if part is None else await description_of(node, part) for part in parts]
+    if None in descriptions:
+        return None  # a client's node may describe fewer parts than the server's
+    made = action_from_descriptions(name, *descriptions)  # type: ignore[arg-type]  # three, none of them None
+    impl = made.Impl
+    kinds = (impl.SendGoalService, impl.GetResultService, impl.FeedbackMessage)
+    for kind, part in zip(kinds, parts, strict=True):
+        with_hash(kind, part)  # type: ignore[arg-type]  # it has a description
+    return made
+
+
+def with_hash(made: Any, user: EndpointInfo) -> Any:
+    """Return a class if it has the type hash of an endpoint.
+
+    Raises:
+        TypeDescriptionError: it has another one.
+    """
+    if user.type_hash not in {"", NO_TYPE_HASH, type_hash(made)}:
+        raise TypeDescriptionError(
+            user.type_name,
+            f"{user.node.fully_qualified_name} describes a type with the hash {type_hash(made)}, "
+            f"but uses one with {user.type_hash}",
+        )
+    return made
+
+
+async def description_of(node: NodeEndpoints, user: EndpointInfo) -> Any | None:
+    """Return the description of an endpoint's type; None if its node does not describe it."""
+    # Imported on demand: most programs know their types.
+    from aionode.interfaces.type_description_interfaces.srv import GetTypeDescription
+
+    service = f"{user.node.fully_qualified_name}/get_type_description"
+    if not node.graph.count(EndpointKind.SERVER, service):
+        return None
+    client = node.create_client(GetTypeDescription, service)
+    request = GetTypeDescription.Request(type_name=user.type_name, type_hash=user.type_hash)
+    try:
+        response: Any = await client.call(request, timeout_sec=ANSWER_S)
+    except AionodeError:
+        return None  # the caller says that no node describes the type
+    finally:
+        client.destroy()
+    return response.type_description if response.successful else None

@@ -1,0 +1,232 @@
+"""Classes from type descriptions: for types that a program has no definition of.
+
+A description arrives from another process, and may say anything. Names are checked where classes
+are made; what a class would cost is checked here, before the first message of it is made.
+"""
+
+from __future__ import annotations
+
+from types import new_class
+from typing import TYPE_CHECKING, Annotated, Any, Final
+
+from aionode.errors import TypeDescriptionError, brief
+from aionode.message import DTYPES, ActionType, FieldType, Message, ServiceType
+
+if TYPE_CHECKING:
+    from aionode.interfaces.type_description_interfaces.msg import TypeDescription
+
+__all__ = ["action_from_descriptions", "type_from_description"]
+
+KINDS: Final = {
+    1: "message",
+    2: "int8",
+    3: "uint8",
+    4: "int16",
+    5: "uint16",
+    6: "int32",
+    7: "uint32",
+    8: "int64",
+    9: "uint64",
+    10: "float32",
+    11: "float64",
+    13: "char",
+    15: "bool",
+    16: "byte",
+    17: "string",
+    18: "wstring",
+    21: "string",
+    22: "wstring",
+}
+CONTAINERS: Final = ("single", "array", "bounded", "unbounded")
+PLACEHOLDER: Final = "structure_needs_at_least_one_member"
+
+MOST_TYPES: Final = 1_000
+"""Largest number of types in a description; the largest action of MoveIt uses 80."""
+
+MOST_FIELDS: Final = 10_000
+"""Largest number of fields in all types of a description."""
+
+DEEPEST: Final = 50
+"""Largest depth of types in types."""
+
+LARGEST_BOUND: Final = 2**32 - 1
+"""Largest bound of a sequence or string, as its length is encoded in 32 bits."""
+
+LARGEST_MESSAGE: Final = 2**26
+"""Largest size of a new message in bytes, estimated: all elements of its arrays included."""
+
+VALUE_SIZE: Final = 64
+"""About what one value of a message takes in memory, in bytes: a Python object and its place."""
+
+ELEMENT_SIZE: Final = 8
+"""What one number of an array takes at most, in bytes."""
+
+
+def type_from_description(description: TypeDescription) -> Any:
+    """Return the message or service class that a description describes.
+
+    The class is not among those that `aionode.interfaces.get_interface` finds by name.
+
+    Raises:
+        TypeDescriptionError: the description is invalid or exceeds a limit (a ValueError).
+    """
+    described = DescribedTypes(description)
+    name = described.name
+    halves = [f"{name}_Request", f"{name}_Response"]
+    if "/srv/" in name or all(half in described.parts for half in halves):
+        return described.composed(ServiceType, ("Request", "Response"), halves)
+    return described.message(name)
+
+
+def action_from_descriptions(
+    name: str, send_goal: TypeDescription, get_result: TypeDescription, feedback: TypeDescription
+) -> Any:
+    """Return the action class whose services and feedback message are described.
+
+    Args:
+        name: The ROS name of the action.
+        send_goal: The description of the service ``<name>_SendGoal``.
+        get_result: The description of the service ``<name>_GetResult``.
+        feedback: The description of the message ``<name>_FeedbackMessage``.
+
+    Raises:
+        TypeDescriptionError: a description is invalid or exceeds a limit (a ValueError).
+    """
+    body = {
+        half: DescribedTypes(description, name).message(f"{name}_{half}")
+        for half, description in (
+            ("Goal", send_goal),
+            ("Result", get_result),
+            ("Feedback", feedback),
+        )
+    }
+    return composed(ActionType, name, body)
+
+
+def composed(base: type[Any], name: str, halves: dict[str, type[Message]]) -> Any:
+    """Return the class of a service or action."""
+    body = {"__doc__": f"{name}, as a node describes it.", **halves}
+    return new_type(base, name, body)
+
+
+def new_type(base: type[Any], name: str, body: dict[str, Any]) -> Any:
+    """Return a new class of this ROS name.
+
+    Raises:
+        TypeDescriptionError: the name of the type, or of a field, is invalid.
+    """
+    if not name:
+        raise TypeDescriptionError(name, "it has no name")
+    options = {"typename": name, "by_name": False}
+    short_name = name.rpartition("/")[2]
+    try:
+        return new_class(short_name, (base,), options, lambda space: space.update(body))
+    except (TypeError, ValueError) as error:
+        raise TypeDescriptionError(name, brief(str(error))) from error
+
+
+class DescribedTypes:
+    """Makes the classes of one description, each on the first call.
+
+    Args:
+        description: The description.
+        name: The name for errors; by default that of the described type.
+
+    Raises:
+        TypeDescriptionError: it has too many types or fields.
+    """
+
+    def __init__(self, description: TypeDescription, name: str = "") -> None:
+        main = description.type_description
+        parts = (main, *description.referenced_type_descriptions)
+        self.name: str = name or main.type_name
+        self.parts = {part.type_name: part for part in parts}
+        self._made: dict[str, type[Message]] = {}
+        self._size_bytes: dict[str, int] = {}  # of a new message of each class
+        self._open: list[str] = []  # types that are being made; each uses the next
+        if len(parts) > MOST_TYPES:
+            raise self._error(f"it has {len(parts)} types, at most {MOST_TYPES} fit")
+        count = sum(len(part.fields) for part in parts)
+        if count > MOST_FIELDS:
+            raise self._error(f"it has {count} fields, at most {MOST_FIELDS} fit")
+
+    def _error(self, problem: str) -> TypeDescriptionError:
+        return TypeDescriptionError(self.name, problem)
+
+    def composed(self, base: type[Any], halves: tuple[str, ...], names: list[str]) -> Any:
+        """Return the class of a service, made of the messages of these names."""
+        parts = map(self.message, names)
+        return composed(base, self.name, dict(zip(halves, parts, strict=True)))
+
+    def message(self, name: str) -> type[Message]:
+        """Return the class of one message.
+
+        Raises:
+            TypeDescriptionError: the type is missing, contains itself, or exceeds a limit.
+        """
+        if name in self._made:
+            return self._made[name]
+        if name not in self.parts:
+            raise self._error(f"it lacks the type {brief(name)}")
+        if name in self._open:
+            raise self._error(f"{brief(name)} contains itself")
+        if len(self._open) >= DEEPEST:
+            raise self._error(f"its types are nested more than {DEEPEST} deep")
+        self._open.append(name)
+        made = self._make(name)
+        self._open.pop()
+        self._made[name] = made
+        return made
+
+    def _make(self, name: str) -> type[Message]:
+        types: dict[str, FieldType] = {}
+        size_bytes = VALUE_SIZE
+        for field in self.parts[name].fields:
+            if field.name != PLACEHOLDER:
+                types[field.name] = self._field_type(field)
+                size_bytes += self._size_of(types[field.name])
+        if size_bytes > LARGEST_MESSAGE:
+            raise self._error(
+                f"a new {brief(name)} takes {size_bytes / 2**20:.3g} MiB with the elements of its "
+                f"arrays, at most {LARGEST_MESSAGE >> 20} MiB fit"
+            )
+        self._size_bytes[name] = size_bytes
+        body = {
+            "__annotations__": {field: Annotated[Any, type_] for field, type_ in types.items()},
+            "__doc__": f"{name}, as a node describes it.",
+        }
+        made: type[Message] = new_type(Message, name, body)
+        return made
+
+    def _field_type(self, field: Any) -> FieldType:
+        """Return the type of a field; its `type_id` encodes both kind and container."""
+        described = field.type
+        container, kind = divmod(described.type_id, 48)
+        if kind not in KINDS or container >= len(CONTAINERS):
+            raise self._error(f"{brief(field.name)} has the unknown type id {described.type_id}")
+        if described.string_capacity > LARGEST_BOUND:
+            raise self._error(
+                f"{brief(field.name)} is a string of {described.string_capacity} characters, "
+                f"at most {LARGEST_BOUND} fit"
+            )
+        sized = CONTAINERS[container] in {"array", "bounded"}
+        if sized and not 0 < described.capacity <= LARGEST_BOUND:
+            raise self._error(
+                f"{brief(field.name)} has {described.capacity} elements, 1 to {LARGEST_BOUND} fit"
+            )
+        return FieldType(
+            KINDS[kind],
+            self.message(described.nested_type_name) if kind == 1 else None,
+            described.string_capacity or None,
+            CONTAINERS[container],
+            described.capacity if sized else 0,
+        )
+
+    def _size_of(self, type_: FieldType) -> int:
+        """Return about how many bytes the field takes in a new message."""
+        size_bytes = VALUE_SIZE
+        if type_.nested is not None:
+            size_bytes += self._size_bytes[type_.nested.__ros_type__]
+        elif type_.container == "array" and type_.kind in DTYPES:
+            size_bytes = ELEMENT_SIZE
+        return size_bytes * type_.size if type_.container == "array" else size_bytes
