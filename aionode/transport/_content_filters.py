@@ -28,8 +28,20 @@ MAX_SIZE: Final = 4096
 KIND: Final = "filter/1/"
 """What the token of a filter has after the participant: a word, and the version of its form."""
 
-MAX_FILTERS: Final = 10_000
-"""How many announced filters are known at most, of all other contexts."""
+MAX_FILTERS: Final = 2_000
+"""How many announced filters are known at most, of all other contexts: 8 MB of text."""
+
+MAX_FILTERS_PER_READER: Final = 4
+"""How many of them one subscription may have; it has two while it changes its filter."""
+
+MAX_APPLIED: Final = 100
+"""How many filters one publisher applies; with more, every subscription gets everything."""
+
+WORK_PER_MESSAGE: Final = 200_000
+"""How much work the filters of others may cost for one message, in units of about a nanosecond."""
+
+MESSAGES_UNFILTERED: Final = 100
+"""How many messages go to everyone after one whose filters cost too much."""
 
 
 def text_of_filter(content_filter: ContentFilterOptions) -> str:
@@ -58,10 +70,63 @@ def filter_from_text(text: str) -> ContentFilterOptions | None:
     return None
 
 
+class OverBudgetError(Exception):
+    """The filters cost more than a message allows."""
+
+
+class Budget:
+    """The work that filters of others may cost for the present message."""
+
+    def __init__(self) -> None:
+        self._left = 0
+
+    def begin(self) -> None:
+        """Begin with a new message."""
+        self._left = WORK_PER_MESSAGE
+
+    def spend(self, work: int) -> None:
+        """Take the work for one comparison.
+
+        Raises:
+            OverBudgetError: there is not so much left.
+        """
+        self._left -= work
+        if self._left < 0:
+            raise OverBudgetError
+
+
+class AnnouncedFilter:
+    """A filter of one subscription of another context, compiled once for each type."""
+
+    def __init__(self, options: ContentFilterOptions, budget: Budget) -> None:
+        self._options = options
+        self._budget = budget
+        self._compiled: dict[type[Any], Callable[[Any], bool] | None] = {}
+
+    def predicate(self, msg_type: type[Any]) -> Callable[[Any], bool] | None:
+        """Return whether a message passes; None if the filter does not fit the type."""
+        if msg_type not in self._compiled:
+            options = self._options
+            try:
+                made = compile_filter(
+                    msg_type,
+                    options.filter_expression,
+                    options.expression_parameters,
+                    spend=self._budget.spend,
+                )
+            except ContentFilterError:
+                self._compiled[msg_type] = None
+            else:
+                self._compiled[msg_type] = made
+        return self._compiled[msg_type]
+
+
 class ContentFilters:
     """The announced filters of subscriptions, by the gid of the subscription.
 
-    While a subscription changes its filter, both are known, and what either wants is sent.
+    While a subscription changes its filter, both are known, and what either wants is sent. A filter
+    of another process may cost this one little: a publisher that would do too much work for them
+    sends everything.
 
     Attributes:
         changes: Incremented whenever a filter is added or removed.
@@ -71,7 +136,11 @@ class ContentFilters:
     def __init__(self) -> None:
         self.changes = 0
         self.on_change: list[Callable[[], None]] = []
-        self._by_gid: dict[bytes, dict[str, ContentFilterOptions]] = {}
+        self._by_gid: dict[bytes, dict[str, AnnouncedFilter]] = {}
+        self._count = 0  # of all filters
+        # Subscriptions that announced more than a subscription may have: they get everything.
+        self._excessive: set[bytes] = set()
+        self._budget = Budget()
 
     def __bool__(self) -> bool:
         return bool(self._by_gid)
@@ -87,20 +156,37 @@ class ContentFilters:
         if not what.startswith(KIND) or not GID.fullmatch(gid_text):
             return
         gid = bytes.fromhex(gid_text)
-        known = self._by_gid.setdefault(gid, {})
-        content_filter = filter_from_text(text) if present else None
-        if content_filter is not None and len(self._by_gid) <= MAX_FILTERS:
-            known[text] = content_filter
+        known = self._by_gid.get(gid, {})
+        if present:
+            self._add(gid, known, text)
+        elif text in known:
+            del known[text]
+            self._count -= 1
+            if not known:
+                del self._by_gid[gid]
         else:
-            known.pop(text, None)
-        if not known:
-            del self._by_gid[gid]
+            return
         self._changed()
+
+    def _add(self, gid: bytes, known: dict[str, AnnouncedFilter], text: str) -> None:
+        """Take a filter that is well-formed, unless there are too many."""
+        options = filter_from_text(text)
+        if options is None or text in known:
+            return
+        if self._count >= MAX_FILTERS or len(known) >= MAX_FILTERS_PER_READER:
+            if len(self._excessive) < MAX_FILTERS:
+                self._excessive.add(gid)
+            return
+        known[text] = AnnouncedFilter(options, self._budget)
+        self._by_gid[gid] = known
+        self._count += 1
 
     def clear(self) -> None:
         """Forget all filters: the session has ended."""
         if self._by_gid:
             self._by_gid.clear()
+            self._count = 0
+            self._excessive.clear()
             self._changed()
 
     def _changed(self) -> None:
@@ -117,24 +203,35 @@ class ContentFilters:
         predicates: list[Callable[[Any], bool]] = []
         for gid in gids:
             announced = self._by_gid.get(gid)
-            if not announced:
+            if not announced or gid in self._excessive:
                 return None
             for one in announced.values():
-                try:
-                    predicates.append(
-                        compile_filter(msg_type, one.filter_expression, one.expression_parameters)
-                    )
-                except ContentFilterError:
+                predicate = one.predicate(msg_type)
+                if predicate is None or len(predicates) >= MAX_APPLIED:
                     return None
-        return any_of(predicates) if predicates else None
+                predicates.append(predicate)
+        return any_of(predicates, self._budget) if predicates else None
 
 
-def any_of(predicates: list[Callable[[Any], bool]]) -> Callable[[Any], bool]:
-    """Return whether any of these predicates is true of a message, which may be invalid."""
+def any_of(predicates: list[Callable[[Any], bool]], budget: Budget) -> Callable[[Any], bool]:
+    """Return whether any of these predicates is true of a message, which may be invalid.
+
+    A message whose predicates cost more than the budget is wanted, and so are those after it for a
+    while: the subscriptions filter for themselves.
+    """
+    unfiltered = 0
 
     def wants(msg: Any) -> bool:
+        nonlocal unfiltered
+        if unfiltered:
+            unfiltered -= 1
+            return True
+        budget.begin()
         try:
             return any(predicate(msg) for predicate in predicates)
+        except OverBudgetError:
+            unfiltered = MESSAGES_UNFILTERED
+            return True
         except (TypeError, ValueError, AttributeError, LookupError):
             return True  # a value that does not fit its field: the encoder says which one
 

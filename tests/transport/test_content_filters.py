@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aionode import Publisher, Subscription
-from aionode.content_filter import ContentFilterOptions
+from aionode.content_filter import ContentFilterOptions, compile_filter
 from aionode.context import Context
 from aionode.errors import ContentFilterError, EntityDestroyedError, MessageError
 from aionode.interfaces.std_msgs.msg import Int32, String
@@ -378,3 +378,89 @@ def test_a_filter_that_does_not_fit_the_type_wants_everything() -> None:
 
     assert filters
     assert filters.wanted_by([gid], Int32) is None
+
+
+# What filters of others may cost
+
+
+def announced(filters: ContentFilters, gid: bytes, *expressions: str) -> None:
+    """Announce filters of one subscription."""
+    for expression in expressions:
+        text = text_of_filter(ContentFilterOptions(expression))
+        filters.take_token(f"filter/1/{gid.hex()}/{text}", present=True)
+
+
+def gid_of(number: int) -> bytes:
+    """Return the gid of a subscription."""
+    return number.to_bytes(16, "big")
+
+
+def test_filters_that_cost_too_much_want_everything_for_a_while() -> None:
+    """Fifty patterns of 3 kB took a second of the publisher's loop for each message of 10 kB."""
+    filters = ContentFilters()
+    gids = [gid_of(number) for number in range(50)]
+    for number, gid in enumerate(gids):
+        announced(filters, gid, f"data LIKE '%{'a' * 2900}_{number}%'")
+    wants = filters.wanted_by(gids, String)
+    assert wants is not None
+
+    costly, cheap = String(data="a" * 10_000), String(data="b")
+
+    assert not wants(cheap)
+    assert wants(costly)
+    assert [wants(cheap) for _ in range(101)] == [True] * 100 + [False]
+
+
+def test_a_subscription_with_more_filters_than_a_change_needs_wants_everything() -> None:
+    """One subscription of another process had 20,000, and each was compiled."""
+    filters = ContentFilters()
+    announced(filters, gid_of(1), *(f"data = {number}" for number in range(4)))
+    assert filters.wanted_by([gid_of(1)], Int32) is not None
+
+    announced(filters, gid_of(1), "data = 4")
+
+    assert filters.wanted_by([gid_of(1)], Int32) is None
+
+
+def test_a_publisher_applies_some_filters_and_otherwise_sends_everything() -> None:
+    """Each reader filters for itself, so nothing is lost but some bandwidth."""
+    filters = ContentFilters()
+    gids = [gid_of(number) for number in range(101)]
+    for gid in gids:
+        announced(filters, gid, "data = 1")
+
+    assert filters.wanted_by(gids[:100], Int32) is not None
+    assert filters.wanted_by(gids, Int32) is None
+
+
+def test_filters_of_all_others_are_bounded_and_leave_room_when_they_go() -> None:
+    """Whatever tokens there are, their texts take 8 MB at most."""
+    filters = ContentFilters()
+    for number in range(2_000):
+        announced(filters, gid_of(number), "data = 1")
+
+    announced(filters, gid_of(2_000), "data = 1")
+    assert filters.wanted_by([gid_of(2_000)], Int32) is None
+
+    text = text_of_filter(ContentFilterOptions("data = 1"))
+    filters.take_token(f"filter/1/{gid_of(0).hex()}/{text}", present=False)
+    announced(filters, gid_of(2_001), "data = 1")
+    assert filters.wanted_by([gid_of(2_001)], Int32) is not None
+
+
+def test_a_filter_is_compiled_once_for_each_type(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each token of any subscription has all publishers ask again what is wanted."""
+    compiled: list[str] = []
+
+    def counted(_: Any, expression: str, *args: Any, **options: Any) -> Any:
+        compiled.append(expression)
+        return compile_filter(Int32, expression, *args, **options)
+
+    monkeypatch.setattr("aionode.transport._content_filters.compile_filter", counted)
+    filters = ContentFilters()
+    announced(filters, gid_of(1), "data = 1")
+
+    for _ in range(3):
+        filters.wanted_by([gid_of(1)], Int32)
+
+    assert compiled == ["data = 1"]
