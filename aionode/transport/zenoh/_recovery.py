@@ -20,29 +20,29 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import os
 import secrets
 import socket
 import threading
 from collections import Counter
 from contextlib import closing, suppress
-from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import zenoh
 
 from aionode.errors import ConfigurationError
 from aionode.transport._send_thread import start_thread
 from aionode.transport._zenoh_config import introducers, look_settings
+from aionode.transport.zenoh._descriptors import find, pair_of
 from aionode.transport.zenoh._handlers import direct, translated
 from aionode.transport.zenoh._session import load_config
+from aionode.transport.zenoh._sockets import cut
 from aionode.wire._liveliness import PREFIX as ROS_PREFIX
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterator
 
     from aionode.transport._zenoh_config import Network
+    from aionode.transport.zenoh._descriptors import Pair
     from aionode.transport.zenoh._session_state import SessionState
 
 __all__ = ["Recovery", "is_look", "nodes_at_introducer"]
@@ -96,13 +96,17 @@ def is_look(zid: str) -> bool:
     return zid.startswith(LOOK_IDS) and len(zid) == 32
 
 
-@dataclass(frozen=True, slots=True)
-class Connection:
-    """A connection of this session; without an endpoint, if it does not dial that again."""
+class Introducer(NamedTuple):
+    """A connection to an introducer.
+
+    Attributes:
+        zid: The id of its session.
+        pair: The addresses of the connection.
+        endpoint: Where it is dialled.
+    """
 
     zid: str
-    source: tuple[str, int]
-    target: tuple[str, int]
+    pair: Pair
     endpoint: str
 
 
@@ -266,7 +270,7 @@ class Recovery:
         self._looks.put(missing)
 
     def _reconnect(
-        self, session: zenoh.Session, connection: Connection, lost: set[str]
+        self, session: zenoh.Session, connection: Introducer, lost: set[str]
     ) -> set[str]:
         """Cut what has to be made anew, and return the participants for which that was done."""
         found = self._missing(session, connection, lost)
@@ -279,10 +283,10 @@ class Recovery:
             missing &= self._missing(session, connection, lost)
         missing = {zid for zid in missing if self._attempts.get(zid, 0) < ATTEMPTS}
         if missing:
-            cut([*connections_to(session, missing), connection])
+            cut(find(pairs_to(session, missing) | {connection.pair}).values())
         return missing
 
-    def _missing(self, session: zenoh.Session, connection: Connection, lost: set[str]) -> set[str]:
+    def _missing(self, session: zenoh.Session, connection: Introducer, lost: set[str]) -> set[str]:
         """Return the participants that are not connected as they should be.
 
         Those that only the introducer sees, lost ones that it sees and that are not connected
@@ -319,14 +323,14 @@ class Recovery:
             self._look_in(FIRST_S if missing else AGAIN_S)
 
 
-def look_at(network: Network, connection: Connection) -> zenoh.Session:
+def look_at(network: Network, connection: Introducer) -> zenoh.Session:
     """Open a session that sees what is to be seen at the other end of a connection."""
     look_id = LOOK_IDS + secrets.token_hex(12)
     return zenoh.open(load_config(network, {}, look_id, look_settings(connection.endpoint)))
 
 
 def seen_at(
-    network: Network, connection: Connection, *keys: str, timeout_s: float = ANSWER_S
+    network: Network, connection: Introducer, *keys: str, timeout_s: float = ANSWER_S
 ) -> set[str]:
     """Return the tokens that match `keys` and are visible at the other end of a connection.
 
@@ -377,25 +381,23 @@ def participant_of(token: str) -> str:
     return token.split("/", 3)[2]
 
 
-def connections_to(session: zenoh.Session, zids: set[str]) -> Iterator[Connection]:
-    """Yield the connections to some sessions."""
-    for each in session.info.links():
-        source, target = address_in(str(each.src)), address_in(str(each.dst))
-        if str(each.zid) in zids and source is not None and target is not None:
-            yield Connection(str(each.zid), source, target, "")
+def pairs_to(session: zenoh.Session, zids: set[str]) -> set[Pair]:
+    """Return the addresses of the connections to some sessions."""
+    links = (link for link in session.info.links() if str(link.zid) in zids)
+    return {pair for link in links if (pair := pair_of(link))}
 
 
-def introducer_connection(session: zenoh.Session, network: Network) -> Connection | None:
+def introducer_connection(session: zenoh.Session, network: Network) -> Introducer | None:
     """Return a connection to an introducer, a router if there is one."""
     routers = {str(zid) for zid in session.info.routers_zid()}
     connections = []
     dialled = {
         address: endpoint for endpoint in introducers(network) for address in addresses_of(endpoint)
     }
-    for each in session.info.links():
-        source, target = address_in(str(each.src)), address_in(str(each.dst))
-        if source is not None and target in dialled:
-            connections.append(Connection(str(each.zid), source, target, dialled[target]))
+    for link in session.info.links():
+        target, pair = address_in(str(link.dst)), pair_of(link)
+        if pair is not None and target in dialled:
+            connections.append(Introducer(str(link.zid), pair, dialled[target]))
     connections.sort(key=lambda connection: connection.zid not in routers)
     return connections[0] if connections else None
 
@@ -419,34 +421,6 @@ def addresses_of(endpoint: str) -> Iterator[tuple[str, int]]:
 
 
 def cut_participants(session: zenoh.Session, zids: set[str]) -> None:
-    """Cut the connections to some participants."""
+    """Cut the connections to some participants; in a thread."""
     with suppress(zenoh.ZError):  # the session was closed meanwhile
-        cut(connections_to(session, zids))
-
-
-def cut(connections: Iterable[Connection]) -> None:
-    """Shut connections of Zenoh down, as the network would."""
-    lost = {(connection.source, connection.target) for connection in connections}
-    for one in own_sockets():
-        with closing(one), suppress(OSError):
-            if (one.getsockname()[:2], one.getpeername()[:2]) in lost:
-                one.shutdown(socket.SHUT_RDWR)
-
-
-def own_sockets() -> Iterator[socket.socket]:
-    """Yield a duplicate of each socket of this process, where the system lists them."""
-    for folder in ("/proc/self/fd", "/dev/fd"):
-        with suppress(OSError):
-            names = [entry.name for entry in Path(folder).iterdir()]
-            break
-    else:
-        return
-    for name in names:
-        with suppress(OSError, ValueError):
-            descriptor = os.dup(int(name))
-            try:
-                one = socket.socket(fileno=descriptor)
-            except OSError:
-                os.close(descriptor)
-                continue
-            yield one
+        cut(find(pairs_to(session, zids)).values())

@@ -13,32 +13,35 @@ On Linux only: elsewhere all of this takes as long as Zenoh waits.
 
 from __future__ import annotations
 
-import asyncio
 import logging
-import os
 import select
 import socket
 import struct
 import sys
 import threading
-from contextlib import ExitStack, suppress
-from stat import S_ISSOCK
+from contextlib import suppress
 from typing import TYPE_CHECKING, ClassVar, Final
 
 import zenoh
 
 from aionode.transport._send_thread import start_thread
 from aionode.transport._zenoh_config import BLOCK_US, is_near
+from aionode.transport.zenoh._descriptors import (
+    Descriptor,
+    Pair,
+    duplicates,
+    find,
+    pair_of,
+    polled_by_zenoh,
+)
 from aionode.transport.zenoh._handlers import direct
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable
 
-__all__ = ["SocketOptions", "arrived_bytes", "cut_stuck", "look"]
+__all__ = ["SocketOptions", "arrived_bytes", "cut", "cut_stuck", "cut_unanswered", "look"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
-
-DESCRIPTORS: Final = "/proc/self/fd"
 
 INTERNET: Final = {socket.AF_INET, socket.AF_INET6}
 """The families of connections between hosts."""
@@ -65,66 +68,17 @@ ACKED: Final = slice(120, 128)
 RECEIVED: Final = slice(128, 136)
 """Where it says how many bytes were received."""
 
-NOTHING: Final = bytes(8)
-"""What is there as long as nothing was."""
+ESTABLISHED: Final = 1
+"""How its first byte says that both ends are connected."""
+
+FIRST_BYTES: Final = 2048
+"""Zenoh sends 34 bytes before it waits for an answer, and TLS less than this."""
 
 ZENOH_LINGER: Final = struct.pack("ii", 1, 10)
 """SO_LINGER as Zenoh sets it."""
 
 SETTLE_S: Final = 0.5
 """How long after a new connection its socket is looked for; several are made at once."""
-
-
-Descriptor = tuple[int, int]
-"""A descriptor and its inode, as its number is used again."""
-
-
-def sockets(known: set[Descriptor] | None = None) -> Iterator[Descriptor]:
-    """Yield the sockets of this process; not those in `known`, from which closed ones are removed.
-
-    Args:
-        known: Descriptors that need not be looked at; those of other kinds are added.
-    """
-    skipped = set() if known is None else known.copy()
-    if known is not None:
-        known.clear()
-    try:
-        names = os.listdir(DESCRIPTORS)  # noqa: PTH208 - in half the time
-    except OSError:  # the process has no descriptor left
-        return
-    for name in names:
-        with suppress(OSError):  # closed meanwhile
-            status = os.fstat(int(name))
-            descriptor = int(name), status.st_ino
-            if descriptor not in skipped and S_ISSOCK(status.st_mode):
-                yield descriptor
-            elif known is not None:
-                known.add(descriptor)
-
-
-def connection(descriptor: Descriptor, stack: ExitStack) -> tuple[str, socket.socket] | None:
-    """Return a duplicate of a TCP socket, and the address of its peer, empty if it has none."""
-    with suppress(OSError):  # closed meanwhile
-        one = stack.enter_context(socket.socket(fileno=os.dup(descriptor[0])))
-        if one.type == socket.SOCK_STREAM and one.family in INTERNET:
-            with suppress(OSError):  # it listens, or is not connected yet, or not any more
-                host, port = one.getpeername()[:2]
-                return f"[{host}]:{port}" if ":" in host else f"{host}:{port}", one
-            return "", one
-    return None
-
-
-def connections() -> Iterator[tuple[str, socket.socket]]:
-    """Yield the TCP connections of this process, each with the address of its peer.
-
-    One duplicate is open at a time: several threads that duplicate all sockets, and the duplicates
-    of each other, soon have all descriptors that a process may have.
-    """
-    for descriptor in sockets():
-        with ExitStack() as stack:
-            peer, one = connection(descriptor, stack) or ("", None)
-            if one is not None and peer:
-                yield peer, one
 
 
 def queued_bytes(one: socket.socket) -> int:
@@ -137,26 +91,40 @@ def queued_bytes(one: socket.socket) -> int:
     return int.from_bytes(fcntl.ioctl(one, termios.TIOCOUTQ, bytes(4)), sys.byteorder)
 
 
-def waiting_bytes(session: zenoh.Session) -> dict[str, int]:
-    """Return how many bytes wait in the socket of each peer of a session; not those with none."""
-    peers = {address_of(link) for link in session.info.links()}
-    waiting = {peer: queued_bytes(one) for peer, one in connections() if peer in peers}
-    return {peer: size for peer, size in waiting.items() if size}
+def waiting_bytes(session: zenoh.Session) -> dict[Descriptor, int]:
+    """Return how many bytes wait in each socket of a session; not those with none."""
+    own = find({pair for link in session.info.links() if (pair := pair_of(link))})
+    waiting = {descriptor: queued_bytes(one) for descriptor, one in duplicates(own.values())}
+    return {descriptor: size for descriptor, size in waiting.items() if size}
 
 
-def address_of(link: zenoh.Link) -> str:
-    """Return the address of the peer, such as ``127.0.0.1:7447``."""
-    return str(link.dst).partition("/")[2].partition("?")[0]
+def info_of(one: socket.socket) -> bytes:
+    """Return the beginning of the ``struct tcp_info`` of a connection."""
+    return one.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, RECEIVED.stop)
 
 
-def unanswered() -> set[str]:
-    """Return the peers with which Zenoh has a connection on which nothing was received."""
-    return {
-        peer
-        for peer, one in connections()
-        if one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8) == ZENOH_LINGER
-        and one.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, RECEIVED.stop)[RECEIVED] == NOTHING
-    }
+def number_in(info: bytes, field: slice) -> int:
+    """Return one of its numbers."""
+    return int.from_bytes(info[field], sys.byteorder)
+
+
+def unanswered() -> set[Descriptor]:
+    """Return the sockets of connections that Zenoh is making with peers that do not answer.
+
+    Of all sessions of the process: the system does not tell them apart.
+    """
+    return {descriptor for descriptor, one in duplicates(polled_by_zenoh()) if is_unanswered(one)}
+
+
+def is_unanswered(one: socket.socket) -> bool:
+    """Return whether a socket has the options of Zenoh, is connected, and has received nothing."""
+    if one.type != socket.SOCK_STREAM or one.family not in INTERNET:
+        return False
+    if one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8) != ZENOH_LINGER:
+        return False
+    info = info_of(one)
+    sent = number_in(info, ACKED) + queued_bytes(one)
+    return info[0] == ESTABLISHED and not number_in(info, RECEIVED) and sent <= FIRST_BYTES
 
 
 def arrived_bytes(session: zenoh.Session) -> dict[str, tuple[int, int]]:
@@ -169,15 +137,16 @@ def arrived_bytes(session: zenoh.Session) -> dict[str, tuple[int, int]]:
     import fcntl
     import termios
 
-    peers = {address_of(link) for link in session.info.links()}
-    found = {}
-    for peer, one in connections():
-        if peer in peers:
-            info = one.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, RECEIVED.stop)
-            received = int.from_bytes(info[RECEIVED], sys.byteorder)
-            unread = fcntl.ioctl(one, termios.FIONREAD, bytes(4))
-            found[peer] = received, int.from_bytes(unread, sys.byteorder)
-    return found
+    peers = {pair: str(link.dst) for link in session.info.links() if (pair := pair_of(link))}
+    own = {descriptor: peers[pair] for pair, descriptor in find(peers).items()}
+    arrived = {}
+    for descriptor, one in duplicates(own):
+        unread = fcntl.ioctl(one, termios.FIONREAD, bytes(4))
+        arrived[own[descriptor]] = (
+            number_in(info_of(one), RECEIVED),
+            int.from_bytes(unread, sys.byteorder),
+        )
+    return arrived
 
 
 def look(session: zenoh.Session, participant: str) -> tuple[bool, int] | None:
@@ -187,14 +156,11 @@ def look(session: zenoh.Session, participant: str) -> tuple[bool, int] | None:
     """
     if not sys.platform.startswith("linux"):
         return None
-    peers = {address_of(link) for link in session.info.links() if str(link.zid) == participant}
-    for peer, one in connections():
-        if peer in peers:
-            poll = select.poll()
-            poll.register(one, select.POLLOUT)
-            info = one.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, ACKED.stop)
-            acked = int.from_bytes(info[ACKED], sys.byteorder)
-            return bool(poll.poll(0)), acked + queued_bytes(one)
+    links = [link for link in session.info.links() if str(link.zid) == participant]
+    for _, one in duplicates(find({pair for link in links if (pair := pair_of(link))}).values()):
+        poll = select.poll()
+        poll.register(one, select.POLLOUT)
+        return bool(poll.poll(0)), number_in(info_of(one), ACKED) + queued_bytes(one)
     return None
 
 
@@ -207,19 +173,16 @@ class SocketOptions:
     sends again after 0.2, 0.4, 0.8 … s, and when a network was gone for 30 s, and is back, it is
     silent for up to 30 s more. A new connection finds the network at once.
 
-    It works until the session is closed. The connections of a burst are looked for at once, and of
-    all descriptors of the process only those that are new.
+    It works until the session is closed. The connections of a burst are looked for at once.
 
     Args:
         session: The session.
     """
 
-    # Of all sessions: one of ten would look at the sockets of nine others each time.
+    # Of all sessions: those of one process are often connected with each other at the same time.
     _lock: ClassVar = threading.Lock()
-    _searching: ClassVar = threading.Lock()
-    # The peers of connections whose options are not set yet.
-    _new: ClassVar[set[str]] = set()
-    _known: ClassVar[set[Descriptor]] = set()
+    # The connections whose options are not set yet, and what Zenoh has named their peers.
+    _new: ClassVar[dict[Pair, str]] = {}
 
     def __init__(self, session: zenoh.Session) -> None:
         self._timer: threading.Timer | None = None
@@ -244,7 +207,8 @@ class SocketOptions:
         with self._lock:
             if self._closed:
                 return
-            self._new.add(address_of(event.link))
+            if pair := pair_of(event.link):
+                self._new[pair] = str(event.link.dst)
             if self._timer is None:
                 self._timer = threading.Timer(SETTLE_S, self._set)
                 self._timer.name = "aionode-zenoh"
@@ -253,29 +217,30 @@ class SocketOptions:
 
     def _set(self) -> None:
         """Set the options of all new connections; in the thread of the timer."""
-        with self._searching:
-            with self._lock:
-                self._timer = None
-                new = self._new.copy()
-                self._new.clear()
-            for descriptor in sockets(self._known) if new else ():
-                with ExitStack() as stack, suppress(OSError):  # it is lost already
-                    peer, one = connection(descriptor, stack) or ("", None)
-                    if one is not None and peer in new:
-                        one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
-                        limit_ms = UNREAD_MS if is_near(f"tcp/{peer}") else UNREACHABLE_MS
-                        one.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, limit_ms)
-                    if one is None or peer in new:
-                        self._known.add(descriptor)
-
-
-def cut(peers: set[str]) -> None:
-    """Cut the connections to some peers, named by `address_of`."""
-    for peer, one in connections():
-        if peer in peers:
+        with self._lock:
+            self._timer = None
+            new = self._new.copy()
+            self._new.clear()
+        peers = {descriptor: new[pair] for pair, descriptor in find(new).items()}
+        for descriptor, one in duplicates(peers):
+            limit_ms = UNREAD_MS if is_near(peers[descriptor]) else UNREACHABLE_MS
             with suppress(OSError):  # it is lost already
-                one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, RESET)
-                one.shutdown(socket.SHUT_RDWR)
+                one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
+                one.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, limit_ms)
+
+
+def cut(those: Iterable[Descriptor], linger: bytes = NO_LINGER) -> None:
+    """Cut connections, as the network would.
+
+    Args:
+        those: The sockets of Zenoh.
+        linger: `RESET` if the peer is not to get what has been sent.
+    """
+    for _, one in duplicates(those):
+        with suppress(OSError):  # it is lost already
+            logger.debug("%s: the connection is cut", one.getpeername())
+            one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, linger)
+            one.shutdown(socket.SHUT_RDWR)
 
 
 def cut_unanswered(done: threading.Event) -> None:
@@ -284,28 +249,24 @@ def cut_unanswered(done: threading.Event) -> None:
     A session that is being closed waits for each of them, for ten seconds, and dials those that it
     has lost again meanwhile. Runs in a thread.
     """
-    silent: set[str] = set()
+    silent: set[Descriptor] = set()
     while sys.platform.startswith("linux") and not done.wait(STUCK_S):
         before, silent = silent, unanswered()
-        cut(before & silent)
+        cut(before & silent, RESET)
 
 
-async def cut_stuck(session: zenoh.Session) -> None:
+def cut_stuck(session: zenoh.Session) -> None:
     """Cut connections that a session about to be closed would wait for.
 
-    Those whose peers do not read, and those that are being made with peers that do not answer.
+    Those whose peers do not read, and those that are being made with peers that do not answer. Runs
+    in a thread.
     """
     if not sys.platform.startswith("linux"):
         return
     before, silent = waiting_bytes(session), unanswered()
     if not before and not silent:
         return
-    with suppress(TimeoutError):
-        async with asyncio.timeout(STUCK_S):
-            await asyncio.get_running_loop().create_future()
+    threading.Event().wait(STUCK_S)
     after = waiting_bytes(session)
-    stuck = {peer for peer, size in before.items() if after.get(peer, 0) >= size}
-    stuck |= silent & unanswered()
-    if stuck:
-        logger.debug("%s: the peer has stopped; the connection is cut", ", ".join(stuck))
-        cut(stuck)
+    stuck = {descriptor for descriptor, size in before.items() if after.get(descriptor, 0) >= size}
+    cut(stuck | (silent & unanswered()), RESET)

@@ -242,7 +242,7 @@ class ZenohTransport(Transport):
         self._watcher.stop()
         session = state.disconnect()
         if session is not None:
-            await cut_stuck(session)
+            await run_in_own_thread(partial(cut_stuck, session))
             await close_session(session)
         await self._router_matching.close()
         await self._local_router.close()

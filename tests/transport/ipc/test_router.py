@@ -15,7 +15,7 @@ from aionode.interfaces.std_msgs.msg import Int32
 from aionode.transport._zenoh_config import router_settings
 from aionode.transport.zenoh import _router_matching as router_matching
 from aionode.transport.zenoh._publisher import ZenohWriter
-from aionode.transport.zenoh._recovery import connections_to, cut
+from aionode.transport.zenoh._recovery import cut_participants
 from aionode.wire import cdr
 from aionode.wire._key_expression import data_key
 from aionode.wire.typehash import type_hash
@@ -167,7 +167,7 @@ async def test_a_router_that_cannot_tell_who_listens_is_taken_to_have_listeners(
     async with router(), linked(monkeypatch) as both:
         before = both.router
         assert before.session is not None
-        cut(connections_to(before.session, {before.zid}))
+        cut_participants(before.session, {before.zid})
         await both.until_it_needs_zenoh(True)
         await both.until_it_needs_zenoh(False)
 

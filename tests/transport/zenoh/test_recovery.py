@@ -16,8 +16,10 @@ from aionode._concurrency import checkpoint
 from aionode.graph import Graph, NodeInfo
 from aionode.transport._zenoh_config import network_from
 from aionode.transport.zenoh import _recovery as recovery
+from aionode.transport.zenoh import _sockets
+from aionode.transport.zenoh._descriptors import Pair, find
 from aionode.transport.zenoh._recovery import (
-    Connection,
+    Introducer,
     Recovery,
     address_in,
     addresses_of,
@@ -101,23 +103,18 @@ async def until_seen(transport: ZenohTransport, *names: str) -> None:
         await graph.until(lambda: names_in(transport) == set(names))
 
 
-def ways_between(transport: ZenohTransport, zid: str) -> list[Connection]:
+def ways_between(transport: ZenohTransport, zid: str) -> set[Pair]:
     """Return the connections to another session."""
     session = transport._state.session
     assert session is not None
-    ways = []
-    for each in session.info.links():
-        source, target = address_in(str(each.src)), address_in(str(each.dst))
-        if str(each.zid) == zid and source and target:
-            ways.append(Connection(zid, source, target, ""))
-    return ways
+    return recovery.pairs_to(session, {zid})
 
 
 def lose(transport: ZenohTransport, zid: str) -> None:
     """End all connections to another session, as a network does."""
     ways = ways_between(transport, zid)
     assert ways
-    recovery.cut(ways)
+    real_cut(find(ways).values())
 
 
 async def until_lost(transport: ZenohTransport, zid: str, name: str) -> None:
@@ -255,7 +252,7 @@ async def test_one_whose_connection_was_lost_is_missing_though_a_router_brings_i
         )
         await until_seen(ours, "b2")
         token = announce(session, "c3", "brought")
-        way = Connection("", ("", 0), ("", 0), "")
+        way = Introducer("", Pair((b"", 0), (b"", 0)), "")
         missing = await asyncio.to_thread(
             lambda: ours._recovery._missing(session, way, {"b2", "c3"})
         )
@@ -342,7 +339,7 @@ async def test_an_unreachable_participant_is_given_up(
     async with robot("theirs") as (theirs,), context("a1") as ours:
         await until_seen(ours, "theirs")
         lose_zid = str(theirs.zid())
-        real_cut(ways_between(ours, lose_zid))
+        lose(ours, lose_zid)
         async with asyncio.timeout(3 * LIMIT_S):
             await looks.have(recovery.ATTEMPTS + 2)
 
@@ -351,7 +348,7 @@ async def test_an_unreachable_participant_is_given_up(
     assert len(cuts.items) >= recovery.ATTEMPTS
 
 
-real_cut = recovery.cut
+real_cut = _sockets.cut
 real_tokens = recovery.tokens
 
 

@@ -8,8 +8,7 @@ import socket
 import struct
 import sys
 import threading
-from contextlib import AsyncExitStack, ExitStack
-from pathlib import Path
+from contextlib import AsyncExitStack
 from typing import Any
 
 import pytest
@@ -18,6 +17,7 @@ import zenoh  # noqa: TID251  # type of sessions
 from aionode._concurrency import checkpoint
 from aionode.context import Context
 from aionode.transport.zenoh import _session, _sockets, _transport
+from aionode.transport.zenoh._descriptors import duplicates, find, pair_of
 from aionode.transport.zenoh._session import close_session, open_router
 from tests.support.peers import quiet_node, two_contexts
 from tests.support.waiting import until
@@ -35,14 +35,13 @@ def session_of(context: Context) -> Any:
 
 def options(session: zenoh.Session) -> list[tuple[bool, int]]:
     """Return whether closing each connection waits for its peer, and its time limit in ms."""
-    peers = {_sockets.address_of(link) for link in session.info.links()}
+    pairs = {pair for link in session.info.links() if (pair := pair_of(link))}
     return [
         (
             bool(struct.unpack("ii", one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8))[0]),
             one.getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT),
         )
-        for peer, one in _sockets.connections()
-        if peer in peers
+        for _, one in duplicates(find(pairs).values())
     ]
 
 
@@ -50,11 +49,6 @@ async def until_set(session: zenoh.Session, wanted: tuple[bool, int]) -> None:
     """Wait until all connections of a session have the wanted options."""
     async with asyncio.timeout(20):
         await until(lambda: set(options(session)) == {wanted})
-
-
-def descriptors() -> int:
-    """Return how many descriptors this process has."""
-    return len(list(Path("/proc/self/fd").iterdir()))
 
 
 async def test_no_connection_waits_for_its_peer_when_it_is_closed(
@@ -127,44 +121,7 @@ async def test_what_arrives_is_seen_while_zenoh_reads_it() -> None:
             await until(all_is_read)
 
 
-def test_only_new_descriptors_are_looked_at() -> None:
-    """A process with many connections would look through all of them at each new one."""
-    with socket.socket() as before, socket.socket() as new:
-        known = set(_sockets.sockets(set()))
-        numbers = {number for number, _ in known}
-        assert {before.fileno(), new.fileno()} <= numbers
-
-        known = {each for each in known if each[0] != new.fileno()}
-
-        assert [number for number, _ in _sockets.sockets(known)] == [new.fileno()]
-
-
-def test_looking_at_all_connections_opens_one_descriptor_at_a_time() -> None:
-    """Processes of ten contexts ran out of 20000: each search found the duplicates of others."""
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        listener.listen()
-        with ExitStack() as stack:
-            for _ in range(10):
-                stack.enter_context(socket.create_connection(listener.getsockname()))
-            before = descriptors()
-            most = max(descriptors() for _ in _sockets.connections())
-
-    assert most == before + 1
-
-
-def test_a_descriptor_whose_number_is_used_again_is_new() -> None:
-    """The system gives the lowest free number to a new connection."""
-    with socket.socket() as one:
-        known = set(_sockets.sockets(set()))
-        number = one.fileno()
-    with socket.socket() as other:
-        assert other.fileno() == number
-
-        assert number in {each for each, _ in _sockets.sockets(known)}
-
-
-async def not_seen(_: zenoh.Session) -> None:
+def not_seen(_: zenoh.Session) -> None:
     """Find no connection to cut, as if it began only while the session is being closed."""
 
 

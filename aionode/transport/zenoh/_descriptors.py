@@ -1,0 +1,242 @@
+"""Finding Zenoh's sockets among the descriptors of the process, without touching any other.
+
+Zenoh names the two addresses of each connection, but not its socket. Duplicating every descriptor
+to ask for its addresses would do harm: closing a duplicate of a file drops the POSIX locks that the
+process has on it, and with them an exclusive transaction of SQLite. So the system is asked: a
+netlink socket, or ``/proc/self/net/tcp``, tells the inode of a connection, and ``/proc/self/fd``
+that of each descriptor. A duplicate is made only of a socket that was found so, and its inode is
+compared once more before the duplicate is used.
+
+Zenoh does not name a connection that is still being made. The system tells which sockets an epoll
+instance waits for, and how: Zenoh's runtime does that as Python's event loops do not.
+
+On Linux only: nothing is found elsewhere, or where ``/proc`` is hidden.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import socket
+import struct
+import sys
+import threading
+from contextlib import suppress
+from stat import S_ISREG
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Iterator
+
+    import zenoh
+
+__all__ = ["Descriptor", "Pair", "duplicates", "find", "pair_of", "polled_by_zenoh"]
+
+DESCRIPTORS: Final = "/proc/self/fd"
+DETAILS: Final = "/proc/self/fdinfo"
+CONNECTIONS: Final = ("/proc/self/net/tcp", "/proc/self/net/tcp6")
+
+STREAMS: Final = {"tcp", "tls", "ws", "wss"}
+"""The protocols of Zenoh that have one TCP connection for each link."""
+
+EVENT_POLL: Final = "anon_inode:[eventpoll]"
+
+POLLED: Final = re.compile(r"^tfd: +(\d+) events: +8000201d .* ino:([0-9a-f]+) ", re.MULTILINE)
+"""A socket for which an epoll instance waits as the one of Zenoh's runtime does: for everything but
+urgent data (IN, OUT, ERR, HUP, RDHUP), and for changes only (ET)."""
+
+SOCK_DIAG: Final = 4
+"""The netlink protocol that tells about sockets; see sock_diag(7)."""
+
+SOCK_DIAG_BY_FAMILY: Final = 20
+NLM_F_REQUEST: Final = 1
+ANY_STATE: Final = 0xFFF
+NO_COOKIE: Final = b"\xff" * 8
+
+HEADER: Final = struct.Struct("=IHHII")
+"""``struct nlmsghdr``: length, type, flags, sequence number, port."""
+
+REQUEST: Final = struct.Struct("=BBBxI")
+"""The start of ``struct inet_diag_req_v2``: family, protocol, extensions, states."""
+
+ADDRESSES: Final = struct.Struct("!HH16s16s")
+"""The start of ``struct inet_diag_sockid``: both ports, the local address, the remote one."""
+
+ANSWER: Final = struct.Struct("=4x36s12x16xI")
+"""``struct inet_diag_msg``: its `ADDRESSES`, and the inode at its end."""
+
+Address = tuple[bytes, int]
+"""An IP address of 4 or 16 bytes, and a port."""
+
+Descriptor = tuple[int, int]
+"""The number of a descriptor and that of its inode, as the first is used again."""
+
+lock = threading.Lock()
+found: dict[Pair, Descriptor] = {}
+"""Where connections were found before, so that most searches read neither list."""
+
+
+class Pair(NamedTuple):
+    """The two addresses of a connection."""
+
+    local: Address
+    remote: Address
+
+
+def pair_of(link: zenoh.Link) -> Pair | None:
+    """Return the addresses of a connection; None if it is none of TCP."""
+    local, remote = address_in(str(link.src)), address_in(str(link.dst))
+    return Pair(local, remote) if local and remote else None
+
+
+def address_in(locator: str) -> Address | None:
+    """Return the address in a locator such as ``tcp/127.0.0.1:7447?…``."""
+    protocol, _, rest = locator.partition("/")
+    host, _, port = re.split("[?#]", rest, maxsplit=1)[0].rpartition(":")
+    if protocol not in STREAMS or not port.isdigit():
+        return None
+    host = host.strip("[]").partition("%")[0]
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    with suppress(OSError):  # it is a name: Zenoh has numbers in those of its connections
+        return socket.inet_pton(family, host), int(port)
+    return None
+
+
+def find(pairs: Collection[Pair]) -> dict[Pair, Descriptor]:
+    """Return the sockets of some connections; not those that are closed.
+
+    It may take some milliseconds, and is no work for the event loop.
+    """
+    with lock:
+        result = {pair: found[pair] for pair in pairs if pair in found and is_open(found[pair])}
+        missing = {pair for pair in pairs if pair not in result}
+        if missing and (inodes := inodes_of(missing)):
+            numbers = {inode: number for number, inode in sockets()}
+            for pair in [pair for pair, (_, inode) in found.items() if inode not in numbers]:
+                del found[pair]
+            for pair, inode in inodes.items():
+                if inode in numbers:
+                    result[pair] = found[pair] = numbers[inode], inode
+        return result
+
+
+def is_open(descriptor: Descriptor) -> bool:
+    """Return whether a number still stands for the same socket."""
+    number, inode = descriptor
+    with suppress(OSError):
+        return target_of(number) == f"socket:[{inode}]"
+    return False
+
+
+def inodes_of(pairs: Collection[Pair]) -> dict[Pair, int]:
+    """Return the inodes of some connections; not those of closed ones."""
+    # A sandbox may forbid to ask, and a kernel may lack the answers.
+    return told_inodes(pairs) or listed_inodes(pairs)
+
+
+def told_inodes(pairs: Iterable[Pair]) -> dict[Pair, int]:
+    """Ask the system for the inode of each connection; that takes microseconds."""
+    inodes = {}
+    with suppress(OSError), socket.socket(socket.AF_NETLINK, socket.SOCK_RAW, SOCK_DIAG) as system:
+        for pair in pairs:
+            (local, port), (remote, remote_port) = pair
+            family = socket.AF_INET if len(local) == 4 else socket.AF_INET6
+            addresses = ADDRESSES.pack(port, remote_port, local, remote)
+            request = REQUEST.pack(family, socket.IPPROTO_TCP, 0, ANY_STATE)
+            request += addresses + bytes(4) + NO_COOKIE
+            size = HEADER.size + len(request)
+            system.send(HEADER.pack(size, SOCK_DIAG_BY_FAMILY, NLM_F_REQUEST, 0, 0) + request)
+            answer = system.recv(4096, socket.MSG_DONTWAIT)
+            if HEADER.unpack_from(answer)[1] == SOCK_DIAG_BY_FAMILY:
+                told, inode = ANSWER.unpack_from(answer, HEADER.size)
+                # In place of one that is closed, the system names the socket that listens there.
+                if told == addresses and inode:
+                    inodes[pair] = inode
+    return inodes
+
+
+def listed_inodes(pairs: Iterable[Pair]) -> dict[Pair, int]:
+    """Look for the inode of each connection in the lists of all; that takes milliseconds."""
+    sought = {(listed_form(pair.local), listed_form(pair.remote)): pair for pair in pairs}
+    inodes = {}
+    for path in CONNECTIONS:
+        with suppress(OSError), open(path, "rb") as lines:  # noqa: PTH123 - a third faster
+            for line in lines:
+                _, local, remote, rest = line.split(maxsplit=3)
+                pair = sought.get((local, remote))
+                if pair is not None and (inode := int(rest.split(maxsplit=7)[6])):
+                    inodes[pair] = inode  # it is 0 for one that is closed
+    return inodes
+
+
+def listed_form(address: Address) -> bytes:
+    """Return how these lists have an address: ``0100007F:1D17``, in words of this machine."""
+    packed, port = address
+    words = (packed[at : at + 4] for at in range(0, len(packed), 4))
+    text = "".join(f"{int.from_bytes(word, sys.byteorder):08X}" for word in words)
+    return f"{text}:{port:04X}".encode()
+
+
+def sockets() -> Iterator[Descriptor]:
+    """Yield the sockets of this process."""
+    for number, target in descriptors():
+        if target.startswith("socket:["):
+            yield number, int(target[8:-1])
+
+
+def descriptors() -> Iterator[tuple[int, str]]:
+    """Yield the number of each descriptor of this process, and what it stands for."""
+    try:
+        names = os.listdir(DESCRIPTORS)  # noqa: PTH208 - in half the time
+    except OSError:  # the process has no descriptor left, or there is no /proc
+        return
+    for name in names:
+        with suppress(OSError):  # closed meanwhile
+            yield int(name), target_of(name)
+
+
+def target_of(name: int | str) -> str:
+    """Return what a descriptor stands for; nothing is opened for that."""
+    return os.readlink(f"{DESCRIPTORS}/{name}")  # noqa: PTH115 - in half the time
+
+
+def polled_by_zenoh() -> set[Descriptor]:
+    """Return the sockets that an epoll instance waits for as those of Zenoh do.
+
+    Those of other libraries in Rust may be among them, those of Python are not.
+    """
+    polled: set[Descriptor] = set()
+    for number, target in descriptors():
+        if target == EVENT_POLL:
+            with suppress(OSError), open(f"{DETAILS}/{number}") as details:  # noqa: PTH123
+                text = details.read()
+                polled.update((int(one), int(ino, 16)) for one, ino in POLLED.findall(text))
+    return polled
+
+
+def duplicates(those: Iterable[Descriptor]) -> Iterator[tuple[Descriptor, socket.socket]]:
+    """Yield a duplicate of each of some sockets; not of those that are closed.
+
+    One duplicate is open at a time: several threads that duplicate all sockets soon have all
+    descriptors that a process may have.
+    """
+    for descriptor in those:
+        one = duplicate(descriptor) if is_open(descriptor) else None
+        if one is not None:
+            with one:
+                yield descriptor, one
+
+
+def duplicate(descriptor: Descriptor) -> socket.socket | None:
+    """Return a duplicate of a socket; None if its number stands for something else by now."""
+    number, inode = descriptor
+    with suppress(OSError):  # closed meanwhile
+        copy = os.dup(number)
+        status = os.fstat(copy)
+        if status.st_ino == inode:
+            return socket.socket(fileno=copy)
+        # It was closed, and its number given away, within microseconds. If a file has got it, the
+        # duplicate stays open: closing it would drop the locks that the process has on that file.
+        if not S_ISREG(status.st_mode):
+            os.close(copy)
+    return None
