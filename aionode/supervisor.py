@@ -235,6 +235,9 @@ class Supervisor(Generic[NodeT]):
         return NodeEnd("destroyed")
 
     def _wants_another(self, end: NodeEnd) -> bool:
+        # A cancellation during the end of a node that failed is hidden by the node's exceptions.
+        if self._work is not None and self._work.cancelling():
+            return False
         return self._restart == "always" or (
             self._restart == "on-failure" and end.reason == "failed"
         )

@@ -244,6 +244,29 @@ async def test_leaving_the_block_ends_the_node(
     assert robot.health().state == "ended"
 
 
+async def test_leaving_the_block_while_a_node_fails_starts_no_other(
+    supervise: Callable[..., Supervisor[Robot]], say: Callable[[str], None]
+) -> None:
+    """Ctrl-C at that moment: the exceptions of the node hid it, and the program never ended."""
+    cleaning_up = asyncio.Event()
+
+    async def work() -> None:
+        try:
+            await asyncio.Event().wait()
+        finally:
+            cleaning_up.set()
+            await checkpoint()
+
+    async with supervise() as robot:
+        robot.node.create_timer(0.0, work)
+        await settle()
+        say("fail")
+        await cleaning_up.wait()
+
+    assert robot.health().restarts == 0
+    assert robot.health().state == "ended"
+
+
 async def test_what_the_block_raises_comes_out_as_it_is(
     supervise: Callable[..., Supervisor[Robot]],
 ) -> None:

@@ -229,6 +229,32 @@ async def test_the_robot_stops_when_a_websocket_is_closed(
     assert sent[:2] == ["websocket.accept", "websocket.send"]
 
 
+async def test_the_robot_stops_when_the_node_of_the_application_fails(
+    aionode_context: Context, node_factory: Callable[..., Node]
+) -> None:
+    """The stream, which is no task of the node, ends with a text, and the goal with it."""
+    app = make_app(aionode_context)
+    wheels = Wheels(node_factory("wheels"))
+    events: list[tuple[str, str]] = []
+
+    async def stream(operator: Operator) -> None:
+        events.extend([event async for event in web_control.progress(operator, FAR)])
+
+    async with Robot(aionode_context), app.router.lifespan_context(app):
+        operator: Operator = app.state.supervisor.node
+        await operator.drive.wait_for_server()
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(stream(operator))
+            await wheels.until(turning=True)
+            operator.create_timer(0.0, lambda: operator.on_battery(Float32(data=-1.0)))
+            await wheels.until(turning=False)
+
+    assert events[-1] == (
+        "failure",
+        "action client of /drive is destroyed; create a new one",
+    )
+
+
 async def test_a_killed_robot_ends_the_stream_and_one_that_is_back_drives(
     web: httpx.AsyncClient, wheels: Wheels, robots: Robots, app: FastAPI
 ) -> None:

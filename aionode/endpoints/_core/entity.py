@@ -111,6 +111,12 @@ class Entity:
     def _close(self) -> None:
         """Release what the entity holds; called once, by `destroy`."""
 
+    def _end_of_wait(self) -> asyncio.CancelledError | EntityDestroyedError:
+        """Return what the current task raises whose wait has ended because of `destroy`."""
+        if self._node_tasks is None:
+            return EntityDestroyedError(self._subject)
+        return self._node_tasks.end_of_wait(self._subject)
+
     def _refuse_if_destroyed(self, action: str = "") -> None:
         """Raise EntityDestroyedError after `destroy`."""
         if self.destroyed:

@@ -123,8 +123,8 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         # Goals from when they are sent until they end, by id.
         self._goals: dict[bytes, ClientGoalHandle[ResultT, FeedbackT]] = {}
         self._accepted: MessageQueue[Any] = MessageQueue(UNLIMITED, CallbackStats(), keep_all=True)
-        # What tasks of the user wait for here, to be cancelled with the client.
-        self._waits: set[asyncio.Future[Any]] = set()
+        # One for each task that waits for an answer; set when the client is destroyed.
+        self._waits: set[asyncio.Future[None]] = set()
         self._futures = Futures(self._subject)
         self._cancel_requests: dict[CancelRequest, None] = {}  # those that have not ended
         self._expect_at_end = node._expect_at_end
@@ -203,8 +203,9 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             True once a server is matched, False if none was within `timeout_sec`.
 
         Raises:
-            EntityDestroyedError: the client was already destroyed (a RuntimeError).
-            CancelledError: the client was destroyed during the wait.
+            EntityDestroyedError: the client was already destroyed, or was destroyed during the wait
+                (a RuntimeError); see `ClientGoalHandle`.
+            CancelledError: as for EntityDestroyedError, in a task of the node.
         """
         self._refuse_if_destroyed()
         try:
@@ -220,7 +221,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         """Wait until endpoints of this action appear or disappear.
 
         Raises:
-            CancelledError: the client was destroyed during the wait.
+            CancelledError, EntityDestroyedError: as `_kept`.
         """
         clients = (self._send_goal, self._cancel_goal, self._get_result)
         wait = self._graph.changed(
@@ -228,11 +229,10 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             self._feedback.topic_name,
             self._status.topic_name,
         )
-        self._waits.add(wait)
-        wait.add_done_callback(self._waits.discard)
-        await wait
-        if self.destroyed:  # just after the change had ended the wait
-            raise asyncio.CancelledError(f"{self._subject}: destroyed")
+        try:
+            await self._kept(wait)
+        finally:
+            wait.cancel()
 
     # Goals
 
@@ -294,8 +294,9 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             TypeError: `goal` is of another type.
             MessageError: a value does not fit its field.
             ServiceError: the server's goal_callback failed, or the server went away.
-            EntityDestroyedError: the client was already destroyed (a RuntimeError).
-            CancelledError: the client was destroyed during the wait.
+            EntityDestroyedError: the client was already destroyed, or was destroyed during the wait
+                (a RuntimeError); see `ClientGoalHandle`.
+            CancelledError: as for EntityDestroyedError, in a task of the node.
         """
         handle = await self._send(goal, feedback_callback, goal_uuid)
         if not handle.accepted:
@@ -367,11 +368,29 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             del self._goals[goal._key]
 
     async def _kept(self, answer: asyncio.Future[T]) -> T:
-        """Wait for `answer`, which a cancelled wait leaves open; `_close` cancels the wait."""
-        wait = asyncio.shield(answer)
+        """Wait for `answer`, which stays open if the wait ends before it.
+
+        Raises:
+            CancelledError: the task was cancelled, or the client was destroyed during the wait and
+                the task is one of the node's own.
+            EntityDestroyedError: the client was destroyed during the wait of another task.
+        """
+        wait: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+
+        def end(_: object) -> None:
+            if not wait.done():
+                wait.set_result(None)
+
+        answer.add_done_callback(end)
         self._waits.add(wait)
-        wait.add_done_callback(self._waits.discard)
-        return await wait
+        try:
+            await wait
+        finally:
+            self._waits.discard(wait)
+            answer.remove_done_callback(end)
+        if self.destroyed:
+            raise self._end_of_wait()
+        return answer.result()
 
     async def _awaiting(self, goal: ClientGoalHandle[ResultT, FeedbackT], wait: Awaitable[T]) -> T:
         """Return the result of `wait`; if cancelled, cancel `goal` as well. For its handle."""
@@ -435,7 +454,23 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
                 goal._update_status(GoalStatus(each.status))
 
     async def _run(self) -> None:
-        """Wait for the results of all goals, until cancelled."""
+        """Wait for the results of all goals, until the client is destroyed.
+
+        A node that fails cancels its tasks at once, but destroys its action clients only when its
+        callbacks have ended. Until then this task goes on, as for a node that was destroyed.
+        """
+        try:
+            await consume(self._accepted, self._follow, concurrent=True)
+        except asyncio.CancelledError:
+            if self.destroyed or self._node_tasks is None or self._node_tasks.error is None:
+                raise
+            task = asyncio.current_task()
+            assert task is not None  # noqa: S101  # this is a coroutine
+            task.uncancel()
+        self._accepted.discard()
+        for goal in self._goals.values():
+            if goal.accepted:
+                self._accepted.put(goal)
         await consume(self._accepted, self._follow, concurrent=True)
 
     def _follow(
@@ -446,6 +481,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     async def _until_end(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
         if self.destroyed:
             return
+        # A task that is cancelled here leaves the goal to `_run`, or to `_close`.
         try:
             await self._until_askable()
             response = await self._ask(goal.goal_id)
@@ -462,8 +498,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             if status is not GoalStatus.UNKNOWN:
                 await self._hear_out()
             goal._end_feedback()
-        finally:
-            self._forget(goal)
+        self._forget(goal)
 
     async def _hear_out(self) -> None:
         """Wait for feedback that was overtaken by the result of its goal."""
@@ -507,17 +542,18 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     # The end
 
     def _close(self) -> None:
-        """Withdraw the client; cancel its waits, and so the goals that tasks await.
+        """Withdraw the client; end its waits, and cancel the goals that tasks await.
 
         The other goals continue at the server.
         """
         for goal in self._goals.values():
-            if goal._waiting and not goal.done:
+            if goal._is_awaited and not goal.done:
                 self._cancel_at_server(goal)
         for request in list(self._cancel_requests):
             request.end_with_answer()
-        for wait in list(self._waits):  # first, since closing the parts changes the graph
-            wait.cancel(f"{self._subject}: destroyed")
+        for wait in self._waits:
+            if not wait.done():
+                wait.set_result(None)
         self._futures.close()
         self._close_parts()
         goals, self._goals = self._goals, {}

@@ -6,6 +6,7 @@ import asyncio
 from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, Protocol, Self, TypeVar
+from weakref import WeakSet
 
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints.actions.goal import GoalStatus
@@ -55,6 +56,27 @@ class GoalClient(Protocol):
     async def _awaiting(self, goal: Any, wait: Awaitable[T]) -> T: ...
     def _cancel_at_server(self, goal: Any) -> None: ...
     async def _request_cancel(self, goal: Any) -> Any: ...
+    def _end_of_wait(self) -> BaseException: ...
+
+
+class FeedbackIterator(AsyncIterator[FeedbackT]):
+    """One loop over the feedback of a goal.
+
+    The loop holds the only reference to it, and drops that when it is left. So the goal knows of
+    the loop also while its body runs, in which no task waits for the goal.
+    """
+
+    def __init__(
+        self,
+        feedback: AsyncIterator[FeedbackT],
+        iterations: WeakSet[FeedbackIterator[Any]],
+    ) -> None:
+        self._feedback = feedback
+        iterations.add(self)
+
+    async def __anext__(self) -> FeedbackT:
+        """Wait for feedback: see `ClientGoalHandle`."""
+        return await anext(self._feedback)
 
 
 class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
@@ -65,10 +87,13 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
     goal.
 
     Cancelling a task that awaits the goal, in `result` or in the iteration, cancels the goal. So
-    does destroying the client or its node while a task awaits the goal. The cancel request is sent
-    at once, and CancelledError is raised without waiting for the answer. The request is repeated
-    until the server has answered or is gone; nothing interrupts this, and the node waits up to 1 s
-    for the answer before it ends. To cancel only the wait, put ``asyncio.shield`` around `result`.
+    does destroying the client, or the end of its node in whatever way, while a task awaits the
+    goal. The cancel request is sent at once, and the wait ends without waiting for the answer. The
+    request is repeated until the server has answered or is gone; nothing interrupts this, and the
+    node waits up to 1 s for the answer before it ends. When the client is destroyed, waiting tasks
+    of the node and the body of ``async with node`` get CancelledError. All other tasks get
+    EntityDestroyedError (a RuntimeError), whose cause is the error that the node failed with, if it
+    did. To cancel only the wait, put ``asyncio.shield`` around `result`.
     Leaving the iteration with ``break`` does not affect the goal, except within
     ``async with goal:``, which cancels the goal when it is left.
 
@@ -95,6 +120,8 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         self._sending: Exchange | None = None
         self._cancel_sent = False  # whether a cancel request is under way
         self._waiting = 0  # how many tasks wait for the goal
+        self._blocks = 0  # how many `async with` blocks it is bound to
+        self._iterations: WeakSet[FeedbackIterator[Any]] = WeakSet()
         self._client = client
         self._feedback: MessageQueue[FeedbackT] = MessageQueue(KEPT_FEEDBACK, CallbackStats())
         self._outcome: ActionResult[ResultT] | None = None
@@ -125,13 +152,19 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         """Whether the server has reported the end; a goal that was lost may still go on there."""
         return self._outcome is not None
 
+    @property
+    def _is_awaited(self) -> bool:
+        """Whether the program waits for the goal, or is in a block or loop that depends on it."""
+        return self._waiting > 0 or self._blocks > 0 or len(self._iterations) > 0
+
     async def __aenter__(self) -> Self:
         """Bind the goal to a block: if it has not ended when the block is left, it is cancelled.
 
         The block may be left by an exception, a cancellation, ``break`` or ``return``, or by the
         closing of an async generator around it, such as the response stream of a web server whose
-        client has disconnected.
+        client has disconnected. The goal is cancelled as well if its client is destroyed meanwhile.
         """
+        self._blocks += 1
         return self
 
     async def __aexit__(
@@ -141,6 +174,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         traceback: TracebackType | None,
     ) -> None:
         """Cancel the goal if it has not ended, without waiting for the answer."""
+        self._blocks -= 1
         if not self.done:
             self._client._cancel_at_server(self)
 
@@ -154,16 +188,16 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
 
         Raises:
             GoalLostError: the server went away.
-            CancelledError: the client was destroyed.
+            CancelledError, EntityDestroyedError: the client was destroyed; see the class.
         """
         await self._client._awaiting(self, self._ended.wait())
         self._raise_if_lost()
         if self._outcome is None:
-            raise asyncio.CancelledError(f"{self._client._subject}: destroyed")
+            raise self._client._end_of_wait()
         return self._outcome
 
-    def __aiter__(self) -> Self:
-        """Iterate over the feedback.
+    def __aiter__(self) -> AsyncIterator[FeedbackT]:  # noqa: PYI034  # one for each loop
+        """Iterate over the feedback. While the loop runs, it counts as waiting for the goal.
 
         Raises:
             RuntimeError: the goal was sent with a `feedback_callback`, which gets the feedback.
@@ -173,7 +207,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
                 f"{self._client.action_name}: goal {self.text}: its feedback_callback gets the "
                 "feedback; to iterate over it, send the goal without one"
             )
-        return self
+        return FeedbackIterator(self, self._iterations)
 
     async def __anext__(self) -> FeedbackT:
         """Wait for feedback; each message goes to one reader.
@@ -181,13 +215,13 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         Raises:
             StopAsyncIteration: the goal has ended, and all feedback has been read.
             GoalLostError: the server went away.
-            CancelledError: the client was destroyed.
+            CancelledError, EntityDestroyedError: the client was destroyed; see the class.
         """
         while not self._feedback:
             if self._feedback_ended.is_set():
                 self._raise_if_lost()
                 if self._outcome is None:
-                    raise asyncio.CancelledError(f"{self._client._subject}: destroyed")
+                    raise self._client._end_of_wait()
                 raise StopAsyncIteration
             await self._client._awaiting(self, self._feedback.wait())
         return self._feedback.pop()[1]
@@ -212,7 +246,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
 
         Raises:
             ServiceError: the server's cancel_callback failed, or the server went away.
-            EntityDestroyedError: the client was destroyed (a RuntimeError).
+            CancelledError, EntityDestroyedError: the client was destroyed; see the class.
         """
         return await self._client._request_cancel(self)
 

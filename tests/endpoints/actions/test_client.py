@@ -650,7 +650,7 @@ async def test_a_forgotten_goal_is_unknown(ends: Ends) -> None:
 # The client's own end
 
 
-async def test_a_destroyed_client_cancels_its_waits_and_what_they_wait_for(ends: Ends) -> None:
+async def test_a_destroyed_client_ends_its_waits_and_what_they_wait_for(ends: Ends) -> None:
     """Nothing of the client is left, and goals that tasks awaited are cancelled."""
     sent, goal = await begin(ends)
     call = ends.client.call(Fibonacci.Goal())
@@ -666,7 +666,7 @@ async def test_a_destroyed_client_cancels_its_waits_and_what_they_wait_for(ends:
     other.destroy()
 
     for each in waiting:
-        with pytest.raises(asyncio.CancelledError):
+        with pytest.raises(EntityDestroyedError):
             await each
     await goal._outcome()
     await called._outcome()
@@ -689,7 +689,7 @@ async def test_a_goal_that_no_task_awaits_outlives_its_client(ends: Ends) -> Non
     await goal._outcome()
     assert goal.status is GoalStatus.SUCCEEDED
     assert ends.requests == []
-    with pytest.raises(asyncio.CancelledError):
+    with pytest.raises(EntityDestroyedError):
         await sent.result()
 
 
