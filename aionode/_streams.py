@@ -2,26 +2,36 @@
 
 from __future__ import annotations
 
+import _thread
 import os
 import select
 import signal
 import sys
 import threading
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import TextIO
 
-__all__ = ["STANDARD", "UnreadWatch", "accepts", "discard", "interrupt_main", "open_missing"]
+__all__ = [
+    "STANDARD",
+    "UnreadWatch",
+    "accepts",
+    "discard",
+    "discard_lost",
+    "interrupt_main",
+    "open_missing",
+]
 
 STANDARD = (1, 2)
 """The descriptors of standard output and error."""
 
-CHECK_S = 0.05
+CHECK_S = 0.01
 """How often the descriptors are checked, in seconds."""
 
-FULL_CHECKS = 4
+FULL_CHECKS = 20
 """How many checks in a row must find a descriptor full before it is discarded."""
 
 
@@ -32,6 +42,29 @@ def accepts(descriptor: int) -> bool:
     poll = select.poll()
     poll.register(descriptor, select.POLLOUT)
     return bool(poll.poll(0))
+
+
+def is_lost(descriptor: int) -> bool:
+    """Whether nobody can ever read what is written to a descriptor: each write is an error.
+
+    So it is with a pipe without a reader (EPIPE), and a terminal that was closed (EIO).
+    """
+    if not hasattr(select, "poll"):
+        return False
+    poll = select.poll()
+    poll.register(descriptor, select.POLLOUT)
+    return any(events & (select.POLLERR | select.POLLHUP) for _, events in poll.poll(0))
+
+
+def discard_lost() -> None:
+    """Redirect standard streams that nobody can read any more to the null device.
+
+    Otherwise a line that a program prints before its last message would raise an error, and the
+    message would never be sent.
+    """
+    for descriptor in STANDARD:
+        if is_lost(descriptor):
+            discard(descriptor)
 
 
 def discard(stream: TextIO | int) -> None:
@@ -67,8 +100,8 @@ class UnreadWatch:
     """Keeps a process that is ending from blocking on output that is not being read.
 
     A write to a full pipe, or to a stopped terminal, blocks the whole event loop. After `start`, a
-    thread redirects a standard stream that has accepted nothing for 0.2 s to the null device; what
-    is written to it is lost.
+    thread redirects a standard stream that has accepted nothing for 0.2 s to the null device, and
+    one that nobody can read any more within 10 ms; what is written to it is lost.
 
     Args:
         wake: Called in that thread to interrupt a blocked write in the main thread, which then
@@ -81,9 +114,12 @@ class UnreadWatch:
         self._waking = threading.Lock()  # held while waking: no signal may come after `stop`
 
     def start(self) -> None:
-        """Start checking."""
-        # A daemon, as the process need not wait for it at exit.
-        threading.Thread(target=self._check, name="aionode-unread", daemon=True).start()
+        """Start checking; signal handlers may call this."""
+        discard_lost()
+        # `Thread.start` takes locks that the interrupted thread may hold. The process does not wait
+        # for this thread at exit.
+        with suppress(RuntimeError):  # the system has no more threads
+            _thread.start_new_thread(self._check, ())
 
     def stop(self) -> None:
         """Stop checking; `wake` is not called after this."""
@@ -93,6 +129,7 @@ class UnreadWatch:
     def _check(self) -> None:
         full = dict.fromkeys(STANDARD, 0)
         while not self._ended.wait(CHECK_S):
+            discard_lost()
             for descriptor in STANDARD:
                 full[descriptor] = 0 if accepts(descriptor) else full[descriptor] + 1
                 if full[descriptor] == FULL_CHECKS:

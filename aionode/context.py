@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, TypeVar
 
 from aionode._concurrency import spin_before_blocking, to_the_end
 from aionode._distribution import NO_TYPE_HASH, choose_distribution
+from aionode._sudden_end import SENDS
 from aionode.arguments import Arguments, Usage
 from aionode.clock import MachineTime, perf_ns
 from aionode.endpoints._core.duplicate_report import DuplicateReport
@@ -409,6 +410,25 @@ class Context:
         for participant in {node.participant for node in self.graph.nodes()} - {self.participant}:
             self.graph.remove_participant(participant)
 
+    @classmethod
+    def _send_rest(cls, ends_ns: int) -> bool:
+        """Hand what was published to the operating system, until `ends_ns` at most.
+
+        Event loops of other threads go on meanwhile, and do so themselves.
+
+        Returns:
+            Whether there is a network, whose threads need a moment more.
+        """
+        is_connected = False
+        for context in list(cls._all):
+            if not context._open or context._inherited:
+                continue
+            for transport in context._transports:
+                if context._affinity.thread == threading.get_ident():
+                    transport.send_rest(ends_ns)
+                is_connected |= not isinstance(transport, LocalTransport)
+        return is_connected
+
     def _refuse_if_shut_down(self) -> None:
         if self._shut_down:
             raise EntityDestroyedError("context")
@@ -504,5 +524,6 @@ class Context:
         return dataclasses.replace(endpoint, gid=gid)
 
 
+SENDS.append(Context._send_rest)
 if hasattr(os, "register_at_fork"):  # not on Windows
     os.register_at_fork(after_in_child=Context._after_fork)

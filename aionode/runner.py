@@ -7,17 +7,14 @@ import contextlib
 import gc
 import inspect
 import os
-import select
-import signal
 import sys
-import threading
 import traceback
 from collections.abc import Callable, Coroutine, Iterator, Sequence
 from pathlib import Path
 from types import FrameType
 from typing import Any
 
-from aionode._streams import UnreadWatch, interrupt_main
+from aionode._signals import signals_to
 from aionode.arguments import Arguments, parse_arguments
 from aionode.context import Context
 from aionode.errors import AionodeError, InvalidROSArgsError
@@ -47,13 +44,25 @@ def run(
     args: Sequence[str] | None = None,
     loop_factory: LoopFactory | None = None,
 ) -> None:
-    """Run nodes until all have ended, or until Ctrl-C or SIGTERM.
+    """Run nodes until all have ended, or until Ctrl-C, SIGTERM or SIGHUP.
 
     The first signal destroys every node: its callbacks are cancelled and waited for, up to 5 s, and
     what they publish in ``finally`` is sent. The function then returns, so the program ends with
     status 0. A callback in a thread (``offload=True``) cannot be cancelled; the log names it, and
-    the program does not end before it has returned. A second signal ends the process at once, with
-    the shell's status for it: 130 after Ctrl-C, 143 after SIGTERM.
+    the program does not end before it has returned.
+
+    Signals within 1 s of the first count as the first, of whichever kind they are: a parent, such
+    as GNU ``timeout`` or ``ros2 launch``, forwards a signal that the process group has got already.
+    A later one ends the process within 0.2 s, with the shell's status for it: 130 after Ctrl-C, 143
+    after SIGTERM, 129 after SIGHUP. Even then the stop of each open lease and what was published
+    before are sent, also while a callback blocks the event loop; only a function in C that does not
+    return to Python delays that.
+
+    SIGHUP tells that the terminal is lost, such as that of an ssh session. It is taken only if it
+    would end the process: not if it is ignored, as under ``nohup``, or has a handler of the
+    program's own. From the first signal on, what is printed to a terminal or pipe that nobody can
+    read any more is dropped instead of raising OSError. The handlers that were there before are
+    restored at the end.
 
     A second after the start it calls `freeze_objects`, unless the program has called ``gc.freeze``
     or ``gc.disable``, and undoes that when it returns.
@@ -240,63 +249,6 @@ def unfrozen_at_the_end() -> Iterator[None]:
     finally:
         if not was_frozen:
             gc.unfreeze()
-
-
-@contextlib.contextmanager
-def signals_to(stop: Callable[[], object]) -> Iterator[None]:
-    """Call `stop` at the first SIGINT or SIGTERM, and end the process at the second.
-
-    The handlers are Python's and not the event loop's, so that they run even while a callback
-    blocks the loop. Outside the main thread nothing is installed, as signals do not arrive there.
-    """
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
-    first: list[int] = []
-    woken: list[int] = []
-
-    def wake() -> None:
-        woken.append(first[0])
-        interrupt_main(signal.Signals(first[0]))
-
-    # The loop may be blocked by a write to a full pipe whose reader is gone.
-    unread = UnreadWatch(wake)
-
-    def on_signal(number: int, _frame: object) -> None:
-        for each in watched:
-            signal.signal(each, on_second)
-        first.append(number)
-        unread.start()
-        stop()
-
-    def on_second(number: int, frame: FrameType | None) -> None:
-        if number in woken:
-            woken.remove(number)
-        else:
-            end_at_once(number, frame)
-
-    watched = (signal.SIGINT, signal.SIGTERM)
-    before = [signal.signal(number, on_signal) for number in watched]
-    try:
-        yield
-    finally:
-        unread.stop()
-        for number, handler in zip(watched, before, strict=True):
-            signal.signal(number, handler)
-
-
-def end_at_once(number: int, _frame: object) -> None:
-    """End the process at once: threads cannot be cancelled, and may run for any time."""
-    for each in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(each, signal.SIG_IGN)  # a third one must not print the line again
-    text = f"aionode: ended at once by a second signal ({signal.Signals(number).name})\n"
-    stderr = 2
-    # A reader of stderr that is gone must not keep the process from ending.
-    with contextlib.suppress(OSError, ValueError):
-        if select.select([], [stderr], [], 0)[1]:
-            os.write(stderr, text.encode())
-    os._exit(128 + number)
 
 
 # Failures

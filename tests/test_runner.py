@@ -5,13 +5,11 @@ from __future__ import annotations
 import asyncio
 import gc
 import os
-import signal
 import subprocess
 import sys
-import textwrap
 import threading
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 import pytest
 
@@ -21,196 +19,7 @@ from aionode.errors import AionodeError
 from aionode.node import Node
 from aionode.runner import FROZEN_BY_PYTHON, failure_text
 from aionode.testing import local_context
-
-PREAMBLE = """
-import asyncio, sys, time
-import aionode
-from aionode.testing import local_context
-from aionode.interfaces.std_msgs.msg import String
-context = local_context()
-"""
-
-
-class Program:
-    """A Python program in a process of its own, which reports when it is ready."""
-
-    def __init__(self, body: str) -> None:
-        self.process = subprocess.Popen(  # the text is in this file
-            [sys.executable, "-c", PREAMBLE + textwrap.dedent(body)],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.process.kill()
-        self.process.communicate()
-
-    def wait_until_ready(self) -> None:
-        """Wait for the line that says so."""
-        assert self.process.stdout is not None
-        assert self.process.stdout.readline() == "ready\n"
-
-    def end(self) -> tuple[int, str, str]:
-        """Wait for the end; return status, output and errors."""
-        out, err = self.process.communicate(timeout=20)
-        return self.process.returncode, out, err
-
-
-WAITS_FOR_EVER = """
-async def callback(msg):
-    try:
-        print("ready", flush=True)
-        await asyncio.Event().wait()
-    finally:
-        await asyncio.sleep(0)
-        print("cancelled", flush=True)
-
-def make():
-    node = aionode.Node("node", context=context, callback_budget_ms=60_000)
-    node.create_subscription(String, "words", callback)
-    node.create_publisher(String, "words", 10).publish(String())
-    return node
-
-aionode.run(make, args=[])
-print("after run", flush=True)
-"""
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_ends_the_program_cleanly(number: signal.Signals) -> None:
-    """Handlers are cancelled, no traceback is printed, and the status is 0."""
-    with Program(WAITS_FOR_EVER) as program:
-        program.wait_until_ready()
-        program.process.send_signal(number)
-        status, out, err = program.end()
-    assert (status, out, err) == (0, "cancelled\nafter run\n", "")
-
-
-def test_a_second_signal_ends_the_program_at_once() -> None:
-    """Even if a callback refuses to end."""
-    stubborn = """
-    async def callback():
-        try:
-            print("ready", flush=True)
-            await asyncio.Event().wait()
-        except asyncio.CancelledError:
-            print("no", flush=True)
-            await asyncio.Event().wait()
-
-    def make():
-        node = aionode.Node("node", context=context, callback_budget_ms=60_000)
-        node.create_timer(0.0, callback)
-        return node
-
-    aionode.run(make, args=[])
-    """
-    with Program(stubborn) as program:
-        program.wait_until_ready()
-        assert program.process.stdout is not None
-        program.process.send_signal(signal.SIGINT)
-        assert program.process.stdout.readline() == "no\n"
-        program.process.send_signal(signal.SIGINT)
-        status, _, err = program.end()
-    assert status == 130
-    assert err == "aionode: ended at once by a second signal (SIGINT)\n"
-
-
-def test_the_second_signal_works_while_a_callback_blocks_the_loop() -> None:
-    """The handlers do not need the loop."""
-    blocked = """
-    def callback():
-        print("ready", flush=True)
-        while True:
-            time.sleep(1)
-
-    def make():
-        node = aionode.Node("node", context=context, callback_budget_ms=60_000)
-        node.create_timer(0.0, callback)
-        return node
-
-    aionode.run(make, args=[])
-    """
-    with Program(blocked) as program:
-        program.wait_until_ready()
-        program.process.send_signal(signal.SIGINT)
-        # The same signal would be merged with one that is still pending, so the other one follows.
-        program.process.send_signal(signal.SIGTERM)
-        program.process.send_signal(signal.SIGTERM)
-        while program.process.poll() is None:
-            program.process.send_signal(signal.SIGTERM)
-        status, _, err = program.end()
-    assert status == 143
-    assert err == "aionode: ended at once by a second signal (SIGTERM)\n"
-
-
-THREAD_AT_WORK = """
-import threading
-done = threading.Event()
-
-def work():
-    print("ready", flush=True)
-    done.wait(20)
-
-def make():
-    node = aionode.Node("robot", context=context)
-    node.create_timer(0.01, work, offload=True)
-    return node
-
-aionode.run(make, args=[], loop_factory={loop})
-print("after run", flush=True)
-"""
-
-
-@pytest.mark.parametrize("loop", ["asyncio.new_event_loop", "None"])
-def test_ctrl_c_names_the_thread_that_it_waits_for_and_a_second_one_ends_at_once(
-    loop: str,
-) -> None:
-    """A thread cannot be cancelled, so the user has to be told, and needs a way to stop it."""
-    with Program(THREAD_AT_WORK.replace("{loop}", loop)) as program:
-        program.wait_until_ready()
-        program.process.send_signal(signal.SIGINT)
-        assert program.process.stderr is not None
-        line = program.process.stderr.readline()
-        program.process.send_signal(signal.SIGINT)
-        status, out, err = program.end()
-    assert "waits up to 5 s for timer of 0.01 s (callback work) in a thread" in line
-    assert (status, out) == (130, "")
-    assert err == "aionode: ended at once by a second signal (SIGINT)\n"
-
-
-def test_a_second_ctrl_c_ends_a_program_whose_stderr_is_not_read() -> None:
-    """A full pipe would block the write of the last line."""
-    full = """
-    def callback():
-        try:
-            while True:
-                os.write(2, b"x" * 4096)
-        except BlockingIOError:
-            os.set_blocking(2, True)
-        print("ready", flush=True)
-        time.sleep(20)
-
-    import os
-    os.set_blocking(2, False)
-
-    def make():
-        node = aionode.Node("robot", context=context)
-        node.create_timer(0.01, callback)
-        return node
-
-    aionode.run(make, args=[])
-    """
-    with Program(full) as program:
-        program.wait_until_ready()
-        program.process.send_signal(signal.SIGINT)
-        program.process.send_signal(signal.SIGTERM)
-        while program.process.poll() is None:
-            program.process.send_signal(signal.SIGTERM)
-    assert program.process.returncode in (130, 143)
+from tests.support.program import PREAMBLE, Program
 
 
 def test_a_bug_in_a_callback_is_shown_with_its_traceback() -> None:
@@ -472,16 +281,6 @@ def test_run_works_outside_the_main_thread() -> None:
     thread.start()
     thread.join()
     assert ran == [True]
-
-
-def test_signal_handlers_are_restored() -> None:
-    """The surrounding program has its own."""
-    before = signal.getsignal(signal.SIGINT)
-
-    async def main() -> None: ...
-
-    run_in_this_process(main)
-    assert signal.getsignal(signal.SIGINT) is before
 
 
 def test_running_nothing_is_a_mistake() -> None:

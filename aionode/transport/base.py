@@ -308,6 +308,14 @@ class Transport(ABC):
     async def close(self) -> None:
         """Withdraw everything and disconnect, within a second; it can be opened again."""
 
+    def send_rest(self, ends_ns: int) -> None:  # noqa: B027  # most leave nothing for later
+        """Hand to the operating system what was published and waits for the event loop.
+
+        Called in the loop's thread, within a signal handler that has interrupted neither this nor
+        an endpoint: the process is about to end, or to be suspended. It may take until `ends_ns`,
+        by `perf_ns`.
+        """
+
     async def all_known(self, quiet_s: float) -> bool:  # noqa: ARG002  # no other process
         """Wait until the graph of all reachable peers is known.
 

@@ -4,6 +4,9 @@
 from a coroutine, a callback in a thread and a goal, and 0.0 when these end; it tells ``driving``
 and ``stopped``. With END ``signal`` it ends with a signal, with ``destroy`` it destroys its node
 when a line comes, with ``leave`` it leaves the node's block then.
+``… commander END`` publishes 1.0 on /timer until a line comes or it is stopped; then it publishes
+ten more messages at once, the last of which is 0.0, and does not end: with END ``sleep`` and
+``loop`` it blocks its event loop, with ``await`` only its own end.
 ``… reader`` tells ``TOPIC VALUE`` at each change of what it hears.
 """
 
@@ -73,6 +76,46 @@ class Robot(Node):
         return Fibonacci.Result()
 
 
+def block(how: str) -> None:
+    """Block the event loop, after the word ``blocked``."""
+    tell("blocked")
+    if how == "sleep":
+        threading.Event().wait()
+    while True:
+        pass
+
+
+class Commander(Node):
+    """Drives until it is told to stop, and then hangs."""
+
+    def __init__(self, end: str) -> None:
+        super().__init__("robot", enable_rosout=False, start_parameter_services=False)
+        self.speed = self.create_publisher(Float64, "/timer", 20)
+        self.how = end
+        self.line = asyncio.Event()
+        asyncio.get_running_loop().add_reader(sys.stdin, self.on_line)
+        self.create_timer(0.0, self.drive)
+
+    def on_line(self) -> None:
+        """End the drive."""
+        asyncio.get_running_loop().remove_reader(sys.stdin)
+        self.line.set()
+
+    async def drive(self) -> None:
+        """Drive until a line comes, or the cancellation."""
+        try:
+            while not self.line.is_set():
+                self.speed.publish(Float64(data=1.0))
+                await self.get_clock().sleep(STEP_SEC)
+        finally:
+            for value in range(9, -1, -1):
+                self.speed.publish(Float64(data=value / 10))
+            if self.how != "await":
+                block(self.how)
+            tell("blocked")
+            await asyncio.Event().wait()
+
+
 async def robot(end: str) -> None:
     """Drive until the end."""
     lines: asyncio.Queue[str] = asyncio.Queue()
@@ -109,6 +152,8 @@ class Reader(Node):
 if __name__ == "__main__":
     if sys.argv[1] == "reader":
         aionode.run(Reader, args=[])
+    elif sys.argv[1] == "commander":
+        aionode.run(lambda: Commander(sys.argv[2]), args=[])
     elif sys.argv[2] == "run":
         aionode.run(Robot, args=[])
     else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import threading
 
 import pytest
 
@@ -66,3 +67,53 @@ def test_ctrl_c_stops_a_robot_that_is_run_by_one_line(monkeypatch: pytest.Monkey
 
         reader.expect("/timer 0.0", "/thread 0.0")
         assert status == 0
+
+
+@pytest.mark.parametrize(
+    ("link", "end", "begin"),
+    [
+        ("on", "sleep", "line"),
+        ("off", "loop", "line"),
+        ("on", "await", "signal"),
+        pytest.param("on", "loop", "line", marks=pytest.mark.stress),
+        pytest.param("off", "sleep", "signal", marks=pytest.mark.stress),
+        pytest.param("off", "await", "signal", marks=pytest.mark.stress),
+    ],
+)
+def test_what_was_published_is_sent_when_a_second_signal_ends_the_program(
+    monkeypatch: pytest.MonkeyPatch, link: str, end: str, begin: str
+) -> None:
+    """Also if its loop is blocked, and had no time to send what it has collected."""
+    monkeypatch.setenv("AIONODE_LINK", link)
+    with Process(PROGRAM, "reader") as reader, Process(PROGRAM, "commander", end) as robot:
+        reader.expect("/timer 1.0")
+        if begin == "line":
+            robot.write("stop")
+            robot.expect("blocked")
+        robot.send(signal.SIGINT)
+        robot.expect("blocked")
+        threading.Event().wait(1.1)
+
+        took_s, status = robot.stop(signal.SIGINT)
+
+        reader.expect("/timer 0.0")
+        assert status == 130
+        assert took_s < 0.2 + 0.2
+
+
+@pytest.mark.parametrize("pause_sec", [0.002, 0.02])
+@pytest.mark.parametrize("link", ["on", pytest.param("off", marks=pytest.mark.stress)])
+def test_two_signals_a_few_milliseconds_apart_stop_a_robot(
+    monkeypatch: pytest.MonkeyPatch, link: str, pause_sec: float
+) -> None:
+    """Parents forward a signal that the process group has got already."""
+    monkeypatch.setenv("AIONODE_LINK", link)
+    with Process(PROGRAM, "reader") as reader, Process(PROGRAM, "robot", "run") as robot:
+        reader.expect("/timer 1.0", "/thread 1.0")
+
+        robot.send(signal.SIGINT)
+        threading.Event().wait(pause_sec)
+        robot.send(signal.SIGTERM)
+
+        reader.expect("/timer 0.0", "/thread 0.0")
+        assert robot.wait() == 0

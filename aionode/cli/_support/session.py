@@ -174,8 +174,8 @@ def run_until_stopped(
 async def stoppable(
     work: Coroutine[None, None, int | None], on_stop: Callable[[], object]
 ) -> int | None:
-    """Await `work`, and cancel it at the first SIGINT or SIGTERM."""
-    from aionode.runner import signals_to
+    """Await `work`, and cancel it at the first SIGINT, SIGTERM or SIGHUP."""
+    from aionode._signals import signals_to
 
     loop = asyncio.get_running_loop()
     task = asyncio.current_task()

@@ -365,6 +365,14 @@ class Connection:
         self._flush()
         self.wake()
 
+    def send_rest(self) -> bool:
+        """Send what waits, as the event loop would next; whether nothing is left."""
+        if self._full:
+            self._on_writable()
+        else:
+            self._flush()
+        return self.idle or self._failed or self.closed
+
     @property
     def idle(self) -> bool:
         """Whether everything was handed to the operating system."""

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import logging
 import os
+import select
 from typing import TYPE_CHECKING, Any
 
+from aionode.clock import perf_ns
 from aionode.errors import TransportError
 from aionode.transport.base import Transport
 from aionode.transport.ipc._endpoint_table import can_link
@@ -32,6 +34,9 @@ if TYPE_CHECKING:
 __all__ = ["IpcTransport"]
 
 logger = logging.getLogger("aionode.transport.ipc")
+
+LOOK_S = 0.001
+"""How often `send_rest` looks whether a full socket takes more, in seconds."""
 
 
 class IpcTransport(Transport):
@@ -122,6 +127,14 @@ class IpcTransport(Transport):
             self.manager.close()
             self._peer_directory.advertisement = None
             await self.zenoh.close()
+
+    def send_rest(self, ends_ns: int) -> None:
+        """Send what waits on the links as far as the other processes read it."""
+        slow = list(self.manager._links.values())
+        while slow := [connection for connection in slow if not connection.send_rest()]:
+            if perf_ns() >= ends_ns:
+                return
+            select.select([], [], [], LOOK_S)
 
     def abandon(self) -> None:
         """Leave the links to the process that this one was forked from."""

@@ -1,0 +1,358 @@
+"""Signals that end a program: which of them count as one, and what a later one still sends."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time  # noqa: TID251  # how long a process takes to end is what is tested
+from types import ModuleType
+
+import pytest
+
+import aionode
+from aionode._sudden_end import is_sending
+from tests.support.program import Program
+
+SOON = "import aionode._signals; aionode._signals.SAME_SEC = 0.0"
+"""A second signal is one at once, to keep tests short."""
+
+WAITS_FOR_EVER = """
+async def callback(msg):
+    try:
+        print("ready", flush=True)
+        await asyncio.Event().wait()
+    finally:
+        await asyncio.sleep(0.1)
+        print("cancelled", flush=True)
+
+def make():
+    node = aionode.Node("node", context=context, callback_budget_ms=60_000)
+    node.create_subscription(String, "words", callback)
+    node.create_publisher(String, "words", 10).publish(String())
+    return node
+
+aionode.run(make, args=[])
+print("after run", flush=True)
+"""
+
+STUBBORN = """
+async def callback():
+    try:
+        print("ready", flush=True)
+        await asyncio.Event().wait()
+    except asyncio.CancelledError:
+        print("no", flush=True)
+        await asyncio.Event().wait()
+
+def make():
+    node = aionode.Node("node", context=context, callback_budget_ms=60_000)
+    node.create_timer(0.0, callback)
+    return node
+
+aionode.run(make, args=[])
+"""
+
+BLOCKED = """
+def callback():
+    print("ready", flush=True)
+    while True:
+        {step}
+
+def make():
+    node = aionode.Node("node", context=context, callback_budget_ms=60_000)
+    node.create_timer(0.0, callback)
+    return node
+
+aionode.run(make, args=[])
+"""
+
+SAYS_STOP = """
+from aionode import _sudden_end
+import os
+_sudden_end.STOPS.append(lambda: os.write(telling, b"stop;"))
+_sudden_end.SENDS.append(lambda ends_ns: os.write(telling, b"sent;"))
+telling = {descriptor}
+"""
+
+SIGINT, SIGTERM, SIGHUP = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
+
+
+@pytest.mark.parametrize("number", [SIGINT, SIGTERM, SIGHUP])
+def test_a_signal_ends_the_program_cleanly(number: signal.Signals) -> None:
+    """Handlers are cancelled, no traceback is printed, and the status is 0."""
+    with Program(WAITS_FOR_EVER) as program:
+        program.wait_until_ready()
+        program.send(number)
+        status, out, err = program.end()
+    assert (status, out, err) == (0, "cancelled\nafter run\n", "")
+
+
+@pytest.mark.parametrize(
+    ("numbers", "pause_sec"),
+    [
+        ((SIGINT, SIGINT), 0.002),
+        ((SIGTERM, SIGTERM), 0.02),
+        ((SIGINT, SIGTERM, SIGHUP), 0.02),
+        ((SIGHUP, SIGTERM), 0.002),
+    ],
+)
+def test_signals_within_a_second_are_one(
+    numbers: tuple[signal.Signals, ...], pause_sec: float
+) -> None:
+    """Parents forward a signal that the process group has got already."""
+    with Program(WAITS_FOR_EVER) as program:
+        program.wait_until_ready()
+        program.send(*numbers, pause_sec=pause_sec)
+        status, out, err = program.end()
+    assert (status, out, err) == (0, "cancelled\nafter run\n", "")
+
+
+def test_a_parent_that_forwards_the_signal_of_its_group_ends_the_program_cleanly() -> None:
+    """GNU timeout does: Ctrl-C reaches its command twice."""
+    before = ("timeout", "--foreground", "60")
+    with Program(WAITS_FOR_EVER, before=before, start_new_session=True) as program:
+        program.wait_until_ready()
+        os.killpg(program.process.pid, SIGINT)
+        _, out, err = program.end()
+    assert (out, err) == ("cancelled\nafter run\n", "")
+
+
+@pytest.mark.parametrize("number", [SIGINT, SIGTERM, SIGHUP])
+def test_a_signal_after_the_first_second_ends_the_program_at_once(number: signal.Signals) -> None:
+    """Even if a callback refuses to end."""
+    with Program(STUBBORN) as program:
+        program.wait_until_ready()
+        assert program.process.stdout is not None
+        program.send(SIGINT)
+        assert program.process.stdout.readline() == "no\n"
+        threading.Event().wait(1.1)
+        began_s = time.monotonic()
+        program.send(number)
+        status, _, err = program.end()
+        took_s = time.monotonic() - began_s
+    assert status == 128 + number
+    assert err.endswith(f"aionode: ended at once by a second signal ({number.name})\n")
+    assert took_s < 0.2 + 0.2
+
+
+@pytest.mark.parametrize("step", ["time.sleep(1)", "pass"])
+def test_the_second_signal_works_while_a_callback_blocks_the_loop(step: str) -> None:
+    """The handlers do not need the loop."""
+    with Program(SOON, BLOCKED.replace("{step}", step)) as program:
+        program.wait_until_ready()
+        program.send(SIGINT, SIGTERM, pause_sec=0.1)
+        status, _, err = program.end()
+    assert status == 143
+    assert err == "aionode: ended at once by a second signal (SIGTERM)\n"
+
+
+@pytest.mark.parametrize("step", ["time.sleep(1)", "pass", "await_for_ever"])
+def test_a_second_signal_sends_the_stops_of_leases_and_then_what_was_published(step: str) -> None:
+    """A robot whose program is ended at once must not drive on, nor if its output is not read."""
+    reading, writing = os.pipe()
+    body = STUBBORN if step == "await_for_ever" else BLOCKED.replace("{step}", step)
+    told = SAYS_STOP.replace("{descriptor}", str(writing))
+    with Program(SOON, told, body, pass_fds=(writing,)) as program:
+        program.wait_until_ready()
+        assert program.process.stdout is not None
+        assert program.process.stderr is not None
+        program.process.stdout.close()
+        program.process.stderr.close()
+        program.send(SIGINT, SIGINT, pause_sec=0.1)
+        status = program.process.wait(20)
+        program.process.stdout = program.process.stderr = None
+    os.close(writing)
+    with os.fdopen(reading) as stream:
+        assert stream.read() == "stop;sent;"
+    assert status == 130
+
+
+def test_a_stop_that_fails_or_hangs_keeps_no_program_alive() -> None:
+    """The others are sent, and the time has a limit."""
+    hooks = """
+    from aionode import _sudden_end
+    _sudden_end.STOPS.append(lambda: 1 / 0)
+    _sudden_end.STOPS.append(lambda: print("stop", flush=True))
+    _sudden_end.STOPS.append(lambda: time.sleep(60))
+    """
+    with Program(SOON, hooks, STUBBORN) as program:
+        program.wait_until_ready()
+        program.send(SIGINT, SIGINT, pause_sec=0.1)
+        status, out, err = program.end()
+    assert (status, out) == (130, "no\nstop\n")
+    assert err == "aionode: ended at once by a second signal (SIGINT)\n"
+
+
+def test_a_second_signal_within_a_transport_lets_it_finish_its_step() -> None:
+    """A frame that a socket took in part would be sent once more from its beginning."""
+    body = """
+    import signal
+    from aionode import _sudden_end
+    steps = []
+    _sudden_end.STOPS.append(lambda: print(steps[-1], flush=True))
+
+    names = {"__name__": "aionode.transport.made_up", "signal": signal, "steps": steps}
+    exec('''
+    def send():
+        steps.append("sending")
+        signal.raise_signal(signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
+        steps.append("sent")
+    ''', names)
+
+    def callback():
+        names["send"]()
+        time.sleep(60)
+
+    def make():
+        node = aionode.Node("node", context=context, callback_budget_ms=60_000)
+        node.create_timer(0.0, callback)
+        return node
+
+    aionode.run(make, args=[])
+    """
+    with Program(SOON, body) as program:
+        status, out, _ = program.end()
+    assert (status, out) == (130, "sent\n")
+
+
+def called_in(module: str, call: object) -> object:
+    """Return what `call` returns when a function of a module calls it."""
+    made = ModuleType(module)
+    exec("def run(call):\n    return call()", vars(made))  # noqa: S102  # a frame of that module
+    return made.run(call)
+
+
+def test_a_callback_that_a_transport_has_called_is_not_sending() -> None:
+    """It may block for any time, and the connection is at rest."""
+    inside = lambda: is_sending(sys._getframe())  # noqa: E731
+
+    assert not is_sending(sys._getframe())
+    assert not called_in("aionode.transport.ipc", inside)
+    assert called_in("aionode.transport.ipc", lambda: called_in("json", inside)) is False
+
+
+def test_the_second_signal_does_not_wait_for_a_reader_of_stderr() -> None:
+    """A full pipe would block the write of the last line."""
+    full = """
+    def callback():
+        try:
+            while True:
+                os.write(2, b"x" * 4096)
+        except BlockingIOError:
+            os.set_blocking(2, True)
+        print("ready", flush=True)
+        time.sleep(20)
+
+    import os
+    os.set_blocking(2, False)
+
+    def make():
+        node = aionode.Node("robot", context=context)
+        node.create_timer(0.01, callback)
+        return node
+
+    aionode.run(make, args=[])
+    """
+    with Program(SOON, full) as program:
+        program.wait_until_ready()
+        program.send(SIGINT, SIGTERM, pause_sec=0.1)
+        assert program.process.wait(20) == 143
+
+
+THREAD_AT_WORK = """
+import threading
+done = threading.Event()
+
+def work():
+    print("ready", flush=True)
+    done.wait(20)
+
+def make():
+    node = aionode.Node("robot", context=context)
+    node.create_timer(0.01, work, offload=True)
+    return node
+
+aionode.run(make, args=[], loop_factory={loop})
+print("after run", flush=True)
+"""
+
+
+@pytest.mark.parametrize("loop", ["asyncio.new_event_loop", "None"])
+def test_ctrl_c_names_the_thread_that_it_waits_for_and_a_second_one_ends_at_once(
+    loop: str,
+) -> None:
+    """A thread cannot be cancelled, so the user has to be told, and needs a way to stop it."""
+    with Program(SOON, THREAD_AT_WORK.replace("{loop}", loop)) as program:
+        program.wait_until_ready()
+        program.send(SIGINT)
+        assert program.process.stderr is not None
+        line = program.process.stderr.readline()
+        program.send(SIGINT)
+        status, out, err = program.end()
+    assert "waits up to 5 s for timer of 0.01 s (callback work) in a thread" in line
+    assert (status, out) == (130, "")
+    assert err == "aionode: ended at once by a second signal (SIGINT)\n"
+
+
+def test_a_program_that_ignores_sighup_goes_on_ignoring_it() -> None:
+    """So it is under nohup, which is meant to outlive the terminal."""
+    before = ("sh", "-c", "trap '' HUP; exec \"$@\"", "sh")
+    with Program(WAITS_FOR_EVER, before=before) as program:
+        program.wait_until_ready()
+        program.send(SIGHUP)
+        with pytest.raises(subprocess.TimeoutExpired):
+            program.process.wait(0.5)
+        program.send(SIGTERM)
+        status, out, _ = program.end()
+    assert (status, out) == (0, "cancelled\nafter run\n")
+
+
+def test_a_handler_of_the_program_for_sighup_is_left_alone() -> None:
+    """Many programs read their settings again at it."""
+    own = "import signal\nsignal.signal(signal.SIGHUP, lambda *_: print('again', flush=True))"
+    with Program(own, WAITS_FOR_EVER) as program:
+        program.wait_until_ready()
+        assert program.process.stdout is not None
+        program.send(SIGHUP)
+        assert program.process.stdout.readline() == "again\n"
+        program.send(SIGTERM)
+        status, out, _ = program.end()
+    assert (status, out) == (0, "cancelled\nafter run\n")
+
+
+def run_in_this_process(main: object) -> None:
+    """Run without reading the arguments of pytest."""
+    aionode.run(main, args=[], loop_factory=asyncio.new_event_loop)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("number", [SIGINT, SIGTERM, SIGHUP])
+def test_signal_handlers_are_restored(number: signal.Signals) -> None:
+    """The surrounding program has its own."""
+    before = signal.getsignal(number)
+
+    async def main() -> None:
+        assert signal.getsignal(number) is not before
+
+    run_in_this_process(main)
+    assert signal.getsignal(number) is before
+
+
+def test_a_handler_that_the_program_has_set_meanwhile_stays() -> None:
+    """It is not ours to take away."""
+
+    def handler(*_: object) -> None: ...
+
+    async def main() -> None:
+        signal.signal(SIGTERM, handler)
+
+    before = signal.getsignal(SIGTERM)
+    try:
+        run_in_this_process(main)
+        assert signal.getsignal(SIGTERM) is handler
+    finally:
+        signal.signal(SIGTERM, before)
