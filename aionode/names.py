@@ -36,6 +36,7 @@ __all__ = [
     "expand",
     "fully_qualified_name",
     "is_hidden",
+    "is_plain",
     "logger_name",
     "normalize_namespace",
     "remap",
@@ -52,6 +53,8 @@ __all__ = [
 NODE_NAME_MAX_LENGTH = 255
 TOPIC_MAX_LENGTH = 247  # DDS allows 255, and rmw keeps 8 for a prefix and a suffix
 NAMESPACE_MAX_LENGTH = 245  # leaves room for "/x"
+
+PLAIN = re.compile("[A-Za-z0-9_/%@:,.+~-]*")
 
 CHARACTERS = (
     "topic name must not contain characters other than alphanumerics, '_', '~', '{', or '}'"
@@ -317,6 +320,15 @@ def normalize_namespace(namespace: str | None) -> str:
     result = namespace if namespace.startswith("/") else f"/{namespace}"
     validate_namespace(result)
     return result
+
+
+def is_plain(*names: str) -> bool:
+    """Return whether names that another process gives have characters of names and tokens only.
+
+    What has others is no name of ROS, and could hold escape sequences for the terminal of whoever
+    lists it.
+    """
+    return all(PLAIN.fullmatch(name) for name in names)
 
 
 def is_hidden(name: str) -> bool:

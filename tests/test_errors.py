@@ -9,7 +9,7 @@ import pytest
 
 from aionode.arguments import parse_arguments
 from aionode.context import Context
-from aionode.errors import MessageError, NameValidationException, brief, shortened
+from aionode.errors import MessageError, NameValidationException, ServiceError, brief, shortened
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.interfaces.std_srvs.srv import Trigger
 from aionode.node import Node
@@ -84,3 +84,11 @@ def test_begin_and_end_of_a_long_text_are_kept_and_the_attributes_are_whole() ->
 def test_a_number_that_python_does_not_write_is_shown_all_the_same() -> None:
     """With more than 4300 digits `repr` raises."""
     assert "cannot be written" in brief(10**5000)
+
+
+def test_an_error_that_quotes_another_process_shows_its_control_characters() -> None:
+    """The text of a server's exception could otherwise rewrite the caller's terminal."""
+    error = ServiceError("ValueError", "\x1b[2Jall is well\r\x9b31m\u202e\n\tat line 3")
+
+    assert "\\x1b[2Jall is well\\r\\x9b31m\\u202e\n\tat line 3" in str(error)
+    assert error.error_text.startswith("\x1b")

@@ -142,6 +142,7 @@ __all__ = [
 
 # Used by other modules of aionode to write error texts; not public.
 brief = _values.brief
+escaped = _values.escaped
 shortened = _values.shortened
 
 

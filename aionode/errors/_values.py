@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 __all__ = [
     "AionodeError",
     "DecodeError",
@@ -43,6 +45,23 @@ def shortened(text: str, limit: int = MAX_TEXT) -> str:
     return f"{text[:half]} […{len(text) - 2 * half} characters…] {text[-half:]}"
 
 
+UNSHOWN = re.compile(
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
+)
+"""Control characters but tab and newline, what changes the direction of text, and surrogates."""
+
+
+def escaped(text: str) -> str:
+    r"""Return `text` with control characters as escapes such as ``\x1b``, for people to read.
+
+    A text may come from another process: printed as it is, an escape sequence could recolour,
+    overwrite or retitle a terminal. Tabs and newlines stay.
+    """
+    if UNSHOWN.search(text) is None:
+        return text
+    return UNSHOWN.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
+
+
 def brief(value: object) -> str:
     """Return the shortened repr of `value`, for the text of an error.
 
@@ -59,11 +78,13 @@ class AionodeError(Exception):
     """Base of all errors that aionode raises on purpose.
 
     Texts of more than 2000 characters are shortened in the middle, as the beginning and the end say
-    what happened and what to do. The attributes hold the complete values.
+    what happened and what to do. Control characters are shown as escapes, since a text may quote
+    another process. The attributes hold the complete values.
     """
 
     def __init__(self, *args: object) -> None:
-        super().__init__(*(shortened(arg) if isinstance(arg, str) else arg for arg in args))
+        shown = (escaped(shortened(arg)) if isinstance(arg, str) else arg for arg in args)
+        super().__init__(*shown)
 
 
 class DecodeError(AionodeError, ValueError):

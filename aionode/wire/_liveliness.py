@@ -21,6 +21,7 @@ import xxhash
 
 from aionode.clock import CONST_INFINITE_NS, S_TO_NS, Duration
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
+from aionode.names import is_plain
 from aionode.qos import (
     DEFAULT_DEPTH,
     DurabilityPolicy,
@@ -59,6 +60,9 @@ KINDS: Final = {chunk: kind for kind, chunk in KIND_CHUNKS.items()}
 
 NODE_CHUNKS: Final = 9
 ENDPOINT_CHUNKS: Final = 13
+
+LONGEST_TOKEN: Final = 4096
+"""Longest token in characters: names of ROS have 255 at most, and a token has five of them."""
 
 QOS_CHUNKS: Final = 256
 """Of how many different QoS chunks the profiles are remembered."""
@@ -152,6 +156,8 @@ def parse_token(key: str) -> Token | None:
     """Return the parsed token, or None if its format is unknown."""
     chunks = key.split("/")
     if len(chunks) < NODE_CHUNKS or chunks[0] != PREFIX or "" in chunks:
+        return None
+    if len(key) > LONGEST_TOKEN or not is_plain(key):
         return None
     _, domain, zid, node_id, entity_id, kind, enclave, namespace, name = chunks[:NODE_CHUNKS]
     numbers = [number(text) for text in (domain, node_id, entity_id)]

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import io
 import math
 from typing import Any
 
 import pytest
+
+from aionode.cli._support.formatting import csv_line
+from aionode.cli._support.output import Output
 
 
 def test_text_is_for_people_only(screen: Any) -> None:
@@ -43,3 +47,35 @@ def test_a_pipe_gets_no_spinner(screen: Any) -> None:
         pass
 
     assert (screen.text, screen.errors) == ("", "")
+
+
+class Terminal(io.StringIO):
+    """A stream that says that it is a terminal."""
+
+    def isatty(self) -> bool:
+        """Return True."""
+        return True
+
+
+def test_a_terminal_shows_the_control_characters_of_others_as_escapes() -> None:
+    """A value could retitle the terminal, or hide what stands above it."""
+    stdout, stderr = Terminal(), io.StringIO()
+    output = Output(stdout, stderr)
+
+    output.text("data: \x1b[2Jnothing\x07 here")
+    output.warn("\x1b[31mnothing")
+
+    assert stdout.getvalue() == "data: \\x1b[2Jnothing\\x07 here\n"
+    assert stderr.getvalue() == "\\x1b[31mnothing\n"
+
+
+def test_a_pipe_gets_values_as_they_are(screen: Any) -> None:
+    """A program that reads them wants what was sent."""
+    screen.output.text("\x1b[2J")
+
+    assert screen.text == "\x1b[2J\n"
+
+
+def test_a_row_of_csv_is_one_line() -> None:
+    """A line break in a value would begin another message."""
+    assert csv_line({"a": "one\ntwo\r", "b": [1, 2]}) == "one\\ntwo\\r,1,2"

@@ -215,3 +215,15 @@ def test_a_depth_of_zero_is_the_default_depth() -> None:
 
     assert qos is not None
     assert qos.depth == 42
+
+
+@pytest.mark.parametrize(
+    "character", ["\x1b", "\n", "\r", "\x00", "\x7f", "\x9b", "\u202e", " ", "["]
+)
+def test_a_token_with_what_no_name_can_hold_is_refused(character: str) -> None:
+    """Tools print the names of others, so a name could recolour or rewrite a terminal."""
+    good = "@ros2_lv/0/aac3178e146ba6f1fc6e6a4085e77f21/0/1/NN/%/%/talker"
+
+    assert liveliness.parse_token(good) is not None
+    assert liveliness.parse_token(good.replace("talker", f"talk{character}er")) is None
+    assert liveliness.parse_token(f"{good}{'x' * 5000}") is None

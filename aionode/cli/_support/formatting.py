@@ -106,12 +106,12 @@ def yaml_text(
 
 
 def csv_line(plain: Any) -> str:
-    """Return all values on one line, separated by commas."""
+    """Return all values on one line, separated by commas; line breaks in them as escapes."""
     if isinstance(plain, dict):
         return ",".join(csv_line(value) for value in plain.values())
     if isinstance(plain, list):
         return ",".join(csv_line(value) for value in plain)
-    return str(plain)
+    return str(plain).replace("\n", "\\n").replace("\r", "\\r")
 
 
 FIELD_PART = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)((?:\[[0-9]{1,18}\])*)")

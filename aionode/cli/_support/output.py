@@ -1,7 +1,8 @@
 """What a command prints: text for people, or with ``--json`` one record per line for programs.
 
 Data goes to stdout; warnings and progress go to stderr. Each item is flushed, so that a pipe gets
-it at once.
+it at once. What other programs have said is shown on a terminal with its control characters as
+escapes; a pipe or a file gets it as it is.
 """
 
 from __future__ import annotations
@@ -14,12 +15,14 @@ from typing import TYPE_CHECKING, Any, TextIO
 import msgspec
 
 from aionode._streams import discard
-from aionode.errors import CommandError
+from aionode.errors import CommandError, escaped
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 __all__ = ["Output", "unwritable"]
+
+CLEAR = "\x1b[H\x1b[2J"
 
 
 class Output:
@@ -74,6 +77,11 @@ class Output:
         if not self.json:
             self._print(text)
 
+    def clear(self) -> None:
+        """Clear the screen; nothing with ``--json``."""
+        if not self.json:
+            self._stdout.write(CLEAR)
+
     def progress(self, text: str) -> None:
         """Print what is being waited for: on stdout as ros2 does, on stderr with ``--json``."""
         if self.json:
@@ -84,7 +92,7 @@ class Output:
     def warn(self, text: str) -> None:
         """Print a line on stderr; dropped if stderr cannot be written to."""
         try:
-            self._stderr.write(f"{text}\n")
+            self._stderr.write(f"{escaped(text)}\n")
             self._stderr.flush()
         except OSError:
             discard(self._stderr)
@@ -94,7 +102,7 @@ class Output:
 
     def _print(self, text: str) -> None:
         try:
-            self._stdout.write(text)
+            self._stdout.write(escaped(text) if self.is_terminal else text)
             self._stdout.flush()
         except BrokenPipeError:  # the reader went away on purpose
             raise

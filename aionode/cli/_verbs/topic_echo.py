@@ -28,8 +28,6 @@ __all__ = ["echo"]
 DEPTH = 1000
 """Default queue depth: how many messages may wait to be printed."""
 
-CLEAR = "\x1b[H\x1b[2J"
-
 
 async def echo(
     node: Node,
@@ -85,7 +83,7 @@ async def echo(
         if filter_text is not None and not fits(printer.part_of(msg)):
             return
         if clear:
-            output.raw(CLEAR)
+            output.clear()
         printer.show(msg, info if with_info else None)
         if once:
             follower.finish()

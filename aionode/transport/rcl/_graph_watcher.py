@@ -220,6 +220,9 @@ class RclGraphWatcher:
         for name, namespace, enclave in answer:
             if name.startswith(HIDDEN) or name in UNKNOWN_NODES:
                 continue
+            if not names.is_plain(name, namespace, enclave):
+                self._state.note_malformed("graph", f"the name of a node, {name!r}")
+                continue
             full_name = names.fully_qualified_name(namespace, name)
             seen[full_name] += 1
             if seen[full_name] <= own[full_name]:

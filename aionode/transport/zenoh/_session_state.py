@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol, TypeVar
 import zenoh
 
 from aionode.clock import MachineTime, perf_ns
+from aionode.errors import escaped
 from aionode.graph import EndpointKind
 from aionode.transport._content_filters import ContentFilters
 from aionode.transport._loop_waker import LoopWaker, ThreadsafeQueue
@@ -286,7 +287,7 @@ class SessionState:
                 "%s: something in an unknown form came from the network: %s; it was left out, and "
                 "more of it is only counted. Does the sender have another definition of the type?",
                 key,
-                problem,
+                escaped(problem),
             )
 
 
