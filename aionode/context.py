@@ -313,6 +313,8 @@ class Context:
         self._shut_down = True
         for node in list(self._nodes):
             node.destroy_node()
+        if not self._users:
+            self.graph.close()
 
     async def _acquire(self) -> None:
         """Keep the context open until `_release`; the first user opens the transports.
@@ -402,6 +404,8 @@ class Context:
         if self._users == 0:
             self._affinity.detach()
             self._closed.set()
+            if self._shut_down:
+                self.graph.close()
 
     async def _close_transports(self) -> None:
         self._end_spinning()

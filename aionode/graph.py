@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias, TypeVar
 
 from aionode import names, qos
 from aionode._distribution import NO_TYPE_HASH, distribution_mismatch
+from aionode.errors import EntityDestroyedError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -213,6 +214,7 @@ class Graph:
     def __init__(self, participant: str = "") -> None:
         self.changes = 0
         self._participant = participant
+        self._closed = False
         self._nodes: dict[NodeInfo, None] = {}
         self._endpoints: dict[EndpointInfo, None] = {}
         self._by_name: dict[tuple[EndpointKind, str], dict[EndpointInfo, None]] = defaultdict(dict)
@@ -345,7 +347,9 @@ class Graph:
     def changed(self, *full_names: str) -> asyncio.Future[None]:
         """Return a future that is done at the next change: a node or endpoint added or removed.
 
-        Await it, or keep it to cancel the wait from elsewhere; cancelling is safe.
+        Await it, or keep it to cancel the wait from elsewhere; cancelling is safe. The graph is the
+        context's: the end of a node is a change of the graph, and not the end of the wait. The
+        future raises EntityDestroyedError once the context was shut down and has closed.
 
         Args:
             full_names: Full names of topics, services or nodes: then only changes of nodes and
@@ -353,6 +357,9 @@ class Graph:
                 less than looking again at every change.
         """
         waiter: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        if self._closed:
+            end(waiter)
+            return waiter
         keys = full_names or (None,)
         for key in keys:
             self._waiters.setdefault(key, {})[waiter] = None
@@ -368,9 +375,20 @@ class Graph:
         return waiter
 
     async def until(self, condition: Callable[[], bool], *full_names: str) -> None:
-        """Wait until `condition()` is true; it is called again at each change, as by `changed`."""
+        """Wait until `condition()` is true; it is called again at each change, as by `changed`.
+
+        Raises:
+            EntityDestroyedError: the context was shut down, and has closed.
+        """
         while not condition():
             await self.changed(*full_names)
+
+    def close(self) -> None:
+        """End all waits: nothing changes any more. Called by the context after its shutdown."""
+        self._closed = True
+        for waiters in list(self._waiters.values()):
+            for waiter in list(waiters):
+                end(waiter)
 
     def _wake(self, full_name: str) -> None:
         self.changes += 1
@@ -430,6 +448,13 @@ class Graph:
     def find_nodes(self, fully_qualified_name: str) -> Iterator[NodeInfo]:
         """Return an iterator over the nodes of this full name; names need not be unique."""
         return iter(self.nodes_named(fully_qualified_name))
+
+
+def end(waiter: asyncio.Future[None]) -> None:
+    """Have a wait for a change raise that the context is destroyed."""
+    if not waiter.done():
+        waiter.set_exception(EntityDestroyedError("context"))
+        waiter.exception()  # retrieved, as nobody may await it any more
 
 
 def _take_out(index: dict[K, dict[V, None]], key: K, member: V) -> None:

@@ -18,7 +18,13 @@ from fastapi.responses import HTMLResponse, JSONResponse, StreamingResponse
 
 import aionode
 from aionode import Context, Health, Node, Supervisor
-from aionode.errors import AionodeError, NodeNotRunningError, ServiceError, ServiceUnavailableError
+from aionode.errors import (
+    AionodeError,
+    EntityDestroyedError,
+    NodeNotRunningError,
+    ServiceError,
+    ServiceUnavailableError,
+)
 from aionode.interfaces.std_msgs.msg import Float32
 from aionode.message import to_json
 from examples.web_robot import Drive, SetSpeed
@@ -110,7 +116,7 @@ def make_app(context: Context | None = None) -> FastAPI:
 def answer_error(_request: Request, error: Exception) -> JSONResponse:
     """Answer with the text of an error, and the HTTP status that fits it."""
     status = 500
-    if isinstance(error, NodeNotRunningError | ServiceUnavailableError):
+    if isinstance(error, NodeNotRunningError | EntityDestroyedError | ServiceUnavailableError):
         status = 503
     elif isinstance(error, TimeoutError):
         status = 504

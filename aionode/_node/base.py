@@ -87,6 +87,7 @@ class NodeBase:
         self._destroyed = asyncio.Event()
         self._end_record = EndRecord(f"node {full_name}")
         self._clock = ROSClock(time_base=self.context.time_base)
+        self._clock._end_of_wait = self._node_tasks.end_of_wait
         self._logger = get_logger(
             names.logger_name(namespace, node_name), now_ns=self.context.time_base.system_ns
         )

@@ -102,15 +102,25 @@ class NodeGraphQueries(NodeBase):
 
         Returns:
             True if the node exists, False if `timeout` has passed.
+
+        Raises:
+            EntityDestroyedError: this node has ended, before or during the wait (a RuntimeError);
+                its ``__cause__`` is the error that this node failed with, if it did.
+            CancelledError: this node has ended, and one of its own tasks waits: a callback, or the
+                body of ``async with node``.
         """
         wanted = "/" + fully_qualified_node_name.removeprefix("/")
+        own = self.get_fully_qualified_name()
 
         def is_there() -> bool:
             return bool(self.graph.nodes_named(wanted))
 
         try:
             async with asyncio.timeout(timeout):
-                await self.graph.until(is_there, wanted)
+                while not is_there():
+                    if self._info not in self.graph.nodes_named(own):
+                        raise self._node_tasks.end_of_wait(f"node {own}")
+                    await self.graph.changed(wanted, own)
         except TimeoutError:
             return is_there()
         return True

@@ -229,7 +229,10 @@ class Clock:
         self._override_ns = 0
         self._timer_heap = TimerHeap()  # alarms while ROS time is switched on
         self._jumps = Jumps()
-        self._sleepers: dict[asyncio.Future[None], None] = {}  # in order of arrival
+        # In order of arrival; each gets True when its time has come, False from `destroy`.
+        self._sleepers: dict[asyncio.Future[bool], None] = {}
+        # Returns what a sleep raises that `destroy` ends; a node tells its own tasks from others.
+        self._end_of_wait: Callable[[str], BaseException] = EntityDestroyedError
 
     @property
     def clock_type(self) -> ClockType:
@@ -256,8 +259,10 @@ class Clock:
         passes only when the clock is set. Setting the machine's clock has no effect.
 
         Raises:
-            EntityDestroyedError: The clock, or its node, is destroyed (a RuntimeError).
-            asyncio.CancelledError: It was destroyed meanwhile.
+            EntityDestroyedError: The clock was destroyed with its node, before or during the sleep
+                (a RuntimeError); its ``__cause__`` is the error of the node, if that failed.
+            asyncio.CancelledError: It was destroyed during a sleep of one of the node's own tasks:
+                a callback, or the body of ``async with node``.
             TimeSourceChangedError: ROS time was switched on or off meanwhile.
             OverflowError: `duration_sec` is infinite.
         """
@@ -276,8 +281,10 @@ class Clock:
 
         Raises:
             ValueError: `until` belongs to another type of clock.
-            EntityDestroyedError: The clock, or its node, is destroyed (a RuntimeError).
-            asyncio.CancelledError: It was destroyed meanwhile.
+            EntityDestroyedError: The clock was destroyed with its node, before or during the sleep
+                (a RuntimeError); its ``__cause__`` is the error of the node, if that failed.
+            asyncio.CancelledError: It was destroyed during a sleep of one of the node's own tasks:
+                a callback, or the body of ``async with node``.
             TimeSourceChangedError: ROS time was switched on or off meanwhile.
         """
         self._refuse_if_destroyed()
@@ -294,16 +301,17 @@ class Clock:
     async def _sleep(
         self, when_ns: int, call_at: Callable[[int, Callable[[], None]], Alarm]
     ) -> None:
-        sleeper = asyncio.get_running_loop().create_future()
+        sleeper: asyncio.Future[bool] = asyncio.get_running_loop().create_future()
 
         def wake() -> None:
             if not sleeper.done():
-                sleeper.set_result(None)
+                sleeper.set_result(True)
 
         alarm = call_at(when_ns, wake)
         self._sleepers[sleeper] = None
         try:
-            await sleeper
+            if not await sleeper:
+                raise self._end_of_wait(repr(self))
         finally:
             del self._sleepers[sleeper]
             alarm.cancel()
@@ -427,10 +435,11 @@ class Clock:
     # End
 
     def destroy(self) -> None:
-        """Cancel all sleeps and refuse later ones. The time can still be read."""
+        """End all sleeps and refuse later ones. The time can still be read."""
         self._destroyed = True
         for sleeper in self._sleepers:
-            sleeper.cancel()
+            if not sleeper.done():
+                sleeper.set_result(False)
 
     def _refuse_if_destroyed(self) -> None:
         if self._destroyed:

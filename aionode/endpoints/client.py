@@ -16,6 +16,7 @@ from aionode.endpoints.service_introspection import (
 from aionode.endpoints.stats import ClientStats
 from aionode.errors import (
     AionodeError,
+    EntityDestroyedError,
     MessageError,
     RequestTimeoutError,
     ServiceUnavailableError,
@@ -64,7 +65,7 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
         self._check = checker(srv_type.Request)
         self._now_ns = time_base.system_ns
         self._answers: set[asyncio.Future[Any]] = set()
-        self._futures = Futures(self._subject)
+        self._futures = Futures(self)
         self._warned = False
         self._has_told_caveat = False
 
@@ -90,8 +91,10 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
             known not to answer, on Fast DDS behind a bridge, counts, and is warned of in the log.
 
         Raises:
-            EntityDestroyedError: the client was already destroyed (a RuntimeError).
-            CancelledError: the client was destroyed during the wait.
+            EntityDestroyedError: the client was destroyed, before or during the wait (a
+                RuntimeError); its ``__cause__`` is the error of the node, if that failed.
+            CancelledError: the client was destroyed during the wait of one of the node's own
+                tasks: a callback, or the body of ``async with node``.
         """
         self._refuse_if_destroyed()
         try:
@@ -120,8 +123,10 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
             ServiceError: the handler failed; carries the type and text of its exception.
             ServiceUnavailableError: the server went away before it answered (a ServiceError).
             RequestTimeoutError: `timeout_sec` has passed (a TimeoutError).
-            EntityDestroyedError: the client was already destroyed (a RuntimeError).
-            CancelledError: the client was destroyed during the call.
+            EntityDestroyedError: the client was destroyed, before or during the call (a
+                RuntimeError); its ``__cause__`` is the error of the node, if that failed.
+            CancelledError: the client was destroyed during a call of one of the node's own tasks: a
+                callback, or the body of ``async with node``.
         """
         if self.destroyed:
             self._refuse_if_destroyed("call service")
@@ -159,8 +164,8 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
         """Send `request`, and return a future of the response, as in rclpy.
 
         It is an asyncio future: await it, or use `add_done_callback`; `result` returns the
-        response or raises what `call` raises. Cancelling it cancels the call, and destroying the
-        client cancels both. A call made before the node runs is sent when the node starts.
+        response or raises what `call` raises in the task that asks for the future. Cancelling it
+        cancels the call. A call made before the node runs is sent when the node starts.
 
         Args:
             request: An instance of ``srv_type.Request``.
@@ -183,6 +188,9 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
         exchange = self._begin(request)
         try:
             return await exchange.answer
+        except EntityDestroyedError:
+            end = self._end_of_wait()
+            raise end from end.__cause__
         finally:
             exchange.cancel()
 
@@ -256,11 +264,13 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
             )
 
     def _close(self) -> None:
-        """Withdraw the client; cancel its calls, and the tasks that wait for a server."""
+        """Withdraw the client; end its calls, and the waits for a server."""
         self._leave_graph()
         # First, so that the calls do not fail as if the servers had gone.
         for answer in list(self._answers):
-            answer.cancel(f"{self._subject}: destroyed")
+            if not answer.done():
+                answer.set_exception(EntityDestroyedError(self._subject))
+                answer.exception()  # retrieved, as nobody may await it any more
         self._futures.close()
         self._introspection.close()
         for requester in self._requesters:
@@ -278,7 +288,8 @@ class Exchange:
         answers: The client's open answers; this one is among them until `cancel`.
 
     Attributes:
-        answer: The response, or the error in its place. Cancelling a task that awaits it directly
+        answer: The response, or the error in its place; EntityDestroyedError if the client is
+            destroyed. Cancelling a task that awaits it directly
             cancels it too, unless it is shielded by `asyncio.shield`.
         calls: The request under way in each transport.
         open: How many of `calls` may still answer.

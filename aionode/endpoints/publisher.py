@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
 from threading import get_ident
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -57,6 +58,7 @@ class Publisher(Endpoint, Generic[MsgT]):
             self._monitor = PublisherMonitor(self, time_base, event_callbacks)
         writers = self._all_writers = tuple(make_writers())  # one for each transport
         self.stats = PublisherStats(writers, self._matched)
+        self._drains: set[asyncio.Timeout] = set()  # the waits of `drain`, ended by `_close`
         self._signs: tuple[Writer, ...] = ()
         if self._monitor is not None and self._monitor.needs_signs:
             self._signs = (SignOfLife(writers, self._check, self._monitor.note_message),)
@@ -173,16 +175,38 @@ class Publisher(Endpoint, Generic[MsgT]):
 
         By then, messages to other processes have been handed to the transport. It does not wait
         for callbacks. Cancelling is safe.
+
+        Raises:
+            EntityDestroyedError: the publisher was destroyed during the wait (a RuntimeError); what
+                was published is sent all the same. Its ``__cause__`` is the error of the node, if
+                that failed.
+            CancelledError: the publisher was destroyed during the wait of one of the node's own
+                tasks: a callback, or the body of ``async with node``.
         """
-        for writer in self._writers:
-            await writer.drain()
+        wait = asyncio.timeout(None)
+        self._drains.add(wait)
+        try:
+            async with wait:
+                for writer in self._writers:
+                    await writer.drain()
+        except TimeoutError:
+            if not wait.expired():
+                raise
+            end = self._end_of_wait()
+            raise end from end.__cause__
+        finally:
+            self._drains.discard(wait)
 
     def get_subscription_count(self) -> int:
         """Return how many subscriptions are matched, in this process and in others."""
         return self._count_matched()
 
     async def wait_for_subscribers(self, count: int = 1) -> None:
-        """Wait until at least `count` subscriptions are matched, without a limit of its own."""
+        """Wait until at least `count` subscriptions are matched, without a limit of its own.
+
+        Raises:
+            EntityDestroyedError, CancelledError: the publisher was destroyed, as in `drain`.
+        """
         await self._until(lambda: self.get_subscription_count() >= count)
 
     def _run(self) -> None:
@@ -195,5 +219,7 @@ class Publisher(Endpoint, Generic[MsgT]):
         if self._monitor is not None:
             self._monitor.close()
         self._leave_graph()
+        for wait in self._drains:
+            wait.reschedule(0.0)  # in the past: at the next turn of the loop
         for writer in self._all_writers:
             writer.close()

@@ -197,7 +197,7 @@ async def test_cancelling_run_destroys_the_node(context: Context) -> None:
 
 
 async def test_the_clock_of_a_destroyed_node_is_destroyed(node: Node) -> None:
-    """Pending sleeps on it are cancelled."""
+    """Pending sleeps on it end."""
     clock = node.get_clock()
     node.destroy_node()
     await settle()  # callbacks that clean up may sleep

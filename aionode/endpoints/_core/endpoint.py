@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from typing import TYPE_CHECKING, NamedTuple
 
 from aionode.endpoints._core.entity import EndStage, Entity
@@ -52,8 +51,6 @@ class Endpoint(Entity):
         super().__init__(subject, stage)
         self._endpoint, self._graph, self._callbacks, self._affinity = setup
         self.qos_profile = self._endpoint.qos
-        # What `_until` waits for: changes of the graph, each until it is done.
-        self._waits: set[asyncio.Future[None]] = set()
         self._unwatch: list[Callable[[], None]] = []
         self._unreported: AbstractSet[str] = frozenset()
 
@@ -77,9 +74,7 @@ class Endpoint(Entity):
         self._graph.add_endpoint(self._endpoint)
 
     def _leave_graph(self) -> None:
-        """Remove the endpoint from the graph, and cancel every `_until`. Part of `_close`."""
-        for wait in list(self._waits):  # first, since the change below wakes them
-            wait.cancel(f"{self._endpoint.kind.value} of {self._endpoint.name}: destroyed")
+        """Remove the endpoint from the graph, which ends every `_until`. Part of `_close`."""
         for unwatch in self._unwatch:
             unwatch()
         self._unwatch.clear()
@@ -108,13 +103,10 @@ class Endpoint(Entity):
         """Wait until `condition()` is true; it is checked again when endpoints of its name change.
 
         Raises:
-            CancelledError: the endpoint was destroyed during the wait.
+            EntityDestroyedError: the endpoint was destroyed during the wait.
+            CancelledError: as for EntityDestroyedError, in a task of the node.
         """
         while not condition():
             if self.destroyed:
-                # A change in the same iteration of the loop had ended the wait before `destroy`.
-                raise asyncio.CancelledError(f"{self._endpoint.name}: destroyed")
-            wait = self._graph.changed(self._endpoint.name)
-            self._waits.add(wait)
-            wait.add_done_callback(self._waits.discard)
-            await wait
+                raise self._end_of_wait()
+            await self._graph.changed(self._endpoint.name)

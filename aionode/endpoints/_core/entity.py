@@ -117,7 +117,14 @@ class Entity:
             return EntityDestroyedError(self._subject)
         return self._node_tasks.end_of_wait(self._subject)
 
+    def _destroyed_error(self, action: str = "") -> EntityDestroyedError:
+        """Return the error of those who use a destroyed entity; its cause is that of the node."""
+        error = EntityDestroyedError(self._subject, action)
+        if self._node_tasks is not None:
+            error.__cause__ = self._node_tasks.error
+        return error
+
     def _refuse_if_destroyed(self, action: str = "") -> None:
         """Raise EntityDestroyedError after `destroy`."""
         if self.destroyed:
-            raise EntityDestroyedError(self._subject, action)
+            raise self._destroyed_error(action)

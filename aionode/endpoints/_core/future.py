@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 if TYPE_CHECKING:
     from types import TracebackType
 
+    from aionode.endpoints._core.entity import Entity
+
 __all__ = ["Futures", "Unasked", "asks"]
 
 P = ParamSpec("P")
@@ -19,18 +21,22 @@ T = TypeVar("T")
 class Futures:
     """Runs work of one entity in tasks of its node, and returns the results as futures.
 
-    Work submitted before the node runs starts with the node. `close` cancels what is unfinished.
+    Work submitted before the node runs starts with the node. `close` ends what is unfinished, as
+    the waits of the tasks that asked for it end.
 
     Args:
-        subject: The entity, for the names of tasks and for errors.
+        entity: The entity.
     """
 
-    def __init__(self, subject: str) -> None:
-        self._subject = subject
+    def __init__(self, entity: Entity) -> None:
+        self._entity = entity
+        self._subject = entity._subject
         self._tasks: asyncio.TaskGroup | None = None
         self._closed = False
         # The unfinished futures, each with its work until that is started.
         self._open: dict[asyncio.Future[Any], Coroutine[Any, Any, Any] | None] = {}
+        # Those of them that the node's own tasks asked for.
+        self._own: set[asyncio.Future[Any]] = set()
 
     def begin(self, work: Coroutine[Any, Any, T]) -> asyncio.Future[T]:
         """Return the result of `work` as a future; cancelling the future cancels the work.
@@ -48,9 +54,12 @@ class Futures:
                 "node in the loop"
             ) from error
         self._open[future] = work
+        node_tasks = self._entity._node_tasks
+        if node_tasks is not None and node_tasks.own_current_task():
+            self._own.add(future)
         future.add_done_callback(self._forget)
         if self._closed:
-            future.cancel(f"{self._subject}: destroyed")
+            self._end(future)
         elif self._tasks is not None:
             self._start(future)
         return future
@@ -62,45 +71,53 @@ class Futures:
             self._start(future)
 
     def close(self) -> None:
-        """Cancel all unfinished work; from now on work is cancelled at once."""
+        """End all unfinished work; from now on work ends at once."""
         self._closed = True
         for future in list(self._open):
+            self._end(future)
+
+    def _end(self, future: asyncio.Future[Any]) -> None:
+        """Cancel `future`, or set the error that its entity was destroyed; either ends its work."""
+        if future in self._own:
             future.cancel(f"{self._subject}: destroyed")
+        elif not future.done():
+            future.set_exception(self._entity._destroyed_error())
+            future.exception()  # retrieved, as nobody may await it any more
 
     def _start(self, future: asyncio.Future[Any]) -> None:
         work = self._open[future]
         assert work is not None  # noqa: S101  # nothing is started twice
         assert self._tasks is not None  # noqa: S101  # the node runs
         self._open[future] = None
-        outcome = complete(future, work)
+        outcome = self._complete(future, work)
         try:
             task = self._tasks.create_task(outcome, name=f"{self._subject}: future")
         except RuntimeError:  # the node is failing already
             outcome.close()
             work.close()
-            future.cancel(f"{self._subject}: its node has ended")
+            self._end(future)
             return
         future.add_done_callback(lambda _: task.cancel())
 
+    async def _complete(self, future: asyncio.Future[T], work: Coroutine[Any, Any, T]) -> None:
+        """Await `work`, and set its result or its exception on `future`."""
+        try:
+            outcome = await work
+        except asyncio.CancelledError:
+            self._end(future)  # the node is failing, unless the future was cancelled
+            raise
+        except Exception as error:  # noqa: BLE001  # raised to those who await the future
+            if not future.done():
+                future.set_exception(error)
+        else:
+            if not future.done():
+                future.set_result(outcome)
+
     def _forget(self, future: asyncio.Future[Any]) -> None:
+        self._own.discard(future)
         work = self._open.pop(future)
         if work is not None:
             work.close()
-
-
-async def complete(future: asyncio.Future[T], work: Coroutine[Any, Any, T]) -> None:
-    """Await `work`, and set its result or its exception on `future`."""
-    try:
-        outcome = await work
-    except asyncio.CancelledError:
-        future.cancel()
-        raise
-    except Exception as error:  # noqa: BLE001  # raised to those who await the future
-        if not future.done():
-            future.set_exception(error)
-    else:
-        if not future.done():
-            future.set_result(outcome)
 
 
 class Unasked(Coroutine[Any, Any, T]):

@@ -52,14 +52,18 @@ class NodeTasks:
             error = error.exceptions[0]
         self.error = error
 
+    def own_current_task(self) -> bool:
+        """Return whether the current task is one of the node's own."""
+        task = asyncio.current_task()
+        return task is not None and (task is self._body or OWNERS.get(task) is self)
+
     def end_of_wait(self, subject: str) -> asyncio.CancelledError | EntityDestroyedError:
         """Return what the current task raises when a wait ends because `subject` was destroyed.
 
         A task of the node ends with it, so it is cancelled. Nobody has cancelled any other task: a
         CancelledError there would end it without a word, or confuse the TaskGroup around it.
         """
-        task = asyncio.current_task()
-        if task is not None and (task is self._body or OWNERS.get(task) is self):
+        if self.own_current_task():
             return asyncio.CancelledError(f"{subject}: destroyed")
         destroyed = EntityDestroyedError(subject)
         destroyed.__cause__ = self.error

@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode.endpoints.actions.goal import CancelCode
-from aionode.errors import ServiceUnavailableError
+from aionode.errors import EntityDestroyedError, ServiceUnavailableError
 
 if TYPE_CHECKING:
     from aionode.endpoints.actions._client_goal import ClientGoalHandle
@@ -93,11 +93,10 @@ class CancelRequest:
         """
         if self._ended:
             return
-        if answer.cancelled():  # the client was destroyed
-            self.end()
-            return
         error = answer.exception()
-        if isinstance(error, ServiceUnavailableError):
+        if isinstance(error, EntityDestroyedError):  # the client
+            self.end()
+        elif isinstance(error, ServiceUnavailableError):
             if not self._client.service_is_ready():
                 self._fail(error)
         elif error is not None:
@@ -115,7 +114,7 @@ class CancelRequest:
         if self._ended or decision.cancelled():
             return
         error = decision.exception()
-        if isinstance(error, ServiceUnavailableError):
+        if isinstance(error, ServiceUnavailableError | EntityDestroyedError):
             return  # the goal may have been accepted and the answer lost
         if error is None and decision.result().accepted:
             if self._timer is not None:

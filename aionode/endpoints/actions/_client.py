@@ -125,7 +125,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._accepted: MessageQueue[Any] = MessageQueue(UNLIMITED, CallbackStats(), keep_all=True)
         # One for each task that waits for an answer; set when the client is destroyed.
         self._waits: set[asyncio.Future[None]] = set()
-        self._futures = Futures(self._subject)
+        self._futures = Futures(self)
         self._cancel_requests: dict[CancelRequest, None] = {}  # those that have not ended
         self._expect_at_end = node._expect_at_end
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from typing import TYPE_CHECKING
 
 from aionode._concurrency import checkpoint
@@ -50,12 +49,14 @@ class Rate(Entity):
         Cancelling loses nothing.
 
         Raises:
-            EntityDestroyedError: The rate or its node was already destroyed (a RuntimeError).
-            asyncio.CancelledError: It was destroyed during the wait.
+            EntityDestroyedError: The rate was destroyed, before or during the wait (a
+                RuntimeError); its ``__cause__`` is the error of the node, if that failed.
+            asyncio.CancelledError: It was destroyed during the wait of one of the node's own tasks:
+                a callback, or the body of ``async with node``.
         """
         self._refuse_if_destroyed("sleep")
         if not await self._next_turn():
-            raise asyncio.CancelledError(f"{self._subject}: destroyed during sleep()")
+            raise self._end_of_wait()
 
     def __aiter__(self) -> AsyncIterator[None]:
         """Yield None at each turn, until the rate is destroyed."""
