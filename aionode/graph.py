@@ -207,6 +207,8 @@ class Graph:
 
     Attributes:
         changes: Incremented by each change: an answer is valid while this stays the same.
+        router_lost_ns: When the connection to a router was lost last, by `perf_ns`: what went
+            about then may only be out of reach.
         unreported: Which mismatches of an endpoint of this context are not logged, since its
             program gets them as events: ``"qos"``, ``"type"`` and ``"definition"``.
     """
@@ -227,6 +229,7 @@ class Graph:
         self._listeners: list[Callable[[EndpointInfo], None]] = []
         self._node_listeners: list[Callable[[NodeInfo], None]] = []
         self._watchers: dict[tuple[EndpointKind, str], list[Watcher]] = {}
+        self.router_lost_ns = -(1 << 62)
         self.unreported: dict[EndpointInfo, AbstractSet[str]] = {}
 
     def __repr__(self) -> str:

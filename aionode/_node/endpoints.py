@@ -10,6 +10,7 @@ from aionode._node.parameters import NodeParameters
 from aionode.clock import Clock
 from aionode.endpoints._core.endpoint import EndpointSetup
 from aionode.endpoints._core.loop_affinity import in_loop_thread
+from aionode.endpoints._core.silence_watch import SILENCE_SEC, Silence
 from aionode.endpoints.client import Client
 from aionode.endpoints.publisher import Publisher
 from aionode.endpoints.service import Service
@@ -22,6 +23,8 @@ from aionode.message import Message, ServiceType, holds_arrays
 from aionode.parameter import declare_qos_overrides
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from aionode.content_filter import ContentFilterOptions
     from aionode.endpoints._core.callback_runner import OnError
     from aionode.endpoints._core.entity import Entity
@@ -125,6 +128,9 @@ class NodeEndpoints(NodeParameters):
         event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         content_filter_options: ContentFilterOptions | None = None,
+        on_silence: Callable[[], object] | None = None,
+        silence_sec: float = SILENCE_SEC,
+        clock: Clock | None = None,
     ) -> Subscription[bytes]: ...
 
     @overload
@@ -142,6 +148,9 @@ class NodeEndpoints(NodeParameters):
         event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         content_filter_options: ContentFilterOptions | None = None,
+        on_silence: Callable[[], object] | None = None,
+        silence_sec: float = SILENCE_SEC,
+        clock: Clock | None = None,
     ) -> Subscription[MsgT]: ...
 
     @in_loop_thread
@@ -159,6 +168,9 @@ class NodeEndpoints(NodeParameters):
         event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         content_filter_options: ContentFilterOptions | None = None,
+        on_silence: Callable[[], object] | None = None,
+        silence_sec: float = SILENCE_SEC,
+        clock: Clock | None = None,
     ) -> Subscription[Any]:
         """Return a subscription to `topic`.
 
@@ -178,10 +190,21 @@ class NodeEndpoints(NodeParameters):
             event_callbacks: Called with its events; without them, see `Subscription.events`.
             qos_overriding_options: Which policies parameters may override.
             content_filter_options: Which messages to deliver; see `set_content_filter`.
+            on_silence: Called without arguments when the topic falls silent after a message: none
+                has arrived for `silence_sec`, or nobody is left who has published. Sync or async;
+                its exceptions are those of the callback. Before that, what is queued is dropped,
+                and calls of the callback that have not ended are cancelled, or waited for in a
+                thread. It is called again only after a message that is published later; earlier
+                ones are dropped, however late they arrive.
+            silence_sec: The longest silence, in seconds. The time while the host is suspended
+                counts as well.
+            clock: What the silence is measured with; the steady clock by default. With simulated
+                time, a clock that nobody has set for `silence_sec` of the steady clock is silent.
 
         Raises:
-            TypeError: an argument has the wrong type, or the callback takes other arguments.
-            ValueError: `concurrent`, `on_error` or `qos_profile` is invalid.
+            TypeError: an argument has the wrong type, a callback takes other arguments, or
+                `on_silence` is given without a callback, or its settings without it.
+            ValueError: `concurrent`, `on_error`, `qos_profile` or `silence_sec` is invalid.
             ContentFilterError: the filter is malformed, or does not fit the type (a ValueError).
             InvalidTopicNameException: `topic` is invalid (a ValueError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
@@ -201,6 +224,9 @@ class NodeEndpoints(NodeParameters):
             on_error=on_error,
             offload=offload,
             event_callbacks=event_callbacks,
+            silence=Silence.given(
+                on_silence, silence_sec, clock, f"subscription of {setup.endpoint.name}"
+            ),
         )
         if content_filter_options is not None:  # before messages can arrive
             subscription.set_content_filter(

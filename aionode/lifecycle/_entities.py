@@ -12,6 +12,7 @@ from aionode.message import Message
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from aionode.endpoints._core.silence_watch import SilenceWatch
     from aionode.endpoints.events import EventStream, PublisherEvent
     from aionode.endpoints.publisher import Publisher
     from aionode.endpoints.stats import PublisherStats
@@ -216,6 +217,26 @@ class Gate(SimpleManagedEntity):
     def __init__(self) -> None:
         super().__init__()
         self.discarded = 0
+        self._watch: SilenceWatch | None = None
+
+    def guard(self, watch: SilenceWatch) -> None:
+        """Have a subscription notice silence only while enabled."""
+        self._watch = watch
+        watch.enable(enabled=self.is_activated)
+
+    def on_activate(self, state: State) -> TransitionCallbackReturn:
+        """Pass calls; the first message arms the watch."""
+        result = super().on_activate(state)
+        if self._watch is not None:
+            self._watch.enable(enabled=True)
+        return result
+
+    def on_deactivate(self, state: State) -> TransitionCallbackReturn:
+        """Pass none: whoever deactivates the node says what stops."""
+        result = super().on_deactivate(state)
+        if self._watch is not None:
+            self._watch.enable(enabled=False)
+        return result
 
     def dropping(self, callback: Callable[..., Any]) -> Callable[..., Any]:
         """Return a callback for messages, which discards them while disabled."""

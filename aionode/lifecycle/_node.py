@@ -250,13 +250,17 @@ class LifecycleNode(Node):
     ) -> Subscription[MsgT]:
         """Return a subscription whose callback is called only while the node is active.
 
-        Messages that arrive in other states are discarded; see `create_subscription`.
+        Messages that arrive in other states are discarded, and no silence is noticed; see
+        `create_subscription`.
         """
         gate = Gate()
         self.add_managed_entity(gate)
-        return self.create_subscription(
+        subscription = self.create_subscription(
             msg_type, topic, gate.dropping(callback), qos_profile, **options
         )
+        if subscription._silence_watch is not None:
+            gate.guard(subscription._silence_watch)
+        return subscription
 
     def create_lifecycle_service(
         self,

@@ -129,6 +129,17 @@ class ReaderRegistration(Registration):
         empty expression wants all messages.
         """
 
+    def is_linked(self, publisher: bytes) -> bool | None:  # noqa: ARG002  # has no links
+        """Return whether messages of a publisher come by a link that only its process can end.
+
+        Args:
+            publisher: The gid of the publisher.
+
+        Returns:
+            False if there was such a link, and it has ended; None if there was none.
+        """
+        return None
+
 
 class Writer(Registration):
     """The sending end of one publisher in one transport.

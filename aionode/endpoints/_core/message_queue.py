@@ -72,7 +72,7 @@ class MessageQueue(InlineCall, Generic[T]):
     def put(self, item: T) -> None:
         """Add `item`, and wake the readers.
 
-        `deliver` of a subscription in `endpoints/subscription.py` repeats this.
+        `SubscriptionReader.deliver` repeats this.
         """
         queue = self.items
         if len(queue) >= self.depth:

@@ -190,6 +190,11 @@ class RemotePublisher:
 
     # The link
 
+    @property
+    def is_linked(self) -> bool:
+        """Whether there is a link, and the publisher has not been destroyed."""
+        return self.connection is not None and not self._gone
+
     def open(self, connection: Connection) -> None:
         """Ask for the publisher's messages over `connection`."""
         self.connection = connection
@@ -530,6 +535,11 @@ class IpcReader(ReaderRegistration):
         """Announce which messages are wanted, to publishers at the other end of links as well."""
         if isinstance(self._zenoh, ReaderRegistration):
             self._zenoh.set_content_filter(content_filter)
+
+    def is_linked(self, publisher: bytes) -> bool | None:
+        """Return whether a publisher sends over a link; None if it never did."""
+        remote_publisher = self.remote_publishers.get(publisher)
+        return None if remote_publisher is None else remote_publisher.is_linked
 
     def forget(self, remote_publisher: RemotePublisher) -> None:
         """Forget a publisher that was destroyed, when nothing of it is on its way any more."""

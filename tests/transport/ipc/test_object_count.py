@@ -65,7 +65,7 @@ async def test_a_linked_subscription_is_made_of_few_objects() -> None:
         "EndpointInfo": 1,
         "CallbackStats": 1,
         "CallbackRunner": 1,
-        "_Reader": 1,
+        "SubscriptionReader": 1,
         "LocalReader": 1,
         "IpcReader": 1,
         "RemotePublisher": 1,

@@ -1,0 +1,428 @@
+"""A subscription that notices when its topic falls silent, and has what it drives stopped.
+
+What holds, whatever happens in whichever order:
+
+1. `on_silence` is called once for each silence: after a message was handed to the callback, when
+   nothing has arrived for `silence_sec`, or when nobody is left who has published.
+2. When it is called, no callback of the subscription runs any more, and nothing is queued.
+3. A message that was published before the silence was noticed is never handed to the callback
+   after that. It may come late for any reason: it waited in a queue or a socket, here or there, or
+   is sent again.
+4. Nothing that was queued is handed to the callback while `on_silence` is due. So the time is
+   compared whenever a message arrives or is taken from the queue, not only when the alarm rings:
+   an event loop that stood still finds queue, socket and alarm in any order.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from aionode._concurrency import SLICE_NS, checkpoint
+from aionode.clock import S_TO_NS, Clock, SilenceAlarm, perf_ns
+from aionode.endpoints._core.callback_runner import accepts
+from aionode.endpoints._core.publication_times import PublicationTimes
+from aionode.errors import brief
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Coroutine
+
+    from aionode.clock import TimeBase
+    from aionode.endpoints._core.callback_runner import CallbackRunner
+    from aionode.endpoints._core.endpoint import Endpoint
+    from aionode.endpoints._core.subscription_reader import SubscriptionReader
+    from aionode.graph import EndpointInfo
+    from aionode.transport.base import SampleInfo
+
+__all__ = ["SILENCE_SEC", "Silence", "SilenceWatch"]
+
+SILENCE_SEC = 0.3
+"""The longest silence of a topic, if a program does not say: three commands at 10 Hz."""
+
+REMEMBERED_PUBLISHERS = 1024
+"""Of how many publishers it is remembered when they were last heard."""
+
+NOTICE_S = 0.3
+"""After how long the log names a cancelled callback that keeps `on_silence` waiting."""
+
+MOMENT_S = 0.05
+"""How long after the end of a publisher it is clear whether its whole process has gone."""
+
+RETURN_S = 1.0
+"""How long a process may take to return whose connection was lost: the recovery cuts some.
+
+Zenoh makes a connection anew within some tenths of a second, and declares in some milliseconds.
+"""
+
+ROUTER_S = 2.0
+"""A process that goes so shortly before or after a router may only be out of reach."""
+
+
+class Silence(NamedTuple):
+    """What a program wants when a topic falls silent.
+
+    Attributes:
+        on_silence: Called without arguments, sync or async.
+        silence_sec: The longest silence, in seconds.
+        clock: What it is measured with; None for the steady clock.
+    """
+
+    on_silence: Callable[[], object]
+    silence_sec: float
+    clock: Clock | None = None
+
+    @classmethod
+    def given(
+        cls,
+        on_silence: Callable[[], object] | None,
+        silence_sec: float,
+        clock: Clock | None,
+        subject: str,
+    ) -> Silence | None:
+        """Return what the arguments say; None if nothing is to be called.
+
+        Raises:
+            TypeError: they say when to call nothing: then a robot would not be stopped.
+        """
+        if on_silence is not None:
+            return cls(on_silence, silence_sec, clock)
+        if silence_sec != SILENCE_SEC or clock is not None:
+            raise TypeError(
+                f"{subject}: silence_sec and clock say when on_silence is called, and there is no "
+                "on_silence; give a function without parameters"
+            )
+        return None
+
+
+class SilenceWatch:
+    """Watches the publishers and messages of one subscription, and hands its messages on.
+
+    Args:
+        entity: The subscription.
+        reader: Its queue.
+        runner: Runs its callback.
+        make_runner: Makes the runner of `on_silence`.
+        silence: What the program wants.
+        time_base: The time.
+        is_linked: Returns whether a publisher is connected by a link: None if it never was.
+
+    Raises:
+        CallbackSignatureError: `on_silence` takes arguments (a TypeError).
+        TypeError: an argument has the wrong type.
+        ValueError: `silence_sec` is not positive, or not finite.
+    """
+
+    def __init__(
+        self,
+        entity: Endpoint,
+        reader: SubscriptionReader,
+        runner: CallbackRunner,
+        make_runner: Callable[[Callable[[], object]], CallbackRunner],
+        silence: Silence,
+        time_base: TimeBase,
+        is_linked: Callable[[bytes], bool | None],
+    ) -> None:
+        subject = entity._subject
+        accepts(silence.on_silence, 0, subject=f"{subject}, on_silence", wanted="()")
+        period_ns = to_silence_ns(silence, subject)
+        self._entity = entity
+        self._reader = reader
+        self._runner = runner
+        self._on_silence = make_runner(silence.on_silence)
+        self._is_linked = is_linked
+        self._silence_ns = period_ns
+        steady = time_base.through_suspend()
+        self._steady_ns = steady.steady_ns
+        self._system_ns = time_base.system_ns
+        self._clock = silence.clock
+        self._alarm = SilenceAlarm(steady, period_ns, self._on_alarm, silence.clock)
+        self._times = PublicationTimes()
+        self._enabled = True
+        self._runs = False
+        # Whether a message was handed to the callback since the last silence.
+        self._handed = False
+        # The publisher of the newest message since the last silence, and when each was heard that
+        # has not gone, the last one last.
+        self._newest = b""
+        self._newest_ns = 0
+        self._heard: dict[bytes, int] = {}
+        # When a silence was noticed last, and whether `on_silence` is due.
+        self._fired_ns: int | None = None
+        self._due = False
+        # Callbacks that were started and have not ended.
+        self._running: set[asyncio.Task[None]] = set()
+        self._timers: set[asyncio.TimerHandle] = set()  # of `_later`, until they have run
+        entity._watch(self._note_publisher)
+
+    # Lifetime
+
+    def start(self) -> None:
+        """Begin to watch: the node runs now."""
+        self._runs = True
+        if self._heard:
+            # A node that has not run could not handle them: they are as new as they can be.
+            self._alarm.note()
+        self._alarm.start()
+
+    def close(self) -> None:
+        """Watch nothing more."""
+        self._runs = False
+        self._due = False
+        self._alarm.stop()
+        self._forget()
+
+    def enable(self, *, enabled: bool) -> None:
+        """Watch, or notice no silence and be as before the first message."""
+        self._enabled = enabled
+        if not enabled:
+            self._forget()
+
+    def _forget(self) -> None:
+        """Wait for a message as for the first."""
+        self._alarm.forget()
+        self._handed = False
+        self._newest = b""
+        self._heard.clear()
+        for timer in self._timers:
+            timer.cancel()
+        self._timers.clear()
+
+    # Messages
+
+    def admits(self, sample_info: SampleInfo) -> bool:
+        """Take a message that has arrived; return whether it is to be queued."""
+        now_ns = self._steady_ns()
+        system_began_ns = now_ns - self._system_ns()
+        arrived_ns = now_ns
+        if sample_info.arrived_ns:
+            arrived_ns = min(now_ns, sample_info.arrived_ns + system_began_ns)
+        gid = sample_info.gid
+        published_ns = self._times.published_ns(
+            gid, sample_info.source_ns, arrived_ns, system_began_ns
+        )
+        if not self._enabled:
+            return True
+        if self._runs and self._alarm.periods():
+            if self._waited_in_time(published_ns, now_ns):
+                arrived_ns = published_ns
+            else:
+                self._fire()
+        if self._fired_ns is not None and published_ns < self._fired_ns:
+            self._reader.stats.dropped += 1
+            return False
+        self._hear(gid, arrived_ns)
+        return True
+
+    def _waited_in_time(self, published_ns: int, now_ns: int) -> bool:
+        """Whether a message was there in time and was read late, since the loop was busy.
+
+        It was, if neither the silence before it nor its wait was too long.
+        """
+        by_ros_time = self._clock is not None and self._clock.ros_time_is_active
+        return (
+            not by_ros_time
+            and published_ns - self._newest_ns < self._silence_ns
+            and now_ns - published_ns < self._silence_ns
+        )
+
+    def _hear(self, gid: bytes, arrived_ns: int) -> None:
+        heard = self._heard
+        if heard.pop(gid, None) is None and len(heard) >= REMEMBERED_PUBLISHERS:
+            del heard[next(iter(heard))]
+        heard[gid] = arrived_ns
+        self._newest = gid
+        self._newest_ns = arrived_ns
+        self._alarm.note(arrived_ns)
+
+    # Silence
+
+    def _on_alarm(self, _: int) -> bool:
+        self._fire()
+        return False  # until the next message
+
+    def _fire(self) -> None:
+        """Drop and cancel what may still drive, and have `on_silence` called next."""
+        self._fired_ns = self._steady_ns()
+        self._forget()
+        self._due = True
+        self._reader.discard()
+        self._reader.wake_writers()
+        self._stop_callbacks()
+        self._reader.wake_readers()
+
+    def _stop_callbacks(self) -> None:
+        """Cancel the callbacks that run, and say which ones `on_silence` has to wait for."""
+        if not self._running:
+            return
+        if self._runner.offload:
+            self._say_waiting("runs in a thread, which cannot be cancelled")
+            return
+        for task in self._running:
+            if not task.cancelling():
+                task.cancel()
+        self._later(NOTICE_S, lambda: self._say_waiting("was cancelled and has not ended"))
+
+    def _say_waiting(self, why: str) -> None:
+        if not (self._due and self._running):
+            return
+        self._entity._callbacks.logger.warning(
+            f"{self._runner.subject} {why}: on_silence waits for its end, though the topic is "
+            "silent"
+        )
+
+    # Publishers
+
+    def _note_publisher(self, publisher: EndpointInfo, present: bool) -> None:
+        """Look into the end of a publisher that was heard."""
+        if present or publisher.gid not in self._heard:
+            return
+        if publisher.node.participant == self._entity._endpoint.node.participant:
+            self._lose(publisher.gid)
+        else:
+            self._look_in(MOMENT_S, publisher, perf_ns())
+
+    def _look_in(self, delay_s: float, publisher: EndpointInfo, gone_ns: int) -> None:
+        """Look in a while what has become of a publisher; in real time, as networks have no other.
+
+        Of a process that was killed, and of one that was cut off, the same is seen: all its tokens
+        go. A publisher that was destroyed leaves its node behind.
+        """
+
+        def look() -> None:
+            graph = self._entity._graph
+            if publisher in graph.opposites(self._entity._endpoint):
+                return  # it has returned
+            linked = self._is_linked(publisher.gid)
+            if linked is False or publisher.node in graph.nodes_named(
+                publisher.node.fully_qualified_name
+            ):
+                self._lose(publisher.gid)
+            elif linked:
+                return  # only Zenoh has lost it: its messages come over the link
+            elif delay_s == MOMENT_S:
+                self._look_in(RETURN_S, publisher, gone_ns)
+            elif gone_ns - graph.router_lost_ns > ROUTER_S * S_TO_NS:
+                self._lose(publisher.gid)
+
+        self._later(delay_s, look)
+
+    def _later(self, delay_s: float, call: Callable[[], None]) -> None:
+        """Call `call` after a delay, unless the watch begins anew before."""
+
+        def run() -> None:
+            self._timers.discard(timer)
+            call()
+
+        timer = asyncio.get_running_loop().call_later(delay_s, run)
+        self._timers.add(timer)
+
+    def _lose(self, gid: bytes) -> None:
+        self._heard.pop(gid, None)
+        self._fire_if_deserted()
+
+    def _fire_if_deserted(self) -> None:
+        """Fire if the publisher of the newest message has gone, and no other was heard lately.
+
+        Not before that message was handed to the callback: a publisher may be made for it alone.
+        """
+        if not (self._handed and self._runs and self._newest) or self._newest in self._heard:
+            return
+        since_ns = self._steady_ns() - self._silence_ns
+        if all(heard_ns <= since_ns for heard_ns in self._heard.values()):
+            self._fire()
+
+    # The consumer
+
+    async def consume(
+        self,
+        handle: Callable[[int, Any], Coroutine[Any, Any, None] | None],
+        concurrent: bool | int,  # an int is a number of callbacks, not a truth value
+    ) -> None:
+        """Hand each message to `handle`, and call `on_silence` in between, until cancelled.
+
+        Args:
+            handle: Runs what can run at once, and returns what is left to await, if anything.
+            concurrent: How many of these may run at once, as for `consume` of callbacks.
+
+        Raises:
+            Exception: what a callback raised; in a group, if several may run at once.
+        """
+        limit = None if concurrent is True else max(concurrent, 1)
+        try:
+            async with asyncio.TaskGroup() as tasks:
+                await self._consume(tasks, handle, limit)
+        except BaseExceptionGroup as group:
+            if concurrent is not False or len(group.exceptions) > 1:
+                raise
+            raise group.exceptions[0] from None
+
+    async def _consume(
+        self,
+        tasks: asyncio.TaskGroup,
+        handle: Callable[[int, Any], Coroutine[Any, Any, None] | None],
+        limit: int | None,
+    ) -> None:
+        reader, running = self._reader, self._running
+        turn_ends_ns = 0
+        while True:
+            while limit is not None and len(running) >= limit:
+                await asyncio.wait(running, return_when=asyncio.FIRST_COMPLETED)
+            if not self._due:
+                await reader.wait()
+            if not self._due and self._enabled and self._alarm.periods():
+                self._fire()  # the loop stood still, or the message has waited too long
+            if self._due:
+                await self._call_on_silence()
+                continue
+            if not len(reader):
+                continue
+            rest = handle(*reader.pop())
+            if rest is not None:
+                task = tasks.create_task(rest)
+                running.add(task)
+                task.add_done_callback(running.discard)
+            self._note_handed()
+            if perf_ns() >= turn_ends_ns:
+                await checkpoint()
+                turn_ends_ns = perf_ns() + SLICE_NS
+
+    def _note_handed(self) -> None:
+        if self._due:
+            self._stop_callbacks()  # the callback itself has ended the last publisher
+        elif self._enabled and not self._handed:
+            self._handed = True
+            self._fire_if_deserted()
+
+    async def _call_on_silence(self) -> None:
+        """Call it once no callback runs."""
+        if self._running:
+            await asyncio.wait(self._running)
+        self._due = False
+        rest = self._on_silence.run()
+        if rest is not None:
+            await rest
+
+
+def to_silence_ns(silence: Silence, subject: str) -> int:
+    """Return the longest silence in nanoseconds.
+
+    Raises:
+        TypeError: `silence_sec` is not a number, or `clock` not a clock.
+        ValueError: `silence_sec` is not positive, or not finite.
+    """
+    seconds, clock = silence.silence_sec, silence.clock
+    if isinstance(seconds, bool) or not isinstance(seconds, int | float):
+        raise TypeError(
+            f"{subject}: silence_sec={brief(seconds)}; a number of seconds is needed, such as 0.3"
+        )
+    if not (math.isfinite(seconds) and 1 <= seconds * S_TO_NS < 2**63):
+        raise ValueError(
+            f"{subject}: silence_sec={seconds}; it must be positive and finite, such as 0.3"
+        )
+    if clock is not None and not isinstance(clock, Clock):
+        raise TypeError(
+            f"{subject}: clock is {brief(clock)}; give a clock such as node.get_clock(), or "
+            "nothing for the steady clock"
+        )
+    return round(seconds * S_TO_NS)
