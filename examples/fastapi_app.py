@@ -12,11 +12,12 @@ from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING
 
 import uvicorn
-from fastapi import FastAPI, HTTPException
+from fastapi import FastAPI, HTTPException, Request
 from fastapi.responses import HTMLResponse, StreamingResponse
 
 import aionode
 from aionode import Context, Node
+from aionode.fastapi import until_disconnected
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
 from aionode.message import to_json
@@ -55,9 +56,9 @@ def make_app(context: Context | None = None) -> FastAPI:
         return PAGE
 
     @app.get("/add")
-    async def add(a: int, b: int) -> dict[str, int]:
+    async def add(request: Request, a: int, b: int) -> dict[str, int]:
         try:
-            async with asyncio.timeout(2):
+            async with until_disconnected(request), asyncio.timeout(2):
                 response = await app.state.adder.call(AddTwoInts.Request(a=a, b=b))
         except TimeoutError as error:
             raise HTTPException(504, "/add_two_ints does not answer") from error

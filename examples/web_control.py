@@ -21,10 +21,12 @@ from aionode import Context, Health, Node, Supervisor
 from aionode.errors import (
     AionodeError,
     EntityDestroyedError,
+    GoalError,
     NodeNotRunningError,
     ServiceError,
     ServiceUnavailableError,
 )
+from aionode.fastapi import until_disconnected
 from aionode.interfaces.std_msgs.msg import Float32
 from aionode.message import to_json
 from examples.web_robot import Drive, SetSpeed
@@ -90,9 +92,18 @@ def make_app(context: Context | None = None) -> FastAPI:
         return health
 
     @app.post("/speed")
-    async def speed(request: Annotated[SetSpeed.Request, Body()]) -> SetSpeed.Response:
+    async def speed(
+        request: Request, requested_speed: Annotated[SetSpeed.Request, Body()]
+    ) -> SetSpeed.Response:
         operator: Operator = app.state.supervisor.node
-        return await operator.set_speed.call(request, timeout_sec=ANSWER_SEC)
+        async with until_disconnected(request):
+            return await operator.set_speed.call(requested_speed, timeout_sec=ANSWER_SEC)
+
+    @app.post("/drive")
+    async def drive_there(request: Request, distance: float) -> Drive.Result:
+        operator: Operator = app.state.supervisor.node
+        async with until_disconnected(request):  # the robot stops when the browser leaves
+            return await operator.drive.call(Drive.Goal(distance=distance))
 
     @app.get("/drive")
     async def drive(distance: float) -> StreamingResponse:
@@ -104,7 +115,7 @@ def make_app(context: Context | None = None) -> FastAPI:
         operator: Operator = app.state.supervisor.node
         await websocket.accept()
         async with asyncio.TaskGroup() as tasks:
-            browser = tasks.create_task(until_disconnected(websocket))
+            browser = tasks.create_task(until_closed(websocket))
             robot = tasks.create_task(send_progress(websocket, operator, distance))
             await asyncio.wait([browser, robot], return_when=asyncio.FIRST_COMPLETED)
             browser.cancel()
@@ -118,6 +129,8 @@ def answer_error(_request: Request, error: Exception) -> JSONResponse:
     status = 500
     if isinstance(error, NodeNotRunningError | EntityDestroyedError | ServiceUnavailableError):
         status = 503
+    elif isinstance(error, GoalError):  # the robot is busy, for example
+        status = 409
     elif isinstance(error, TimeoutError):
         status = 504
     elif isinstance(error, ServiceError):  # last, as ServiceUnavailableError is one too
@@ -140,7 +153,7 @@ async def send_progress(websocket: WebSocket, operator: Operator, distance: floa
     await websocket.close()
 
 
-async def until_disconnected(websocket: WebSocket) -> None:
+async def until_closed(websocket: WebSocket) -> None:
     """Return when the browser disconnects; what it sends is ignored."""
     with contextlib.suppress(WebSocketDisconnect):
         while True:

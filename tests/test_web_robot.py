@@ -197,6 +197,19 @@ async def test_the_robot_stops_when_the_browser_leaves(
     await drives_again(web, app)
 
 
+async def test_the_robot_stops_when_the_browser_leaves_that_waits_for_its_arrival(
+    web: httpx.AsyncClient, wheels: Wheels, app: FastAPI
+) -> None:
+    """The route awaits the goal; without `until_disconnected` nobody would tell it."""
+    async with asyncio.TaskGroup() as tasks:
+        waiting = tasks.create_task(web.post("/drive", params={"distance": FAR}))
+        await wheels.until(turning=True)
+        waiting.cancel()
+
+    await wheels.until(turning=False)
+    await drives_again(web, app)
+
+
 async def test_the_robot_stops_when_a_websocket_is_closed(
     aionode_context: Context, node_factory: Callable[..., Node]
 ) -> None:
