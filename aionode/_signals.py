@@ -5,14 +5,12 @@ from __future__ import annotations
 import _thread
 import contextlib
 import os
-import select
 import signal
 import threading
-import traceback
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode._streams import UnreadWatch, interrupt_main
-from aionode._sudden_end import LIMIT_NS, is_sending, send_last_messages
+from aionode._sudden_end import LastMessages, print_error, start_thread
 from aionode.clock import perf_ns
 
 if TYPE_CHECKING:
@@ -27,14 +25,6 @@ SAME_SEC: Final = 1.0
 GNU ``timeout``, ``ros2 launch`` and other parents forward a signal that the whole process group has
 got already.
 """
-
-SENDING_NS: Final = 50_000_000
-"""How long a publisher or transport may take for what a signal has interrupted, in nanoseconds."""
-
-AGAIN_SEC: Final = 0.001
-"""After how long a handler comes back that was called within a publisher or transport."""
-
-STDERR: Final = 2
 
 
 @contextlib.contextmanager
@@ -98,7 +88,7 @@ class EndHandler:
             self._unread.start()
             self._stop()
         elif perf_ns() - self._first_ns >= SAME_SEC * 1e9:
-            SuddenEnd(signal.Signals(number)).begin(self, frame)
+            SuddenEnd(number).begin(self, frame)
 
     def _wake(self) -> None:
         if self._first is not None:
@@ -120,11 +110,9 @@ class SuddenEnd:
         number: The signal that asks for it.
     """
 
-    def __init__(self, number: signal.Signals) -> None:
-        self._number = number
-        self._began_ns = perf_ns()
-        self._is_sending = False
-        self._failure = ""
+    def __init__(self, number: int) -> None:
+        self._number = signal.Signals(number)
+        self._messages = LastMessages(number)
         self._leaving = _thread.allocate_lock()
 
     def begin(self, handler: EndHandler, frame: FrameType | None) -> None:
@@ -133,47 +121,20 @@ class SuddenEnd:
             if signal.getsignal(each) is handler:
                 signal.signal(each, signal.SIG_IGN)  # a third one has nothing to add
         signal.signal(self._number, self._on_signal)
-        # `Thread.start` takes locks that the interrupted thread may hold.
-        with contextlib.suppress(RuntimeError):  # the system has no more threads
-            _thread.start_new_thread(self._watch, ())
+        start_thread(self._leave_in_time)
         self._on_signal(self._number, frame)
 
     def _on_signal(self, _number: int, frame: FrameType | None) -> None:
-        if self._is_sending:
-            return
-        if is_sending(frame) and perf_ns() - self._began_ns < SENDING_NS:
-            return  # `_watch` sends the signal again
-        self._is_sending = True
-        try:
-            needs_time = send_last_messages(self._began_ns + LIMIT_NS)
-        except Exception:  # noqa: BLE001  # printed: there is no caller
-            self._failure = traceback.format_exc()
-            needs_time = True
-        if needs_time:
-            wait_until(self._began_ns + LIMIT_NS)
-        self._leave()
+        if self._messages.send(frame):
+            self._leave()
 
-    def _watch(self) -> None:
-        while not self._is_sending and perf_ns() - self._began_ns < LIMIT_NS:
-            threading.Event().wait(AGAIN_SEC)
-            if not self._is_sending:
-                interrupt_main(self._number)
-        wait_until(self._began_ns + LIMIT_NS)
+    def _leave_in_time(self) -> None:
+        self._messages.wait()
         self._leave()
 
     def _leave(self) -> None:
-        if not self._leaving.acquire(blocking=False):
-            return  # the other thread is faster
-        name = self._number.name
-        text = f"{self._failure}aionode: ended at once by a second signal ({name})\n"
-        # A reader of stderr that is gone must not keep the process from ending.
-        with contextlib.suppress(OSError, ValueError):
-            if select.select([], [STDERR], [], 0)[1]:
-                os.write(STDERR, text.encode())
-        os._exit(128 + self._number)
-
-
-def wait_until(ends_ns: int) -> None:
-    """Wait until a time of `perf_ns`."""
-    while (left_ns := ends_ns - perf_ns()) > 0:
-        threading.Event().wait(left_ns / 1e9)
+        if self._leaving.acquire(blocking=False):  # the first of both threads
+            name = self._number.name
+            text = f"aionode: ended at once by a second signal ({name})\n"
+            print_error(self._messages.failure + text)
+            os._exit(128 + self._number)

@@ -3,35 +3,52 @@
 Two kinds of functions are called, in this order: those of `STOPS` send the stop of each open lease,
 those of `SENDS` hand what was published to the operating system.
 
-**When.** At the second signal, at Ctrl-Z while a lease is open, and when the interpreter exits. A
-handler of signals runs in the main thread, between any two steps of what that thread does, and what
-it has interrupted does not go on meanwhile. So a handler asks `is_sending` first: within publishers
-and transports, a frame may be in a socket in part while the connection does not know it yet. Such a
-moment is over soon, and the handler comes back after it. At any other moment the main thread may
-publish and send as in a callback: aionode holds no lock there.
+It begins with a signal, the second one that asks for the end, or Ctrl-Z while a lease is open. Its
+handler runs in the main thread, between any two steps of what that thread does, and what it has
+interrupted does not go on meanwhile. So the handler looks first whether that is a publisher or
+transport: a socket may have a part of a frame, and the connection does not know it yet. Such a step
+is over soon, and the signal is sent once more after it. At any other moment the main thread may
+publish and send as in a callback, and aionode holds no lock.
 """
 
 from __future__ import annotations
 
-import atexit
+import _thread
+import contextlib
+import os
+import select
+import signal
 import sys
 import threading
+import traceback
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
+
+from aionode._streams import interrupt_main
+from aionode.clock import perf_ns
 
 if TYPE_CHECKING:
     from types import FrameType
 
-__all__ = ["LIMIT_NS", "SENDS", "STOPS", "is_sending", "send_last_messages"]
+__all__ = ["SENDS", "STOPS", "LastMessages", "is_sending", "print_error", "start_thread"]
 
 LIMIT_NS: Final = 200_000_000
 """How long sending takes at most, in nanoseconds."""
 
-STOPS: list[Callable[[], bool]] = []
-"""Send the stop of each open lease at once, and return whether there was one.
+STEP_NS: Final = 50_000_000
+"""How long a publisher or transport may take for a step that a signal has interrupted, in
+nanoseconds."""
 
-Each may be called in any thread, and again; it must not wait for the event loop, which stands
-still.
+AGAIN_SEC: Final = 0.001
+"""After how long the signal is sent once more that has interrupted such a step."""
+
+STDERR: Final = 2
+
+STOPS: list[Callable[[], bool]] = []
+"""Send the stop of each open lease, and return whether there was one.
+
+They are called in the main thread, perhaps twice, and wait neither for the event loop, which stands
+still, nor for other threads, which have the rest of the time.
 """
 
 SENDS: list[Callable[[int], bool]] = []
@@ -61,41 +78,74 @@ def is_sending(frame: FrameType | None) -> bool:
     return False
 
 
-def send_last_messages(ends_ns: int) -> bool:
-    """Send the stop of each open lease, and then what was published.
+class LastMessages:
+    """The last messages, sent within 0.2 s by the handler of one signal.
 
     Args:
-        ends_ns: Until when, by the `perf_ns` of `aionode.clock`.
+        number: The signal.
 
-    Returns:
-        Whether other threads need the rest of the time.
-
-    Raises:
-        ExceptionGroup: functions have failed; the others were called.
+    Attributes:
+        ends_ns: When the time is over, by `perf_ns`.
+        failure: What has failed, as text for users.
     """
-    failures: list[Exception] = []
-    needs_time = False
-    for stop in STOPS:
+
+    def __init__(self, number: int) -> None:
+        self._number = signal.Signals(number)
+        self._began_ns = perf_ns()
+        self._has_begun = False
+        self.ends_ns = self._began_ns + LIMIT_NS
+        self.failure = ""
+
+    def send(self, frame: FrameType | None) -> bool:
+        """Send them, and give other threads the rest of the time.
+
+        Args:
+            frame: What the signal has interrupted.
+
+        Returns:
+            Whether this call has done so: not if another one does, nor if `frame` is within a
+            publisher or transport. Then the signal comes again.
+        """
+        if self._has_begun:
+            return False
+        if is_sending(frame) and perf_ns() - self._began_ns < STEP_NS:
+            start_thread(self._come_again)
+            return False
+        self._has_begun = True
+        needs_time = [self._call(stop) for stop in STOPS]
+        needs_time += [self._call(send, self.ends_ns) for send in SENDS]
+        if any(needs_time):
+            self.wait()
+        return True
+
+    def _call(self, function: Callable[..., bool], *args: int) -> bool:
         try:
-            stop()
-        except Exception as failure:  # noqa: BLE001  # raised below: the others come first
-            failures.append(failure)
-    for send in SENDS:
-        try:
-            needs_time |= send(ends_ns)
-        except Exception as failure:  # noqa: BLE001  # as above
-            failures.append(failure)
-    if failures:
-        raise ExceptionGroup("the last messages were not sent", failures)
-    return needs_time
+            return function(*args)
+        except Exception:  # noqa: BLE001  # printed: nobody could catch it, and the others come first
+            self.failure += traceback.format_exc()
+            return True
+
+    def _come_again(self) -> None:
+        threading.Event().wait(AGAIN_SEC)
+        interrupt_main(self._number)
+
+    def wait(self) -> None:
+        """Wait until the time is over."""
+        while (left_ns := self.ends_ns - perf_ns()) > 0:
+            threading.Event().wait(left_ns / 1e9)
 
 
-@atexit.register
-def stop_at_exit() -> None:
-    """Send the stop of leases that are still open: nothing has ended their blocks.
+def start_thread(work: Callable[[], object]) -> None:
+    """Start a thread from a signal handler, unless the system has no more.
 
-    So it is after a second or third Ctrl-C in a program that `aionode.run` does not run.
+    `threading.Thread.start` takes locks that the interrupted thread may hold.
     """
-    sent = [stop() for stop in STOPS]
-    if any(sent):
-        threading.Event().wait(LIMIT_NS / 1e9)
+    with contextlib.suppress(RuntimeError):
+        _thread.start_new_thread(work, ())
+
+
+def print_error(text: str) -> None:
+    """Write to stderr, unless nobody reads it: the process must go on to its end."""
+    with contextlib.suppress(OSError, ValueError):
+        if text and select.select([], [STDERR], [], 0)[1]:
+            os.write(STDERR, text.encode())

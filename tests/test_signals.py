@@ -184,7 +184,8 @@ def test_a_stop_that_fails_or_hangs_keeps_no_program_alive() -> None:
         program.send(SIGINT, SIGINT, pause_sec=0.1)
         status, out, err = program.end()
     assert (status, out) == (130, "no\nstop\n")
-    assert err == "aionode: ended at once by a second signal (SIGINT)\n"
+    assert "ZeroDivisionError" in err
+    assert err.endswith("aionode: ended at once by a second signal (SIGINT)\n")
 
 
 def test_a_second_signal_within_a_transport_lets_it_finish_its_step() -> None:
