@@ -3,17 +3,19 @@
 Two kinds of functions are called, in this order: those of `STOPS` send the stop of each open lease,
 those of `SENDS` hand what was published to the operating system.
 
-It begins with a signal, the second one that asks for the end, or Ctrl-Z while a lease is open. Its
+It begins with a signal: the second one that asks for the end, or Ctrl-Z while a lease is open. Its
 handler runs in the main thread, between any two steps of what that thread does, and what it has
 interrupted does not go on meanwhile. So the handler looks first whether that is a publisher or
 transport: a socket may have a part of a frame, and the connection does not know it yet. Such a step
 is over soon, and the signal is sent once more after it. At any other moment the main thread may
-publish and send as in a callback, and aionode holds no lock.
+publish and send as in a callback, and holds no lock of those. When the interpreter exits, the stops
+alone are sent.
 """
 
 from __future__ import annotations
 
 import _thread
+import atexit
 import contextlib
 import os
 import select
@@ -47,8 +49,8 @@ STDERR: Final = 2
 STOPS: list[Callable[[], bool]] = []
 """Send the stop of each open lease, and return whether there was one.
 
-They are called in the main thread, perhaps twice, and wait neither for the event loop, which stands
-still, nor for other threads, which have the rest of the time.
+They are called in the main thread, perhaps more than once. They wait neither for the event loop,
+which stands still, nor for other threads, which have the rest of the time.
 """
 
 SENDS: list[Callable[[int], bool]] = []
@@ -149,3 +151,14 @@ def print_error(text: str) -> None:
     with contextlib.suppress(OSError, ValueError):
         if text and select.select([], [STDERR], [], 0)[1]:
             os.write(STDERR, text.encode())
+
+
+@atexit.register
+def stop_at_exit() -> None:
+    """Send the stop of leases that are still open: nothing has ended their blocks.
+
+    So it is after a second or third Ctrl-C in a program that `aionode.run` does not run.
+    """
+    sent = [stop() for stop in STOPS]
+    if any(sent):
+        threading.Event().wait(LIMIT_NS / 1e9)

@@ -62,7 +62,8 @@ def run(
     would end the process: not if it is ignored, as under ``nohup``, or has a handler of the
     program's own. From the first signal on, what is printed to a terminal or pipe that nobody can
     read any more is dropped instead of raising OSError. The handlers that were there before are
-    restored at the end.
+    restored at the end. SIGTSTP (Ctrl-Z) is handled only while a lease is open, also without this
+    function: the stop goes out, and 0.2 s later the process is suspended.
 
     A second after the start it calls `freeze_objects`, unless the program has called ``gc.freeze``
     or ``gc.disable``, and undoes that when it returns.
@@ -103,7 +104,8 @@ def run(
         ):
             runner.run(_until_stopped(nodes, stop))
     except Exception as error:  # printed for the user; the shell gets the exit status
-        sys.stderr.write(failure_text(error))
+        with contextlib.suppress(OSError):  # the terminal is lost; the shell gets the status
+            sys.stderr.write(failure_text(error))
         raise SystemExit(1) from error
 
 

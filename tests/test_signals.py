@@ -17,6 +17,8 @@ import aionode
 from aionode._sudden_end import is_sending
 from tests.support.program import Program
 
+pty = pytest.importorskip("pty", reason="pseudo-terminals are of Unix")
+
 SOON = "import aionode._signals; aionode._signals.SAME_SEC = 0.0"
 """A second signal is one at once, to keep tests short."""
 
@@ -302,8 +304,7 @@ def test_ctrl_c_names_the_thread_that_it_waits_for_and_a_second_one_ends_at_once
 
 def test_a_program_that_ignores_sighup_goes_on_ignoring_it() -> None:
     """So it is under nohup, which is meant to outlive the terminal."""
-    before = ("sh", "-c", "trap '' HUP; exec \"$@\"", "sh")
-    with Program(WAITS_FOR_EVER, before=before) as program:
+    with Program(WAITS_FOR_EVER, before=("nohup",)) as program:
         program.wait_until_ready()
         program.send(SIGHUP)
         with pytest.raises(subprocess.TimeoutExpired):
@@ -324,6 +325,77 @@ def test_a_handler_of_the_program_for_sighup_is_left_alone() -> None:
         program.send(SIGTERM)
         status, out, _ = program.end()
     assert (status, out) == (0, "cancelled\nafter run\n")
+
+
+PRINTS_BEFORE_ITS_LAST_MESSAGE = """
+import os
+
+class Robot(aionode.Node):
+    def __init__(self):
+        super().__init__("robot", context=context)
+        self.create_timer(0.0, self.drive)
+
+    async def drive(self):
+        try:
+            print("ready", flush=True)
+            await asyncio.Event().wait()
+        finally:
+            print("stopping", flush=True)
+            self.get_logger().info("stopping")
+            await asyncio.sleep(0.05)
+            print("stopped", file=sys.stderr, flush=True)
+            os.write({descriptor}, b"stop;")
+            {end}
+
+try:
+    aionode.run(Robot, args=[])
+finally:
+    os.write({descriptor}, b"after;")
+"""
+
+
+@pytest.mark.parametrize(("end", "status"), [("pass", 0), ("1 / 0", 1)])
+def test_a_lost_terminal_keeps_no_program_from_its_last_message(end: str, status: int) -> None:
+    """Each write to it fails with EIO: of `print`, of the log, and of the final traceback."""
+    master, terminal = pty.openpty()
+    reading, writing = os.pipe()
+    body = PRINTS_BEFORE_ITS_LAST_MESSAGE.replace("{descriptor}", str(writing))
+    streams = dict.fromkeys(("stdin", "stdout", "stderr"), terminal)
+    with Program(
+        body.replace("{end}", end),
+        before=("setsid", "--ctty", "--wait"),  # its terminal, whose end it hears of
+        pass_fds=(writing,),
+        **streams,
+    ) as program:
+        os.close(terminal)
+        os.close(writing)
+        shown = b""
+        while b"ready" not in shown:
+            shown += os.read(master, 1000)
+        os.close(master)
+        assert program.process.wait(20) == status
+    with os.fdopen(reading) as stream:
+        assert stream.read() == "stop;after;"
+
+
+@pytest.mark.parametrize("number", [SIGINT, SIGTERM])
+def test_a_pipe_whose_reader_has_ended_keeps_no_program_from_its_last_message(
+    number: signal.Signals,
+) -> None:
+    """Ctrl-C ends the other programs of a pipeline too."""
+    reading, writing = os.pipe()
+    body = PRINTS_BEFORE_ITS_LAST_MESSAGE.replace("{descriptor}", str(writing))
+    with Program(body.replace("{end}", "pass"), pass_fds=(writing,)) as program:
+        os.close(writing)
+        program.wait_until_ready()
+        assert program.process.stdout is not None
+        program.process.stdout.close()
+        program.send(number)
+        status = program.process.wait(20)
+        program.process.stdout = None
+    with os.fdopen(reading) as stream:
+        assert stream.read() == "stop;after;"
+    assert status == 0
 
 
 def run_in_this_process(main: object) -> None:
