@@ -52,6 +52,7 @@ if TYPE_CHECKING:
         QoSRequestedIncompatibleQoSInfo,
         SubscriptionEventCallbacks,
     )
+    from aionode.endpoints.lease import CommandLease
     from aionode.endpoints.publisher import Publisher
     from aionode.endpoints.service import Service
     from aionode.endpoints.service_introspection import ServiceIntrospectionState
@@ -79,6 +80,7 @@ __all__ = [
     "ClientGoalHandle",
     "Clock",
     "ClockType",
+    "CommandLease",
     "ContentFilterOptions",
     "Context",
     "DurabilityPolicy",
@@ -129,6 +131,7 @@ _EXPORTS = {
     "ClientGoalHandle": "aionode.action",
     "Clock": "aionode.clock",
     "ClockType": "aionode.clock",
+    "CommandLease": "aionode.endpoints.lease",
     "ContentFilterOptions": "aionode.content_filter",
     "Context": "aionode.context",
     "DurabilityPolicy": "aionode.qos",

@@ -82,7 +82,7 @@ class NodeBase:
         self._warned_about: set[str] = set()  # kinds of timers' third argument
         self._entities: dict[Entity, None] = {}  # in order of creation; destroyed ones leave it
         self._tasks: asyncio.TaskGroup | None = None  # of the entities, once the node has started
-        self._node_tasks = NodeTasks()
+        self._node_tasks = NodeTasks(self._end_leases)
         self._running = False
         self._destroyed = asyncio.Event()
         self._end_record = EndRecord(f"node {full_name}")
@@ -232,7 +232,14 @@ class NodeBase:
             self._affinity.call(self.destroy_node)
             return
         self._destroyed.set()
+        self._end_leases()  # at once: callbacks may take seconds to unwind
         self._node_shutdown.begin()
+
+    def _end_leases(self) -> None:
+        """Send the stops of the leases that the publishers of this node are held by."""
+        node = f"node {self.get_fully_qualified_name()}"
+        for entity in self._entities:
+            entity._end_lease(lambda: EntityDestroyedError(node))
 
     def _join_context(self) -> None:
         """Add the node to its context, and announce it on every transport.

@@ -83,6 +83,18 @@ class SilenceAlarm:
         if self._alarm is None and self._runs:
             self._set()
 
+    def left_ns(self) -> int | None:
+        """Return how much of the first period is left at most, 0 or less when it is over.
+
+        None before the first sign. Any thread may ask.
+        """
+        since_ns = self._since_ns
+        if since_ns is None:
+            return None
+        if self._passed_ns >= self._period_ns:
+            return 0
+        return since_ns + self._period_ns - self._steady_ns()
+
     def periods(self) -> int:
         """Return how many whole periods are over since the last sign; 0 before the first."""
         if self._since_ns is None:

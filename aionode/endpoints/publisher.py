@@ -11,22 +11,56 @@ from aionode.endpoints._core.endpoint import Endpoint
 from aionode.endpoints._core.entity import EndStage
 from aionode.endpoints._qos.event_hub import is_limited
 from aionode.endpoints._qos.publisher_monitor import PublisherMonitor, SignOfLife
+from aionode.endpoints.lease import CommandLease
 from aionode.endpoints.stats import PublisherStats
-from aionode.errors import EntityDestroyedError, MessageError, QueueFullError
-from aionode.message import Message, checker
-from aionode.qos import KEEP_ALL_DEPTH
+from aionode.errors import (
+    EntityDestroyedError,
+    InvalidQoSProfileException,
+    LeaseHeldError,
+    MessageError,
+    QueueFullError,
+)
+from aionode.message import Message, checker, snapshot
+from aionode.qos import KEEP_ALL_DEPTH, keeps_all
+from aionode.transport.base import Writer
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from aionode.clock import TimeBase
+    from aionode.clock import Clock, TimeBase
     from aionode.endpoints._core.endpoint import EndpointSetup
     from aionode.endpoints.events import EventStream, PublisherEvent, PublisherEventCallbacks
-    from aionode.transport.base import Writer
+    from aionode.transport.base import StopSender
 
 __all__ = ["Publisher"]
 
 MsgT = TypeVar("MsgT", bound=Message)
+
+
+class HeldWriter(Writer):
+    """Takes the place of a publisher's writers while a lease is held: `publish` raises.
+
+    So `publish` of publishers without a lease has nothing to ask.
+    """
+
+    bounded = True
+
+    def __init__(self, topic: str) -> None:
+        self._topic = topic
+
+    def has_room(self) -> bool:
+        """Refuse the message.
+
+        Raises:
+            LeaseHeldError: always.
+        """
+        raise LeaseHeldError(self._topic)
+
+    def write(self, msg: Any, sequence: int, source_ns: int) -> None:
+        """Take nothing."""
+
+    def close(self) -> None:
+        """There is nothing to withdraw."""
 
 
 class Publisher(Endpoint, Generic[MsgT]):
@@ -56,6 +90,11 @@ class Publisher(Endpoint, Generic[MsgT]):
         if event_callbacks is not None or is_limited(qos.deadline, qos.liveliness_lease_duration):
             # Before anything is announced to others: it refuses callbacks that do not fit.
             self._monitor = PublisherMonitor(self, time_base, event_callbacks)
+        self._lease: CommandLease[MsgT] | None = None  # while it is held
+        self._held_writers: tuple[Writer, ...] = (HeldWriter(setup.endpoint.name),)
+        self._stop: Any = None  # that of the last lease, its number, and what sends it
+        self._stop_number = 0
+        self._stop_senders: tuple[StopSender, ...] = ()
         writers = self._all_writers = tuple(make_writers())  # one for each transport
         self.stats = PublisherStats(writers, self._matched)
         self._drains: set[asyncio.Timeout] = set()  # the waits of `drain`, ended by `_close`
@@ -69,7 +108,11 @@ class Publisher(Endpoint, Generic[MsgT]):
     def _leave_out_dormant(self) -> None:
         """Have the other writers take the messages."""
         awake = tuple(writer for writer in self._all_writers if not writer.dormant)
-        self._writers: tuple[Writer, ...] = awake + self._signs
+        self._awake_writers: tuple[Writer, ...] = awake + self._signs
+        if self._lease is None:
+            self._writers: tuple[Writer, ...] = self._awake_writers
+        else:
+            self._prepare_stop(self._stop)
 
     def __repr__(self) -> str:
         return (
@@ -103,6 +146,7 @@ class Publisher(Endpoint, Generic[MsgT]):
             DecodeError: the bytes are not a message of this publisher's type (a ValueError).
             QueueFullError: a reliable KEEP_ALL subscription of this process is full;
                 nothing was sent.
+            LeaseHeldError: a lease of the publisher is held (a RuntimeError); nothing was sent.
             EntityDestroyedError: the publisher or its node was destroyed (a RuntimeError).
         """
         thread = self._affinity.thread
@@ -139,6 +183,98 @@ class Publisher(Endpoint, Generic[MsgT]):
             return cdr.decode(self.msg_type, msg)
         self._check(msg)  # raises the TypeError; subclasses pass
         return msg
+
+    # The lease
+
+    def lease(
+        self,
+        stop: MsgT | bytes | bytearray | memoryview,
+        ttl_sec: float = 0.3,
+        clock: Clock | None = None,
+    ) -> CommandLease[MsgT]:
+        """Return the right to publish commands, for ``async with``; its end sends `stop`.
+
+        ::
+
+            async with publisher.lease(stop=Twist(), ttl_sec=0.3) as lease:
+                lease.publish(command)
+
+        While the lease is held, only ``lease.publish`` publishes, and no other lease of this
+        publisher begins. Other publishers of the topic are not affected. See `CommandLease` for
+        when the stop goes out.
+
+        Args:
+            stop: The message that stops what the commands move, or its CDR bytes. It is validated
+                and encoded when the block is entered.
+            ttl_sec: For how many seconds the holder may publish nothing, from its first command
+                on; in steady time, to which a suspended host counts.
+            clock: The clock that counts them instead, as for timers. A clock that stands still for
+                `ttl_sec` of steady time ends the lease as well.
+
+        Raises:
+            InvalidQoSProfileException: the publisher is KEEP_ALL, whose stop might have to wait (a
+                ValueError).
+            TypeError: `ttl_sec` is not a number, or `clock` not a clock.
+            ValueError: `ttl_sec` is not positive and finite.
+        """
+        return self._make_lease(stop, ttl_sec, clock)
+
+    def _make_lease(
+        self,
+        stop: MsgT | bytes | bytearray | memoryview,
+        ttl_sec: float,
+        clock: Clock | None,
+        refuse: Callable[[], None] | None = None,
+    ) -> CommandLease[MsgT]:
+        """Return a lease; `refuse` raises when it cannot be entered."""
+        if keeps_all(self.qos_profile):
+            raise InvalidQoSProfileException(
+                f"a lease of {self.topic_name} needs a KEEP_LAST publisher: the stop must not wait "
+                "for slow readers, as messages of a KEEP_ALL one do"
+            )
+        return CommandLease(self, stop, ttl_sec, clock, self._time_base, refuse)
+
+    def _hold(self, lease: CommandLease[MsgT], stop: MsgT | bytes | bytearray | memoryview) -> None:
+        """Have only `lease` publish from now on, and prepare its stop."""
+        self._refuse_if_destroyed("enter a lease")
+        if self._lease is not None:
+            self._lease.finish()
+        if self._lease is not None:
+            raise LeaseHeldError(self.topic_name)
+        self._stop = snapshot(stop if type(stop) is self.msg_type else self._fitting(stop))
+        self._prepare_stop(self._stop)
+        self._lease = lease
+        self._writers = self._held_writers
+
+    def _prepare_stop(self, stop: Any) -> None:
+        stats = self.stats
+        self._stop_senders = tuple(
+            writer.prepare_stop(stop, lambda: self._stop_number == stats.published)
+            for writer in self._awake_writers
+        )
+
+    def _let_go(self) -> None:
+        """Have `publish` publish again: the lease has ended."""
+        self._lease = None
+        self._writers = self._awake_writers
+
+    def _publish_leased(self, msg: MsgT | bytes | bytearray | memoryview) -> None:
+        """Publish a command of the lease."""
+        self._writers = self._awake_writers
+        try:
+            self.publish(msg)
+        finally:
+            self._writers = self._held_writers
+
+    def _number_stop(self, step: int) -> tuple[int, int]:
+        """Return the number of the stop, so much after the last one, and its time."""
+        self.stats.published = self._stop_number = self.stats.published + step
+        return self._stop_number, self._now_ns()
+
+    def _end_lease(self, refusal: Callable[[], Exception]) -> None:
+        """Send the stop of an open lease, whose `publish` raises what `refusal` returns."""
+        if self._lease is not None:
+            self._lease.end_for(refusal)
 
     def assert_liveliness(self) -> None:
         """Tell the subscriptions that the publisher is alive, without a message.
@@ -187,7 +323,7 @@ class Publisher(Endpoint, Generic[MsgT]):
         self._drains.add(wait)
         try:
             async with wait:
-                for writer in self._writers:
+                for writer in self._awake_writers:
                     await writer.drain()
         except TimeoutError:
             if not wait.expired():
@@ -215,7 +351,8 @@ class Publisher(Endpoint, Generic[MsgT]):
             self._monitor.start(self._all_writers)
 
     def _close(self) -> None:
-        """Withdraw the publisher."""
+        """Withdraw the publisher, with the stop of an open lease as its last message."""
+        self._end_lease(lambda: EntityDestroyedError(self._subject))
         if self._monitor is not None:
             self._monitor.close()
         self._leave_graph()

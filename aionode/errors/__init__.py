@@ -31,6 +31,8 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
     │   └── UnknownROSArgsError
     ├── InvalidRemapRuleError (ValueError)
     ├── MessageError (ValueError)
+    ├── LeaseExpiredError (TimeoutError)
+    ├── LeaseHeldError (RuntimeError)
     ├── NameValidationException (ValueError)
     │   ├── InvalidNamespaceException
     │   ├── InvalidNodeNameException
@@ -76,6 +78,8 @@ from aionode.errors._values import (
     InvalidROSArgsError,
     InvalidServiceNameException,
     InvalidTopicNameException,
+    LeaseExpiredError,
+    LeaseHeldError,
     MessageError,
     NameValidationException,
     ParameterAlreadyDeclaredException,
@@ -84,6 +88,7 @@ from aionode.errors._values import (
     ParameterImmutableException,
     ParameterNotDeclaredException,
     ParameterUninitializedException,
+    QueueFullError,
     UnknownROSArgsError,
 )
 
@@ -119,6 +124,8 @@ __all__ = [
     "InvalidRemapRuleError",
     "InvalidServiceNameException",
     "InvalidTopicNameException",
+    "LeaseExpiredError",
+    "LeaseHeldError",
     "MessageError",
     "NameValidationException",
     "NodeNameNonExistentError",
@@ -202,24 +209,6 @@ class ForkedProcessError(AionodeError, RuntimeError):
             f"{subject}: this process was forked while the context was open and cannot use it; "
             'start processes with multiprocessing.get_context("spawn"), or fork before the first '
             "node runs"
-        )
-
-
-class QueueFullError(AionodeError, RuntimeError):
-    """The queue of a KEEP_ALL subscription is full; the message was not published at all.
-
-    Attributes:
-        topic: The topic.
-        depth: Number of messages that the full queue holds.
-    """
-
-    def __init__(self, topic: str, depth: int) -> None:
-        self.topic = topic
-        self.depth = depth
-        super().__init__(
-            f"{topic}: a KEEP_ALL subscription is full, with {depth} unread messages or more; "
-            "the message was not published. Call `await publisher.drain()` before the next one, "
-            "or use KEEP_LAST"
         )
 
 
@@ -374,9 +363,7 @@ class CallbackSignatureError(AionodeError, TypeError, RuntimeError):
 
 
 class CallbackCancelledError(AionodeError, RuntimeError):
-    """A callback raised CancelledError, although nobody has cancelled it.
-
-    Something that it awaited was cancelled, or it took the result of a cancelled future.
+    """An awaitable inside a callback was cancelled, and the callback did not handle it.
 
     Attributes:
         subject: Name of the callback.
@@ -385,9 +372,8 @@ class CallbackCancelledError(AionodeError, RuntimeError):
     def __init__(self, subject: str) -> None:
         self.subject = subject
         super().__init__(
-            f"{subject}: it raised CancelledError, though nobody cancelled it: something inside it "
-            "was cancelled (was its client or clock destroyed?); catch asyncio.CancelledError in "
-            "the callback if that is expected"
+            f"{subject}: an awaitable inside it was cancelled (was its client or clock "
+            "destroyed?); catch asyncio.CancelledError in the callback if that is expected"
         )
 
 

@@ -1,4 +1,4 @@
-"""The base class of all errors, and errors about names, arguments, parameters and messages."""
+"""The base class of all errors, and errors about names, arguments, parameters and publishing."""
 
 from __future__ import annotations
 
@@ -19,6 +19,8 @@ __all__ = [
     "InvalidRemapRuleError",
     "InvalidServiceNameException",
     "InvalidTopicNameException",
+    "LeaseExpiredError",
+    "LeaseHeldError",
     "MessageError",
     "NameValidationException",
     "ParameterAlreadyDeclaredException",
@@ -27,6 +29,7 @@ __all__ = [
     "ParameterImmutableException",
     "ParameterNotDeclaredException",
     "ParameterUninitializedException",
+    "QueueFullError",
     "UnknownROSArgsError",
 ]
 
@@ -361,3 +364,53 @@ class ParameterUninitializedException(ParameterException, RuntimeError):
 
     def __init__(self, parameter_name: str) -> None:
         super().__init__(f"The parameter '{parameter_name}' is not initialized", parameter_name)
+
+
+class QueueFullError(AionodeError, RuntimeError):
+    """The queue of a KEEP_ALL subscription is full; the message was not published at all.
+
+    Attributes:
+        topic: The topic.
+        depth: Number of messages that the full queue holds.
+    """
+
+    def __init__(self, topic: str, depth: int) -> None:
+        self.topic = topic
+        self.depth = depth
+        super().__init__(
+            f"{topic}: a KEEP_ALL subscription is full, with {depth} unread messages or more; "
+            "the message was not published. Call `await publisher.drain()` before the next one, "
+            "or use KEEP_LAST"
+        )
+
+
+class LeaseExpiredError(AionodeError, TimeoutError):
+    """A lease for commands has ended: its stop was sent, and no command follows it.
+
+    Attributes:
+        topic: The topic of the commands.
+        reason: Why it has ended.
+    """
+
+    def __init__(self, topic: str, reason: str) -> None:
+        self.topic = topic
+        self.reason = reason
+        super().__init__(
+            f"{topic}: the lease has ended and its stop was sent, because {reason}; enter a new "
+            "one to go on"
+        )
+
+
+class LeaseHeldError(AionodeError, RuntimeError):
+    """A publisher was used in another way while a lease for its commands is held.
+
+    Attributes:
+        topic: The topic of the commands.
+    """
+
+    def __init__(self, topic: str) -> None:
+        self.topic = topic
+        super().__init__(
+            f"{topic}: a lease of this publisher is held; only its holder publishes, with "
+            "lease.publish(), until the block of the lease ends"
+        )

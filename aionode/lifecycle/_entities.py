@@ -12,8 +12,10 @@ from aionode.message import Message
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from aionode.clock import Clock
     from aionode.endpoints._core.silence_watch import SilenceWatch
     from aionode.endpoints.events import EventStream, PublisherEvent
+    from aionode.endpoints.lease import CommandLease
     from aionode.endpoints.publisher import Publisher
     from aionode.endpoints.stats import PublisherStats
     from aionode.endpoints.timer import Timer
@@ -152,6 +154,34 @@ class LifecyclePublisher(SimpleManagedEntity, Generic[MsgT]):
             self._publisher.publish(msg)
         else:
             self.discarded += 1
+
+    def lease(
+        self,
+        stop: MsgT | bytes | bytearray | memoryview,
+        ttl_sec: float = 0.3,
+        clock: Clock | None = None,
+    ) -> CommandLease[MsgT]:
+        """Return the right to publish commands, as `Publisher.lease` does.
+
+        It can be entered while the publisher is enabled. When that ends, the stop goes out first,
+        and ``lease.publish`` raises EntityInactiveError from then on.
+
+        Raises:
+            Exception: the exceptions of `Publisher.lease`.
+        """
+        return self._publisher._make_lease(stop, ttl_sec, clock, self._refuse_if_disabled)
+
+    def _refuse_if_disabled(self) -> None:
+        if not self.is_activated:
+            raise self._inactive()
+
+    def _inactive(self) -> EntityInactiveError:
+        return EntityInactiveError(f"publisher of {self.topic_name}")
+
+    def on_deactivate(self, state: State) -> TransitionCallbackReturn:
+        """Send the stop of an open lease, and disable the publisher."""
+        self._publisher._end_lease(self._inactive)
+        return super().on_deactivate(state)
 
     def assert_liveliness(self) -> None:
         """Tell the subscriptions that the publisher is alive, in any state of the node.

@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.clock import MachineTime
 from aionode.message import snapshot
-from aionode.transport.base import Registration, Requester, SampleInfo, Transport, Writer
+from aionode.transport.base import (
+    Registration,
+    Requester,
+    SampleInfo,
+    StopSender,
+    Transport,
+    Writer,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -170,10 +177,47 @@ class _FaultyWriter(Writer):
         for held in released:
             faults._later(partial(self._inner.write, *held))
 
+    def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:
+        """Return what sends the stop of a lease."""
+        return _FaultyStop(self, self._inner.prepare_stop(stop, is_last))
+
+    def release(self) -> None:
+        """Send what is held, as nothing comes after it."""
+        released, self._held = self._held, []
+        for held in released:
+            self._faults._later(partial(self._inner.write, *held))
+
     def close(self) -> None:
         """Close the inner writer; held messages are lost."""
         self._held.clear()
         self._inner.close()
+
+
+class _FaultyStop(StopSender):
+    """The stop of a lease, which is dropped and delayed; it is the last message."""
+
+    def __init__(self, writer: _FaultyWriter, inner: StopSender) -> None:
+        self._writer = writer
+        self._inner = inner
+
+    def send(self, sequence: int, source_ns: int) -> None:
+        """Send it after everything else, or drop it."""
+        faults = self._writer._faults
+        self._writer.release()
+        if not faults._strikes(faults.drop):
+            faults._later(partial(self._inner.send, sequence, source_ns))
+
+    def send_past_loop(self, sequence: int, source_ns: int) -> None:
+        """Send it without a delay, which only the loop can keep, or drop it."""
+        faults = self._writer._faults
+        if not faults._strikes(faults.drop):
+            self._inner.send_past_loop(sequence, source_ns)
+
+    def repeat(self) -> None:
+        """Send it once more, or drop it."""
+        faults = self._writer._faults
+        if not faults._strikes(faults.drop):
+            self._inner.repeat()
 
 
 class _FaultyRequester(Requester):

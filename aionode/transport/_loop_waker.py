@@ -191,6 +191,13 @@ class ThreadsafeQueue(Generic[T]):
                 self._queued = True
                 self._waker.again(self)  # type: ignore[arg-type]  # as above
 
+    def take_all(self) -> None:
+        """Handle all items that wait now; on the loop."""
+        items = self._items
+        for _ in range(len(items)):
+            if items:  # the handler may clear the queue
+                self._handle(items.popleft())
+
     def clear(self) -> None:
         """Drop all items."""
         self._items.clear()

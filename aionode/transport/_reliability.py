@@ -291,6 +291,39 @@ class WriterHistory:
                 self._unsent.popleft()
                 self._lose(oldest, oldest)
 
+    def write_stop(
+        self, sequence: int, payload: bytes, extra: bytes, put: Callable[[bytes, bytes], None]
+    ) -> None:
+        """Send the last message of a lease at once; messages that wait for the window are dropped.
+
+        Args:
+            sequence: Its number.
+            payload: Its bytes.
+            extra: Its attachment.
+            put: Sends it to every reader, unless it was sent already.
+        """
+        if self._unsent:
+            first, last = self._unsent[0][0], self._unsent[-1][0]
+            while self.entries and self.entries[-1][0] >= first:
+                self.entries.pop()
+            self._unsent.clear()
+            self._lose(first, last)
+        if sequence != self.sent + 1:
+            self._jumped_to = sequence
+            for reader in self.readers.values():
+                self._side.gap(reader, self.sent + 1, sequence - 1)
+        end = self._end + len(payload) + OVERHEAD_BYTES
+        self._last = self.sent = sequence
+        self._sent_ns = self._now_ns()
+        if self.readers:
+            self._end = self._sent_end = end
+            self.entries.append((sequence, payload, extra, end))
+            if len(self.entries) > self._limit:
+                self.entries.popleft()
+        else:
+            self._jumped_to = sequence + 1
+        put(payload, extra)
+
     def _lose(self, first: int, last: int) -> None:
         """Report lost messages, each sequence number once."""
         count = last - first + 1

@@ -36,6 +36,7 @@ __all__ = [
     "Requester",
     "SampleInfo",
     "Serve",
+    "StopSender",
     "Transport",
     "Writer",
 ]
@@ -174,6 +175,18 @@ class Writer(Registration):
             MessageError: a value does not fit its field; nothing was sent.
         """
 
+    def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:  # noqa: ARG002  # it is not repeated
+        """Return what sends the stop of a lease, encoded now, through this writer.
+
+        Args:
+            stop: The message, a snapshot, which nobody changes.
+            is_last: Whether the publisher has sent nothing since; any thread may ask.
+
+        Raises:
+            MessageError: a value does not fit its field.
+        """
+        return MessageStop(self, stop)
+
     def has_room(self) -> bool:
         """Whether every reliable KEEP_ALL reader can take one more message."""
         return True
@@ -199,6 +212,55 @@ class Writer(Registration):
     def route_of(self, reader: EndpointInfo) -> str | None:  # noqa: ARG002  # knows of none
         """Return in a word how messages reach a matched reader, or None if not through this."""
         return None
+
+
+class StopSender(ABC):
+    """Sends the stop of one lease through one writer, as the last message of that lease.
+
+    No full queue drops, delays or overtakes it: what waits there before it may be dropped, and is
+    counted. It takes the route and the priority of the messages before it, so that none of them
+    arrives after it, and goes to all readers, whatever their filters.
+    """
+
+    @abstractmethod
+    def send(self, sequence: int, source_ns: int) -> None:
+        """Send it, on the thread of the event loop; called once.
+
+        After `send_past_loop` it is called too, with the same numbers, as soon as the loop goes on:
+        for the readers that only the loop reaches, and so that what was lost is sent again. Readers
+        that number their messages take it once.
+        """
+
+    def send_past_loop(self, sequence: int, source_ns: int) -> None:  # noqa: B027  # as in `local`
+        """Send it to other processes from any thread, while the loop's thread is busy elsewhere.
+
+        That thread may be anywhere, except in a call of this writer by its publisher.
+        """
+
+    def repeat(self) -> None:  # noqa: B027  # most lose nothing
+        """Put it once more, with the same number, where it may be dropped; from any thread.
+
+        The caller does so for a moment after `send_past_loop`. After `send` alone, the writer sees
+        to that itself, and does not end before.
+        """
+
+
+class MessageStop(StopSender):
+    """Sends the stop as any other message: enough for a writer without queues.
+
+    Args:
+        writer: The writer.
+        stop: The message.
+    """
+
+    def __init__(self, writer: Writer, stop: Any) -> None:
+        self._writer = writer
+        self._stop = stop
+
+    def send(self, sequence: int, source_ns: int) -> None:
+        """Send it, if any reader wants it."""
+        if self._writer.active:
+            self._writer.write(self._stop, sequence, source_ns)
 
 
 # Services

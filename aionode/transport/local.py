@@ -8,12 +8,21 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode.errors import ServiceError
 from aionode.message import snapshotter
 from aionode.qos import DurabilityPolicy, depth_of, keeps_all
-from aionode.transport.base import Registration, Request, Requester, SampleInfo, Transport, Writer
+from aionode.transport.base import (
+    Registration,
+    Request,
+    Requester,
+    SampleInfo,
+    StopSender,
+    Transport,
+    Writer,
+)
 
 if TYPE_CHECKING:
     from aionode.graph import EndpointInfo, Graph, NodeInfo
@@ -201,6 +210,23 @@ class LocalWriter(Writer):
         for deliver in self._deliveries:
             deliver(snapshot, self._gid, sequence, source_ns)
 
+    def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:  # noqa: ARG002  # it reaches all
+        """Return what sends the stop of a lease."""
+        return LocalStop(self, stop)
+
+    def write_stop(self, stop: Any, sequence: int, source_ns: int) -> None:
+        """Give the stop of a lease to all; a full KEEP_ALL reader gets it as soon as it has room.
+
+        To others it is the newest message, which no full queue drops.
+        """
+        if self._history is not None:
+            self._history.append((stop, sequence, source_ns))
+        for reader, deliver in list(self._matched.items()):
+            if reader.bounded and not reader.reader.has_room():
+                reader.reader.when_room(partial(deliver, stop, self._gid, sequence, source_ns))
+            else:
+                deliver(stop, self._gid, sequence, source_ns)
+
     def has_room(self) -> bool:
         """Whether every reliable KEEP_ALL reader can take one more message."""
         return all(reader.reader.has_room() for reader in self._matched if reader.bounded)
@@ -227,6 +253,18 @@ class LocalWriter(Writer):
         self._matched.clear()
         self._history = None
         self._update()
+
+
+class LocalStop(StopSender):
+    """Sends the stop of a lease to the subscriptions of this context, which only the loop can."""
+
+    def __init__(self, writer: LocalWriter, stop: Any) -> None:
+        self._writer = writer
+        self._stop = stop
+
+    def send(self, sequence: int, source_ns: int) -> None:
+        """Send it."""
+        self._writer.write_stop(self._stop, sequence, source_ns)
 
 
 # Services

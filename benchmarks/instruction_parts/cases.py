@@ -100,6 +100,9 @@ class Introducer(Transport):
     def retransmit(self, participant: str, data: bytes) -> None:
         """Send nothing."""
 
+    def post(self, participant: str, data: bytes) -> None:
+        """Send nothing."""
+
     def note_link(self, participant: str, on: bool) -> None:
         """Tell no tools."""
 

@@ -21,7 +21,16 @@ if TYPE_CHECKING:
 ENTITY = {"destroy", "destroyed"}
 OFFERED = {
     "Publisher": ENTITY
-    | {"drain", "get_subscription_count", "msg_type", "publish", "qos_profile", "stats", "topic"}
+    | {
+        "drain",
+        "get_subscription_count",
+        "lease",
+        "msg_type",
+        "publish",
+        "qos_profile",
+        "stats",
+        "topic",
+    }
     | {"assert_liveliness", "events", "topic_name", "wait_for_subscribers"},
     "Subscription": ENTITY
     | {

@@ -108,6 +108,9 @@ class Entity:
         if self._on_destroy is not None:
             self._on_destroy(self)
 
+    def _end_lease(self, refusal: Callable[[], Exception]) -> None:
+        """Send the stop of an open lease, whose `publish` raises what `refusal` returns."""
+
     def _close(self) -> None:
         """Release what the entity holds; called once, by `destroy`."""
 

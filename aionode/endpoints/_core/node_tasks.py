@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 from aionode.errors import EntityDestroyedError
 
 if TYPE_CHECKING:
-    from collections.abc import Coroutine
+    from collections.abc import Callable, Coroutine
 
 __all__ = ["NodeTasks", "create_own_task"]
 
@@ -23,12 +23,16 @@ class NodeTasks:
 
     Tasks that a callback or the body starts are not the node's, since it does not wait for them.
 
+    Args:
+        on_failure: Called as soon as the node fails.
+
     Attributes:
         error: The exception that the node failed with; None until it fails.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, on_failure: Callable[[], None] | None = None) -> None:
         self.error: BaseException | None = None
+        self._on_failure = on_failure
         self._body: asyncio.Task[Any] | None = None
 
     def enter_body(self) -> None:
@@ -51,6 +55,8 @@ class NodeTasks:
         while isinstance(error, BaseExceptionGroup) and len(error.exceptions) == 1:
             error = error.exceptions[0]
         self.error = error
+        if error is not None and self._on_failure is not None:
+            self._on_failure()
 
     def own_current_task(self) -> bool:
         """Return whether the current task is one of the node's own."""
@@ -78,5 +84,5 @@ def create_own_task(
     current = asyncio.current_task()
     owner = None if current is None else OWNERS.get(current)
     if owner is not None:
-        OWNERS[task] = owner
+        owner.add(task)
     return task

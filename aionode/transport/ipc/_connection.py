@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import array
+import asyncio
 import logging
 import os
 import socket
@@ -27,13 +28,11 @@ from aionode.transport.ipc._receivers import ReceiverTable
 from aionode.transport.ipc._shared_memory import SHARED_FROM, BufferMappings
 
 if TYPE_CHECKING:
-    import asyncio
-
     from aionode.transport.ipc._protocol import Control, Frame
     from aionode.transport.ipc._shared_memory import BufferPool, SharedBuffer
     from aionode.wire.cdr import Data
 
-__all__ = ["Connection", "LinkOwner", "WriteWaiter"]
+__all__ = ["Connection", "LinkOwner", "WriteWaiter", "flush"]
 
 logger = logging.getLogger("aionode.transport.ipc")
 
@@ -69,6 +68,9 @@ DESCRIPTORS: Final = 16
 
 MAX_DESCRIPTORS: Final = 64
 """How many descriptors may wait for their frames: each arrives with the first byte of its own."""
+
+STALLED_S: Final = 1.0
+"""How long, when a context closes, a process may read nothing of what waits for it."""
 
 BURST_NS: Final = 20_000
 """Frames within this time after the last one are collected until the loop's next iteration.
@@ -569,3 +571,22 @@ def whole(data: bytes, buffer: SharedBuffer) -> bytes:
     (frame,) = FrameParser().feed(data)
     payload = buffer.read(BufferRef.unpack(frame.payload).size)
     return protocol.pack(frame.kind, frame.sequence, frame.source_ns, frame.gid, payload)
+
+
+async def flush(connection: Connection) -> None:
+    """Wait until everything was handed to the operating system, or nothing is read for a while."""
+    try:
+        while not (connection.idle or connection.closed):
+            async with asyncio.timeout(STALLED_S):
+                await connection.progress()
+    except TimeoutError:
+        for queue in connection.queues:
+            if unsent := queue.unsent:
+                logger.warning(
+                    "%s: the last %d messages to the process %s were given up: it has read nothing "
+                    "for %g s",
+                    queue.name,
+                    unsent,
+                    connection.participant,
+                    STALLED_S,
+                )

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 from aionode.clock import MachineTime
 from aionode.errors import FrameError, TransportError
 from aionode.graph import EndpointKind
-from aionode.transport.ipc._connection import Connection
+from aionode.transport.ipc._connection import Connection, flush
 from aionode.transport.ipc._endpoint_table import EndpointTable, communicate_by_link
 from aionode.transport.ipc._protocol import (
     VERSION,
@@ -71,9 +71,6 @@ MAX_HELD: Final = 1 << 27
 
 MAX_ENDING: Final = 1_000
 """How many destroyed publishers are remembered until their subscriptions have confirmed."""
-
-STALLED_S: Final = 1.0
-"""How long, when a context closes, a process may read nothing of what waits for it."""
 
 RETRANSMIT_BYTES: Final = 1 << 20
 """A batch of retransmitted messages has this size, or one frame more."""
@@ -223,6 +220,10 @@ class LinkManager:
 
         timer = self._loop.call_later(delay_s, run)
         self._timers.add(timer)
+
+    def post(self, participant: str, frame: bytes) -> None:
+        """Send a frame to one other context over Zenoh; from any thread. It may be lost."""
+        self._peer_directory.post(participant, self._hello.pack() + frame)
 
     def keep(self, gid: bytes, send_queue: IpcSendQueue) -> None:
         """Keep what a destroyed publisher left to be sent or confirmed."""
@@ -568,31 +569,12 @@ class LinkManager:
                     error,
                 )
             return
-        self._read_until_eof(sender)
+        if any(frame.kind != Kind.STOP for frame in frames):  # the link has ended
+            self._read_until_eof(sender)
         heard = heard_from(self.readers.values(), sender)
         for frame in frames:
             if frame.kind == Kind.RETRANSMIT_DONE:
                 for remote_publisher in chain.from_iterable(heard.values()):
                     remote_publisher.retransmit_done()
-            elif frame.kind == Kind.DATA:
-                for remote_publisher in heard.get(frame.gid, ()):
-                    remote_publisher.from_retransmit(frame.payload, frame)
-
-
-async def flush(connection: Connection) -> None:
-    """Wait until everything was handed to the operating system, or nothing is read for a while."""
-    try:
-        while not (connection.idle or connection.closed):
-            async with asyncio.timeout(STALLED_S):
-                await connection.progress()
-    except TimeoutError:
-        for queue in connection.queues:
-            if unsent := queue.unsent:
-                logger.warning(
-                    "%s: the last %d messages to the process %s were given up: it has read nothing "
-                    "for %g s",
-                    queue.name,
-                    unsent,
-                    connection.participant,
-                    STALLED_S,
-                )
+            for remote_publisher in heard.get(frame.gid, ()):
+                remote_publisher.from_other_route(frame.payload, frame)

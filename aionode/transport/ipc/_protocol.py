@@ -9,8 +9,8 @@ A receiver stays in step only while it understands every frame, so anything unkn
 is in shared memory: a flag is set, and a `BufferRef` follows the header instead. A second flag says
 that the file descriptor of that memory is sent along with the frame.
 
-DATA, REQUEST and REPLY carry a payload of a user and stay a `Frame`. Every other kind is a control
-frame: a class of its own, whose `pack` writes it and which `decode_control` reads.
+DATA, STOP, REQUEST and REPLY carry a payload of a user and stay a `Frame`. Every other kind is a
+control frame: a class of its own, whose `pack` writes it and which `decode_control` reads.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ Handler = Callable[[bytes | bytearray | memoryview, int, int, int], None]
 callback may run within the call.
 """
 
-VERSION: Final = 1
+VERSION: Final = 2
 """Version of this format; only equal versions can be linked."""
 
 GID_SIZE: Final = 16
@@ -125,6 +125,8 @@ class Kind(enum.IntEnum):
     """`Forget`."""
     RETRANSMIT_DONE = 16
     """`RetransmitDone`."""
+    STOP = 17
+    """As DATA, but beside the link: the stop of a lease, after which nothing older is taken."""
 
 
 LAST_KIND: Final = max(Kind).value

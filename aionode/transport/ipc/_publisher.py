@@ -11,6 +11,7 @@ from aionode.transport.ipc import _protocol as protocol
 from aionode.transport.ipc._protocol import MESSAGE_HEADER, MESSAGE_MARK, BufferRef, Gone, Opened
 from aionode.transport.ipc._send_queue import DATA, IpcSendQueue, RemoteSubscription
 from aionode.transport.ipc._shared_memory import SHARED_FROM
+from aionode.transport.ipc._stop import IpcStop
 from aionode.wire import cdr
 from aionode.wire.cdr._layout import has_views
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from aionode.graph import EndpointInfo
+    from aionode.transport.base import StopSender
     from aionode.transport.ipc._connection import Connection
     from aionode.transport.ipc._protocol import Credit, Open
     from aionode.transport.ipc._registry import LinkRegistry
@@ -167,6 +169,11 @@ class IpcWriter(Writer):
             send_queue.send(sequence, data, buffer)
         if buffer is not None:
             pool.release(buffer)
+
+    def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:
+        """Return what sends the stop of a lease."""
+        payload = cdr.encoder(self._msg_type)(stop)
+        return IpcStop(self, payload, self._zenoh.prepare_stop(stop, is_last))
 
     def assert_liveliness(self) -> None:
         """Tell the subscriptions of other contexts: over Zenoh, which reaches all of them."""

@@ -50,6 +50,12 @@ class LinkRegistry(Protocol):
     def later(self, delay_s: float, call: Callable[[], None]) -> None:
         """Call `call` after a delay, unless the links are closed before."""
 
+    def post(self, participant: str, frame: bytes) -> None:
+        """Send a frame to one other context over the other transport; from any thread.
+
+        It may be lost.
+        """
+
     def keep(self, gid: bytes, send_queue: IpcSendQueue) -> None:
         """Keep what a destroyed publisher left to be sent or confirmed."""
 
@@ -85,6 +91,9 @@ class PeerDirectory(Protocol):
 
     def retransmit(self, participant: str, data: bytes) -> None:
         """Send bytes to one other context, in order."""
+
+    def post(self, participant: str, data: bytes) -> None:
+        """Send bytes to one other context at once, from any thread; they may be lost."""
 
     def note_link(self, participant: str, on: bool) -> None:
         """Record whether there is a link to another context, for tools that ask."""

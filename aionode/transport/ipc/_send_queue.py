@@ -176,6 +176,13 @@ class IpcSendQueue:
             waiting.append((sequence, data, buffer))
             self.connection.when_writable(self)
 
+    def send_stop(self, sequence: int, data: bytes, buffer: SharedBuffer | None) -> None:
+        """Send the stop of a lease; what waits is dropped in its favour."""
+        while self._waiting:
+            self.dropped += 1
+            self._let_go(self._waiting.popleft()[2])
+        self.send(sequence, data, buffer)
+
     def _pass(self, sequence: int, data: bytes, buffer: SharedBuffer | None) -> bool:
         """Give a frame to the connection if that, and the window of each subscription, allow it."""
         if self._limited and not self._has_window():
@@ -232,6 +239,11 @@ class IpcSendQueue:
         self._keep_all = True
         self.send(0, last)
         self.on_writable()  # the queue may have waited for a window
+
+    @property
+    def waits(self) -> bool:
+        """Whether a message waits here."""
+        return bool(self._waiting)
 
     @property
     def unsent(self) -> int:

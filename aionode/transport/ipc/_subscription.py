@@ -29,7 +29,7 @@ from aionode.errors import DecodeError, FrameError
 from aionode.qos import ReliabilityPolicy, depth_of, keeps_all
 from aionode.transport.base import ReaderRegistration, Registration
 from aionode.transport.ipc._endpoint_table import can_link
-from aionode.transport.ipc._protocol import Close, Credit, Open, Switched
+from aionode.transport.ipc._protocol import Close, Credit, Kind, Open, Switched
 from aionode.wire import cdr
 
 if TYPE_CHECKING:
@@ -315,12 +315,17 @@ class RemotePublisher:
         if self.route is not before or self.waits:
             self._route_changed()
 
-    def from_retransmit(self, payload: Data, frame: Frame) -> None:
-        """Take a message that a broken link left unconfirmed."""
+    def from_other_route(self, payload: Data, frame: Frame) -> None:
+        """Take what a link should have brought: its broken end left it, or the loop that writes."""
+        if frame.kind not in (Kind.DATA, Kind.STOP):
+            return
         try:
             msg = self._decode(payload)
         except DecodeError as error:
             self.reader.reject(error)
+            return
+        if frame.kind == Kind.STOP:
+            self._stop(Message(msg, frame.sequence, frame.source_ns, 0))
             return
         self._progressed = True
         if frame.sequence > self.last:
@@ -330,6 +335,17 @@ class RemotePublisher:
                 self._owed = max(self._owed, 1)
             self._hold(Message(msg, frame.sequence, frame.source_ns, 0))
             self._recover()
+        self._route_changed()
+
+    def _stop(self, message: Message) -> None:
+        """Take the stop of a lease, which came past the link: nothing older is taken any more."""
+        if message.sequence <= self.last:
+            return
+        self._held = {n: held for n, held in self._held.items() if n > message.sequence}
+        self._next(message)
+        if self.route is Route.BOTH and self.last >= self._base:
+            self._switch()
+        self._recover()
         self._route_changed()
 
     # The state machine

@@ -11,7 +11,7 @@ from aionode.errors import DecodeError
 from aionode.graph import EndpointKind
 from aionode.qos import DurabilityPolicy, depth_of, keeps_all
 from aionode.transport._send_thread import SendQueue, SendThread
-from aionode.transport.base import Writer
+from aionode.transport.base import StopSender, Writer
 from aionode.transport.rcl._bindings import UNNUMBERED, ByteArray, MessageInfo, load, view
 from aionode.transport.rcl._state import RclDeclaration
 from aionode.transport.rcl._types import rosidl_class
@@ -158,6 +158,29 @@ class RclWriter(RclDeclaration, Writer):
             rcl.forget_error()
             tries += self._closing
 
+    def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:  # noqa: ARG002  # DDS sends lost ones again
+        """Return what sends the stop of a lease."""
+        return RclStop(self, self._encode(stop))
+
+    def write_stop(self, payload: bytes) -> None:
+        """Send the stop of a lease, behind a large message that a thread sends just now."""
+        self._queue.abandon()
+        if self._publish is None:
+            if self._transient:
+                self._early.append(payload)
+        elif len(self._queue) or len(payload) >= BULK_BYTES:
+            self._put(payload)
+        else:
+            self.put_stop(payload)
+
+    def put_stop(self, payload: bytes) -> None:
+        """Send the stop of a lease now, from any thread."""
+        rcl, pointer = self.state.rcl, self._pointer
+        if rcl is None or self._handle is None:
+            return
+        if rcl.publish_without_gil(pointer, byref(view(payload)), None):
+            self._note_refused()
+
     def _note_refused(self) -> None:
         self._refused += 1
         self.state.note_refused(self.endpoint.name)
@@ -187,6 +210,25 @@ class RclWriter(RclDeclaration, Writer):
     def route_of(self, reader: EndpointInfo) -> str | None:
         """Return ``rcl`` for the subscriptions of others."""
         return "rcl" if reader in self._readers else None
+
+
+class RclStop(StopSender):
+    """Sends the stop of a lease over rcl, whose publishers any thread may use."""
+
+    def __init__(self, writer: RclWriter, payload: bytes) -> None:
+        self._writer = writer
+        self._payload = payload
+        self._past = 0  # its number, once it was sent past the loop
+
+    def send(self, sequence: int, source_ns: int) -> None:  # noqa: ARG002  # DDS has its own
+        """Send it, unless that was done past the loop."""
+        if sequence != self._past and self._writer.active:
+            self._writer.write_stop(self._payload)
+
+    def send_past_loop(self, sequence: int, source_ns: int) -> None:  # noqa: ARG002  # the same
+        """Send it."""
+        self._past = sequence
+        self._writer.put_stop(self._payload)
 
 
 class RclReader(RclDeclaration):

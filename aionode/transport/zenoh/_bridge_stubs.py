@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from aionode.content_filter import ContentFilterOptions
     from aionode.graph import EndpointInfo
-    from aionode.transport.base import Call, ReplyTo, SampleInfo
+    from aionode.transport.base import Call, ReplyTo, SampleInfo, StopSender
 
 __all__ = ["ReaderStub", "RequesterStub", "Stub", "WriterStub"]
 
@@ -80,6 +80,12 @@ class WriterStub(Stub[Writer], Writer):
         """Send `msg`."""
         if self.made is not None:
             self.made.write(msg, sequence, source_ns)
+
+    def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:
+        """Return what sends the stop of a lease."""
+        if self.made is None:
+            return super().prepare_stop(stop, is_last)
+        return self.made.prepare_stop(stop, is_last)
 
     def has_room(self) -> bool:
         """Whether one more message can wait to be sent."""

@@ -11,7 +11,14 @@ import zenoh
 from aionode.transport import _content_filters
 from aionode.transport._send_thread import SendThread
 from aionode.transport.base import LinkStatus
-from aionode.transport.zenoh._handlers import RETRANSMIT_PRIORITY, direct, reason, translated
+from aionode.transport.zenoh._delivery import BLOCK, DROP
+from aionode.transport.zenoh._handlers import (
+    LOOP_PRIORITY,
+    RETRANSMIT_PRIORITY,
+    direct,
+    reason,
+    translated,
+)
 from aionode.transport.zenoh._recovery import is_look
 from aionode.wire._liveliness import PREFIX as ROS_PREFIX
 
@@ -182,6 +189,12 @@ class ZenohPeerDirectory:
                 participant, len(data), lambda: send(session, key, data)
             )
 
+    def post(self, participant: str, data: bytes) -> None:
+        """Send `data` to another context at once, from any thread; it may be dropped."""
+        session = self._session
+        if session is not None:
+            send(session, self._retransmit_key(participant), data, waits=False)
+
     def note_link(self, participant: str, on: bool) -> None:
         """Record whether there is a link to another context, for those that ask.
 
@@ -351,14 +364,14 @@ class ZenohPeerDirectory:
                 )
 
 
-def send(session: zenoh.Session, key: str, data: bytes) -> None:
+def send(session: zenoh.Session, key: str, data: bytes, *, waits: bool = True) -> None:
     """Send `data`; runs in a thread."""
     try:
         session.put(
             key,
             data,
-            congestion_control=zenoh.CongestionControl.BLOCK,
-            priority=RETRANSMIT_PRIORITY,
+            congestion_control=BLOCK if waits else DROP,
+            priority=RETRANSMIT_PRIORITY if waits else LOOP_PRIORITY,
             allowed_destination=zenoh.Locality.REMOTE,
         )
     except zenoh.ZError as error:

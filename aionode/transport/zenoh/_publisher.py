@@ -41,16 +41,16 @@ from aionode.transport.zenoh._kept_history import (
 )
 from aionode.transport.zenoh._matched_readers import MatchedReaders
 from aionode.transport.zenoh._session_state import Declaration
-from aionode.wire import _acknack as acknack
+from aionode.transport.zenoh._stop import ZenohStop
+from aionode.transport.zenoh._submessages import SubmessageSender
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
-from aionode.wire._acknack import SubmessageKind
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.graph import EndpointInfo
-    from aionode.transport._reliability import Entry, ReaderProxy
+    from aionode.transport.base import StopSender
     from aionode.transport.zenoh._session_state import SessionState
     from aionode.wire._acknack import Submessage
 
@@ -59,7 +59,7 @@ __all__ = ["ZenohWriter"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 
-class ZenohWriter(Declaration, Writer):
+class ZenohWriter(SubmessageSender, Declaration, Writer):
     """A publisher for the subscriptions of other contexts.
 
     A message is sent in one of three ways, each with a priority and so a queue of its own in Zenoh:
@@ -68,6 +68,8 @@ class ZenohWriter(Declaration, Writer):
     """
 
     recovers: ClassVar[bool] = True  # whether its readers ask again for what they miss
+    used_bulk = False  # whether a large message was put since a lease began
+    _stop: ZenohStop | None = None  # of a lease, while it is put again
 
     def __init__(self, state: SessionState, endpoint: EndpointInfo, msg_type: type[Any]) -> None:
         self._key, token, gid = state.names_of(endpoint)
@@ -210,6 +212,7 @@ class ZenohWriter(Declaration, Writer):
             (self._history is None or self._history.done)
             and not len(self._large)
             and (self._patient is None or not len(self._patient))
+            and (self._stop is None or not self._stop.is_repeated)
         )
 
     def finish(self) -> None:
@@ -219,9 +222,8 @@ class ZenohWriter(Declaration, Writer):
         self.state.has_lingered(self)
         if self._history is not None and (missing := self._history.give_up()):
             self.lost(missing)
-        for send_queue in (self._large, self._patient):
-            if send_queue is not None:
-                send_queue.abandon()
+        self._abandon_queues()
+        self._stop = None
         matching, self._matching = self._matching, None
         if matching is not None:
             matching.undeclare()
@@ -327,8 +329,7 @@ class ZenohWriter(Declaration, Writer):
         extra = attachment.pack(sequence, source_ns, self.gid)
         history = self._history
         if self._publisher is None:
-            if self._transient:
-                self._early.append((sequence, payload, extra))
+            self._keep_early(sequence, payload, extra)
         elif history is None:
             self.put(payload, extra)
             if self._expiry is not None:
@@ -337,6 +338,26 @@ class ZenohWriter(Declaration, Writer):
             history.write(sequence, payload, extra)
             if not self._is_watched and history.entries:
                 self._watch()
+
+    def _keep_early(self, sequence: int, payload: bytes, extra: bytes) -> None:
+        """Keep a message for late readers until the session is open."""
+        if self._transient:
+            self._early.append((sequence, payload, extra))
+
+    def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:
+        """Return what sends the stop of a lease."""
+        return ZenohStop(self, stop, is_last)
+
+    def _abandon_queues(self) -> None:
+        """Drop what waits for a thread."""
+        for send_queue in (self._large, self._patient):
+            if send_queue is not None:
+                send_queue.abandon()
+
+    def _has_unacknowledging(self) -> bool:
+        """Return whether there may be readers for which nothing lost is sent again."""
+        gids = self._matched.gids
+        return self._history is None or not gids or not gids <= self._matched.acknowledging.keys()
 
     def _watch(self) -> None:
         self._is_watched = True
@@ -360,6 +381,7 @@ class ZenohWriter(Declaration, Writer):
     ) -> None:
         """Send a message that is large, or follows a large one, or must not be dropped by Zenoh."""
         size = len(payload)
+        self.used_bulk = self.used_bulk or size >= BULK_BYTES
         self._is_large_used = bool(len(self._large))
         may_not_drop = not self._is_direct and self._reliable and not self._bulk_only
         if self._patient is not None or (
@@ -503,6 +525,9 @@ class ZenohWriter(Declaration, Writer):
             again = history.tick()
             if len(history.readers) != known:
                 self._update()
+        if self._stop is not None:
+            self._stop = self._stop.tick()
+            again = again or self._stop is not None
         self._progress()
         if self in self.state.lingering:
             now_ns = perf_ns()
@@ -523,32 +548,6 @@ class ZenohWriter(Declaration, Writer):
     def probe(self) -> bool:
         """Ask readers that have everything for an answer; return whether to call again."""
         return self._history is not None and self._history.probe()
-
-    def heartbeat(self, reader: ReaderProxy, first: int, last: int) -> None:
-        """Send a reader a HEARTBEAT."""
-        self._send_submessage(
-            SubmessageKind.HEARTBEAT, reader, first, last, self.state.participant.encode()
-        )
-
-    def gap(self, reader: ReaderProxy, first: int, last: int) -> None:
-        """Send a reader a GAP."""
-        self._send_submessage(SubmessageKind.GAP, reader, first, last)
-
-    def resend(self, reader: ReaderProxy, entry: Entry) -> None:
-        """Send a message again to one reader."""
-        fields = attachment.unpack_fields(entry.attachment)
-        source_ns = 0 if fields is None else fields[1]
-        self._send_submessage(SubmessageKind.DATA, reader, entry.sequence, source_ns, entry.payload)
-
-    def _send_submessage(
-        self, kind: SubmessageKind, reader: ReaderProxy, first: int, last: int, rest: bytes = b""
-    ) -> None:
-        data = acknack.pack(kind, self.gid, reader.gid, first, last, rest)
-        send = self.state.acknowledgements.send
-        if len(data) < BULK_BYTES:
-            send(reader.participant, data)
-        else:  # Zenoh sends it in fragments, each of which may wait
-            self.state.bulk.submit(partial(send, reader.participant, data, BULK_PRIORITY))
 
     def lost(self, count: int) -> None:
         """Count dropped messages; the first are logged."""

@@ -319,6 +319,8 @@ class ZenohReader(Declaration, ReaderRegistration):
                 proxy = self._add_proxy(submessage)
                 if proxy is None:
                     return
+            if submessage.first > proxy.next:  # what is older may be here, in the other queue
+                self._queue.take_all()
             # While messages wait in the queue, it cannot be told which ones are missing.
             proxy.heartbeat(submessage.first, submessage.last, ask=not len(self._queue))
         elif proxy is None:

@@ -115,7 +115,7 @@ class HandedOver:
 
     def from_retransmit(self, number: int) -> None:
         """Let a retransmitted message come."""
-        self.remote.from_retransmit(number.to_bytes(8), Frame(Kind.DATA, number, 0, GID))
+        self.remote.from_other_route(number.to_bytes(8), Frame(Kind.DATA, number, 0, GID))
 
     def let_time_pass(self) -> None:
         """Run the timers that are set now."""

@@ -16,6 +16,9 @@ from aionode.context import Context
 from aionode.errors import TransportError
 from aionode.interfaces.sensor_msgs.msg import Image
 from aionode.transport.ipc import (
+    _connection,
+)
+from aionode.transport.ipc import (
     _connection as connection,
 )
 from aionode.transport.ipc import (
@@ -328,7 +331,7 @@ async def test_what_the_socket_took_a_part_of_counts_among_what_is_given_up(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """The reader does not get its last message, nor those that were to go in the same batch."""
-    monkeypatch.setattr(manager, "STALLED_S", 0.01)
+    monkeypatch.setattr(_connection, "STALLED_S", 0.01)
     async with two_nodes() as nodes:
         numbers = Counting(nodes, 20_000)
         await numbers.until_linked()
@@ -338,7 +341,7 @@ async def test_what_the_socket_took_a_part_of_counts_among_what_is_given_up(
         numbers.publish(20_000)
         assert link._rest
 
-        await manager.flush(link)
+        await _connection.flush(link)
 
         (warning,) = [each for each in caplog.records if "were given up" in each.message]
         assert isinstance(warning.args, tuple)

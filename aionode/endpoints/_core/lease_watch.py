@@ -1,0 +1,191 @@
+"""The thread that sends the stops of leases when the event loop does not."""
+
+from __future__ import annotations
+
+import os
+import threading
+from contextlib import suppress
+from queue import Empty, SimpleQueue
+from typing import Final, Protocol
+
+from aionode._sudden_end import STOPS
+from aionode.clock import perf_ns
+
+__all__ = ["REPEAT_S", "LeaseWatch", "Watched", "watch"]
+
+GRACE_NS: Final = 30_000_000
+"""How long after it has noticed the end of a time to live the thread leaves the stop to the loop,
+which may be as late as the thread, because the process was frozen or the machine is busy."""
+
+POLL_S: Final = 0.05
+"""How often it looks at least: at clocks that were set, after the host was suspended, and at stops
+that are put again."""
+
+AGAIN_S: Final = 0.01
+"""How often it looks while a time to live is over."""
+
+REPEAT_S: Final = 0.2
+"""How long a stop is put again while the loop does not take over."""
+
+STOPPED: Final = "the process was told to end, or to stand still"
+
+
+class Watched(Protocol):
+    """An open lease, as the thread sees it. Each method may be called in any thread."""
+
+    @property
+    def is_sent(self) -> bool:
+        """Whether its stop was sent past the loop, which has not taken over yet."""
+
+    @property
+    def is_orphaned(self) -> bool:
+        """Whether its loop is closed."""
+
+    def left_ns(self) -> int | None:
+        """Return how much of its time to live is left, in nanoseconds; None if none runs."""
+
+    def send_past_loop(self, reason: str) -> bool:
+        """Send the stop, unless another thread does.
+
+        Args:
+            reason: Why, if the time to live is not over. Then it is sent even between two steps of
+                a command that is being published, and once more after that.
+
+        Returns:
+            Whether the stop was sent by this call.
+        """
+
+    def repeat(self) -> None:
+        """Put the stop again."""
+
+    def leave_to_parent(self) -> None:
+        """Send nothing any more, in a forked child."""
+
+
+class Record:
+    """What the thread knows of one lease.
+
+    Attributes:
+        noticed_ns: When it was seen to be over, by `perf_ns`; 0 while it is not.
+        sent_ns: When its stop was sent; 0 before.
+    """
+
+    __slots__ = ("noticed_ns", "sent_ns")
+
+    def __init__(self) -> None:
+        self.noticed_ns = self.sent_ns = 0
+
+
+class LeaseWatch:
+    """Watches the open leases of a process, in a thread that exists only while there is one.
+
+    A handler of signals may interrupt any step of other threads, so stops are sent without a lock
+    of this, and the thread is woken by a SimpleQueue, whose `put` is reentrant.
+    """
+
+    def __init__(self) -> None:
+        self._reset()
+
+    def _reset(self) -> None:
+        self._leases: dict[Watched, Record] = {}
+        self._wakes: SimpleQueue[None] = SimpleQueue()
+        self._guard = threading.Lock()  # held to start the thread, and to let it end
+        self._thread: threading.Thread | None = None
+
+    def add(self, lease: Watched) -> None:
+        """Watch a lease until `remove`."""
+        with self._guard:
+            self._leases[lease] = Record()
+            if self._thread is not None:
+                return
+            self._thread = threading.Thread(target=self._run, name="aionode-lease", daemon=True)
+            try:
+                self._thread.start()
+            except RuntimeError:  # the interpreter is shutting down: the loop is alone
+                self._thread = None
+
+    def remove(self, lease: Watched) -> None:
+        """Watch a lease no more."""
+        if self._leases.pop(lease, None) is not None and not self._leases:
+            self.wake()  # to its end
+
+    def wake(self) -> None:
+        """Have the thread look now: a time to live has begun."""
+        self._wakes.put(None)
+
+    def stop_all(self) -> bool:
+        """Send all stops, in the calling thread; return whether there was one to send.
+
+        A handler of signals may call it: it takes no lock but those of the leases, which the thread
+        has that the handler interrupts, or which are free in a moment.
+        """
+        sent = [self._send(*each, STOPPED) for each in list(self._leases.items())]
+        self.wake()
+        return any(sent)
+
+    def after_fork(self) -> None:
+        """Leave all leases to the parent process; in a forked child, which has no thread."""
+        leases = list(self._leases)
+        self._reset()
+        for lease in leases:
+            lease.leave_to_parent()
+
+    # In the thread
+
+    def _run(self) -> None:
+        while True:
+            self._wait()
+            if not self._leases:
+                with self._guard:
+                    if not self._leases:
+                        self._thread = None
+                        return
+            for lease, record in list(self._leases.items()):
+                self._look(lease, record)
+
+    def _wait(self) -> None:
+        """Wait until there may be something to do."""
+        timeout_s = POLL_S
+        for lease, record in list(self._leases.items()):
+            left_ns = lease.left_ns()
+            if record.sent_ns:
+                continue
+            if record.noticed_ns:
+                timeout_s = min(timeout_s, AGAIN_S)
+            elif left_ns is not None:
+                timeout_s = min(timeout_s, max(left_ns / 1e9, 0))
+        with suppress(Empty):
+            self._wakes.get(timeout=timeout_s)
+
+    def _look(self, lease: Watched, record: Record) -> None:
+        """Do for one lease what is due."""
+        now_ns = perf_ns()
+        left_ns = lease.left_ns()
+        if lease.is_sent:
+            if now_ns - record.sent_ns < REPEAT_S * 1e9:
+                lease.repeat()
+            elif lease.is_orphaned:  # nobody takes over
+                self.remove(lease)
+        elif lease.is_orphaned:
+            self._send(lease, record, "its event loop has ended")
+        elif left_ns is None or left_ns > 0:
+            record.noticed_ns = 0
+        elif not record.noticed_ns:
+            record.noticed_ns = now_ns
+        elif now_ns - record.noticed_ns >= GRACE_NS:
+            self._send(lease, record, "")
+
+    def _send(self, lease: Watched, record: Record, reason: str) -> bool:
+        if not lease.send_past_loop(reason):
+            return False
+        record.sent_ns = perf_ns()
+        return True
+
+
+watch = LeaseWatch()
+"""That of this process."""
+
+STOPS.append(watch.stop_all)
+
+if hasattr(os, "register_at_fork"):  # not on Windows
+    os.register_at_fork(after_in_child=watch.after_fork)

@@ -1,0 +1,425 @@
+"""Leases for commands: the right to command, and a stop that goes out when it ends."""
+
+from __future__ import annotations
+
+import asyncio
+import enum
+import math
+import threading
+import traceback
+from contextlib import suppress
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final, Generic, Protocol, Self, TypeVar
+
+from aionode.clock import S_TO_NS, Clock, MachineTime, SilenceAlarm
+from aionode.endpoints._core.lease_watch import REPEAT_S, watch
+from aionode.errors import ForkedProcessError, LeaseExpiredError, brief
+from aionode.logging import get_logger
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from types import TracebackType
+
+    from aionode.clock import TimeBase
+    from aionode.endpoints._core.loop_affinity import LoopAffinity
+    from aionode.transport.base import StopSender
+
+__all__ = ["CommandLease", "send_stops"]
+
+MsgT = TypeVar("MsgT")
+LeasedT_contra = TypeVar("LeasedT_contra", contravariant=True)
+
+LOCK_S: Final = 0.05
+"""How long another thread waits for a command that is just being published, which takes no time."""
+
+
+def send_stops(within_sec: float = REPEAT_S) -> bool:
+    """Send the stop of every open lease of this process now, and give it time to leave.
+
+    For programs that are about to end without their event loop; `aionode.run` does so by itself. It
+    may be called in any thread and in a handler of signals, also while the loop is blocked. The
+    leases have expired then. With an open lease it takes `within_sec`, without one no time.
+
+    Args:
+        within_sec: How long it takes, in seconds.
+
+    Returns:
+        Whether a lease was open.
+    """
+    if not watch.stop_all():
+        return False
+    threading.Event().wait(within_sec)  # it is put again meanwhile
+    return True
+
+
+class LeasedPublisher(Protocol[LeasedT_contra]):
+    """What a lease needs of its publisher."""
+
+    _affinity: LoopAffinity
+
+    @property
+    def topic_name(self) -> str:
+        """The full name of the topic."""
+
+    def _hold(self, lease: Any, stop: LeasedT_contra | bytes | bytearray | memoryview) -> None:
+        """Have only `lease` publish from now on, and prepare its stop.
+
+        Raises:
+            LeaseHeldError: another lease does.
+        """
+
+    def _let_go(self) -> None:
+        """Have `publish` publish again."""
+
+    def _publish_leased(self, msg: LeasedT_contra | bytes | bytearray | memoryview) -> None:
+        """Publish a command."""
+
+    def _number_stop(self, step: int) -> tuple[int, int]:
+        """Return the number of the stop, so much after the last one, and its time."""
+
+    @property
+    def _stop_senders(self) -> Sequence[StopSender]:
+        """What sends the stop, for each transport."""
+
+
+class State(enum.Enum):
+    """Where a lease is; it only goes down this list."""
+
+    NEW = enum.auto()
+    OPEN = enum.auto()
+    SENT = enum.auto()
+    """The stop was sent past the event loop, which has to do the rest when it goes on."""
+    ENDED = enum.auto()
+
+
+class CommandLease(Generic[MsgT]):
+    """The right to publish commands, for as long as its holder lives. Made by `Publisher.lease`.
+
+    ::
+
+        async with publisher.lease(stop=Twist(), ttl_sec=0.3) as lease:
+            while True:
+                lease.publish(await next_command())
+
+    The stop goes out once, as soon as the block ends, however it ends; when the holder has
+    published nothing for the time to live; when the publisher, its node or its context is
+    destroyed, or the node fails. This does not take the holder's task to run again, nor, for other
+    processes, the event loop.
+
+    When the time to live is over, the block is cancelled as by `asyncio.timeout`, and raises
+    LeaseExpiredError. `publish` compares the time itself: a holder that stood still sends nothing.
+
+    Raises:
+        TypeError: `ttl_sec` is not a number, or `clock` not a clock.
+        ValueError: `ttl_sec` is not positive and finite.
+    """
+
+    # What decides who sends the stop: the state, under the lock. The loop's thread holds the lock
+    # from the comparison of the time until the command is written, so that no command follows a
+    # stop of another thread. The lock is reentrant, because a signal handler may run meanwhile.
+
+    def __init__(
+        self,
+        publisher: LeasedPublisher[MsgT],
+        stop: MsgT | bytes | bytearray | memoryview,
+        ttl_sec: float,
+        clock: Clock | None,
+        time_base: TimeBase,
+        refuse: Callable[[], None] | None = None,
+    ) -> None:
+        topic = publisher.topic_name
+        if isinstance(ttl_sec, bool) or not isinstance(ttl_sec, int | float):
+            raise TypeError(
+                f"lease of {topic}: ttl_sec={brief(ttl_sec)} is not a number; pass seconds"
+            )
+        if not 0 < ttl_sec < math.inf:
+            raise ValueError(f"lease of {topic}: ttl_sec={ttl_sec}; use more than 0 seconds")
+        if clock is not None and not isinstance(clock, Clock):
+            raise TypeError(f"lease of {topic}: clock={brief(clock)}; pass a Clock, or None")
+        self._publisher = publisher
+        self._stop = stop
+        self._refuse = refuse
+        self._ttl_sec = ttl_sec
+        self._clock = clock
+        self._time_base = time_base.through_suspend()
+        self._silence: SilenceAlarm | None = None  # from the beginning of the block to the stop
+        self._lock = threading.RLock()
+        self._state = State.NEW
+        self._is_publishing = False
+        self._numbers = (0, 0)  # of the stop
+        self._refusal: Callable[[], Exception] | None = None  # what `publish` raises after the end
+        self._loop: asyncio.AbstractEventLoop | None = None  # that of the publisher's node
+        # The block: its task and loop, and whether the time to live has cancelled it.
+        self._task: asyncio.Task[Any] | None = None
+        self._block_loop: asyncio.AbstractEventLoop | None = None
+        self._cancelling = 0
+        self._has_expired = False
+        self._cancelled = False
+        self._left = False
+
+    def __repr__(self) -> str:
+        state = self._state.name.lower()
+        return f"<CommandLease of {self._publisher.topic_name} {state} ttl_sec={self._ttl_sec:g}>"
+
+    @property
+    def held(self) -> bool:
+        """Whether commands may be published: it was entered, and its stop was not sent."""
+        return self._state is State.OPEN and not self._is_silent()
+
+    # The block
+
+    async def __aenter__(self) -> Self:
+        """Take the right to publish, and encode the stop.
+
+        Raises:
+            LeaseHeldError: another lease of the publisher is held (a RuntimeError).
+            TypeError: the stop is not of the publisher's type.
+            MessageError: a value of the stop does not fit its field (a ValueError).
+            EntityDestroyedError: the publisher or its node was destroyed (a RuntimeError).
+            EntityInactiveError: the publisher's managed node is not active (a RuntimeError).
+            RuntimeError: the lease was entered before.
+        """
+        self._task = asyncio.current_task()
+        if self._task is None:
+            raise RuntimeError(f"{self!r}: enter it in a task")
+        self._cancelling = self._task.cancelling()
+        self._block_loop = asyncio.get_running_loop()
+        affinity = self._publisher._affinity
+        if affinity.is_other_thread():
+            affinity.wait_for(self._open)
+        else:
+            self._open()
+        return self
+
+    def _open(self) -> None:
+        if self._state is not State.NEW:
+            raise RuntimeError(f"{self!r}: a lease is entered once; call publisher.lease() again")
+        if self._refuse is not None:
+            self._refuse()
+        self._publisher._hold(self, self._stop)
+        self._loop = asyncio.get_running_loop()
+        self._state = State.OPEN
+        self._silence = SilenceAlarm(
+            self._time_base, round(self._ttl_sec * S_TO_NS), self._on_silence, self._clock
+        )
+        self._silence.start()
+        watch.add(self)
+
+    async def __aexit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Send the stop, unless it was sent.
+
+        Raises:
+            LeaseExpiredError: the time to live was over before (a TimeoutError).
+        """
+        # Nothing is awaited here: the block may end because its coroutine is thrown away.
+        self._left = True
+        affinity = self._publisher._affinity
+        if self._state in (State.OPEN, State.SENT) and affinity.is_other_thread():
+            affinity.wait_for(self._end_block)
+        else:
+            self._end_block()
+        if not self._has_expired:
+            return
+        # As in asyncio.timeout: a cancellation of others passes.
+        is_ours = self._cancelled and self._task is not None
+        if is_ours and self._task.uncancel() > self._cancelling:  # type: ignore[union-attr]  # as above
+            return
+        if exc is None or (is_ours and isinstance(exc, asyncio.CancelledError)):
+            raise self._refused() from exc
+
+    def _end_block(self) -> None:
+        self.end_for(lambda: LeaseExpiredError(self._publisher.topic_name, "its block has ended"))
+
+    def _cancel_block(self) -> None:
+        """Cancel the block, whose loop may be another one, after the stop was sent."""
+        if self._block_loop is not None and not self._left:
+            try:
+                self._block_loop.call_soon_threadsafe(self._cancel_task)
+            except RuntimeError:  # the loop is closed, and with it the block
+                return
+
+    def _cancel_task(self) -> None:
+        if not self._left and self._task is not None:
+            self._cancelled = True
+            self._task.cancel()
+
+    # Commands
+
+    def publish(self, msg: MsgT | bytes | bytearray | memoryview) -> None:
+        """Publish a command as `Publisher.publish` does, and begin the time to live anew.
+
+        It may be called from any thread, as `Publisher.publish`.
+
+        Raises:
+            LeaseExpiredError: the time to live is over, or the block has ended; nothing was sent
+                but the stop (a TimeoutError).
+            RuntimeError: the lease was not entered.
+            Exception: the exceptions of `Publisher.publish`; the time to live goes on.
+        """
+        affinity = self._publisher._affinity
+        if affinity.is_other_thread():
+            affinity.wait_for(self.publish, msg)
+            return
+        with self._lock:
+            self._look()
+            if self._refusal is not None or self._state is not State.OPEN:
+                raise self._refused()
+            self._is_publishing = True
+            try:
+                self._publisher._publish_leased(msg)
+            finally:
+                self._is_publishing = False
+                self._end_if_refused()
+            if self._silence is not None:
+                is_first = self._silence.left_ns() is None
+                self._silence.note()
+                if is_first:
+                    watch.wake()
+
+    def _refused(self) -> Exception:
+        if self._refusal is not None:
+            return self._refusal()
+        return RuntimeError(f"{self!r}: use `async with publisher.lease(...) as lease`")
+
+    # Time
+
+    def _is_silent(self) -> bool:
+        """Return whether the time to live is over; before the first command none runs."""
+        left_ns = None if self._silence is None else self._silence.left_ns()
+        return left_ns is not None and left_ns <= 0
+
+    def _on_silence(self, periods: int) -> bool:  # noqa: ARG002  # the first one ends it
+        self._look()
+        return False
+
+    def _look(self) -> None:
+        """End the lease if its time to live is over; on the loop."""
+        with self._lock:
+            if self._state is State.OPEN and self._is_silent():
+                self._expire(self._of_silence())
+
+    def _of_silence(self) -> str:
+        return f"nothing was published for {self._ttl_sec:g} s"
+
+    def _expire(self, reason: str) -> None:
+        """Send the stop, and only then end the block."""
+        self._has_expired = True
+        self.end_for(lambda: LeaseExpiredError(self._publisher.topic_name, reason))
+        self._cancel_block()
+
+    # The end, on the loop's thread
+
+    def end_for(self, refusal: Callable[[], Exception]) -> None:
+        """Send the stop, unless it was sent, and do the rest after another thread has sent it.
+
+        Args:
+            refusal: Returns what `publish` raises from now on, and perhaps the block.
+        """
+        with self._lock:
+            if self._state is State.OPEN:
+                self._refusal = refusal
+                if self._is_publishing:  # a signal handler has interrupted it: not before its end
+                    return
+                self._numbers = self._publisher._number_stop(1)
+            elif self._state is not State.SENT:
+                return
+            self._state = State.ENDED
+            self._send(lambda sender, *numbers: sender.send(*numbers))
+        if self._silence is not None:
+            self._silence.stop()
+        watch.remove(self)
+        self._publisher._let_go()
+
+    def finish(self) -> None:
+        """Do the rest now if another thread has sent the stop, or if the time to live is over."""
+        self._look()
+        if self._state is State.SENT:
+            self._take_over()
+
+    def _end_if_refused(self) -> None:
+        """End what was ended while a command was being published: behind that command."""
+        if self._refusal is not None:
+            if self._state is State.SENT:
+                self._numbers = self._publisher._number_stop(2)
+            self.end_for(self._refusal)
+
+    def _send(self, send: Callable[[StopSender, int, int], None]) -> None:
+        """Send the stop through each transport; what one cannot do is no reason to leave others."""
+        for sender in self._publisher._stop_senders:
+            try:
+                send(sender, *self._numbers)
+            except Exception:  # noqa: BLE001  # logged: who ends a lease could do nothing
+                get_logger("aionode.lease").error(
+                    f"{self._publisher.topic_name}: the stop of a lease was not sent over one "
+                    f"transport:\n{traceback.format_exc()}"
+                )
+
+    # Past the loop: in any thread
+
+    @property
+    def is_sent(self) -> bool:
+        """Whether the stop was sent past the loop, which has not taken over yet."""
+        return self._state is State.SENT
+
+    @property
+    def is_orphaned(self) -> bool:
+        """Whether the loop is closed."""
+        return self._loop is not None and self._loop.is_closed()
+
+    def left_ns(self) -> int | None:
+        """Return how much of the time to live is left, in nanoseconds; None if none runs.
+
+        Time that a test sets by hand ends a lease on the loop only.
+        """
+        if self._silence is None or not isinstance(self._time_base, MachineTime):
+            return None
+        return self._silence.left_ns()
+
+    def send_past_loop(self, reason: str) -> bool:
+        """Send the stop, unless another thread does; see `Watched`."""
+        is_locked = self._lock.acquire(timeout=LOCK_S)
+        if not (is_locked or reason):
+            return False  # a command is being published
+        try:
+            if self._state is not State.OPEN or not (reason or self._is_silent()):
+                return False
+            expired = partial(LeaseExpiredError, self._publisher.topic_name)
+            self._refusal = partial(expired, reason or self._of_silence())
+            self._has_expired = True
+            self._numbers = self._publisher._number_stop(1 + self._is_publishing)
+            self._state = State.SENT
+            self._send(lambda sender, *numbers: sender.send_past_loop(*numbers))
+        finally:
+            if is_locked:
+                self._lock.release()
+        if self._loop is not None:
+            with suppress(RuntimeError):  # it is closed
+                self._loop.call_soon_threadsafe(self._take_over)
+        return True
+
+    def _take_over(self) -> None:
+        """Go on, on the loop, after the stop was sent past it."""
+        if self._state is State.SENT and self._refusal is not None:
+            self.end_for(self._refusal)
+        self._cancel_block()
+
+    def repeat(self) -> None:
+        """Put the stop again, unless the loop has taken over."""
+        if self._lock.acquire(timeout=LOCK_S):
+            try:
+                if self._state is State.SENT:
+                    self._send(lambda sender, *_: sender.repeat())
+            finally:
+                self._lock.release()
+
+    def leave_to_parent(self) -> None:
+        """Send nothing any more, in a forked child."""
+        self._lock = threading.RLock()
+        self._state = State.ENDED
+        self._has_expired = False
+        self._refusal = lambda: ForkedProcessError(f"lease of {self._publisher.topic_name}")

@@ -1,0 +1,168 @@
+"""The stop of a lease on Zenoh."""
+
+from __future__ import annotations
+
+import logging
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final, Protocol
+
+import zenoh
+
+from aionode.clock import perf_ns
+from aionode.transport.base import StopSender
+from aionode.transport.zenoh._delivery import BULK_BYTES
+from aionode.transport.zenoh._handlers import reason
+from aionode.wire import _attachment as attachment
+from aionode.wire import cdr
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from zenoh import ext
+
+    from aionode.clock import SilenceAlarm
+    from aionode.transport._reliability import ReaderProxy, WriterHistory
+    from aionode.transport._send_thread import SendQueue
+
+__all__ = ["ZenohStop"]
+
+logger = logging.getLogger("aionode.transport.zenoh")
+
+REPEAT_NS: Final = 200_000_000
+"""How long it is put again, with the same number, for readers that do not acknowledge: Zenoh drops
+what does not fit into its queue, and tells nobody.
+"""
+
+
+class StoppableWriter(Protocol):
+    """What the stop of a lease needs of a `ZenohWriter`, with that one's meaning."""
+
+    gid: bytes
+    active: bool
+    used_bulk: bool
+    _stop: ZenohStop | None
+    _key: str
+    _publisher: zenoh.Publisher | ext.AdvancedPublisher | None
+    _history: WriterHistory | None
+    _expiry: SilenceAlarm | None
+    _large: SendQueue
+    _patient: SendQueue | None
+
+    def heartbeat(self, reader: ReaderProxy, first: int, last: int) -> None: ...
+    def _keep_early(self, sequence: int, payload: bytes, extra: bytes) -> None: ...
+    def _abandon_queues(self) -> None: ...
+    def _has_unacknowledging(self) -> bool: ...
+    def _watch(self) -> None: ...
+    def _put_patiently(
+        self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
+    ) -> None: ...
+    def _send(
+        self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
+    ) -> None: ...
+
+
+class ZenohStop(StopSender):
+    """Sends the stop of a lease to the readers of other contexts.
+
+    Small messages are put at once, as the commands before it were; large ones by the thread for
+    them, which has a priority of its own. A reader that acknowledges gets it for certain: the
+    history keeps it. To the others it is put again for a while.
+
+    Args:
+        writer: The publisher.
+        stop: The message.
+        is_last: Whether nothing was published since; else it is not put again.
+    """
+
+    def __init__(self, writer: StoppableWriter, stop: Any, is_last: Callable[[], bool]) -> None:
+        self._writer = writer
+        self._payload = cdr.encoder(type(stop))(stop)
+        self._is_last = is_last
+        self._extra = b""  # once it was sent
+        self._ends_ns = 0  # when it is put no more
+        self._past = 0  # its number, once it was sent past the loop
+        # Whether a large message was published since: only behind it nothing is overtaken.
+        writer.used_bulk = len(self._payload) >= BULK_BYTES
+
+    @property
+    def is_repeated(self) -> bool:
+        """Whether it is to be put again now."""
+        return perf_ns() < self._ends_ns and self._is_last()
+
+    def send(self, sequence: int, source_ns: int) -> None:
+        """Send it, or keep for those who ask again what was sent past the loop."""
+        writer, history = self._writer, self._writer._history
+        is_past = self._past == sequence
+        if not is_past:
+            if not writer.active:
+                return
+            self._begin(sequence, source_ns)
+        if writer._publisher is None:
+            writer._keep_early(sequence, self._payload, self._extra)
+            return
+        writer._abandon_queues()
+        put = self._no_more if is_past else self._put
+        if history is None:
+            put(self._payload, self._extra)
+        else:
+            history.write_stop(sequence, self._payload, self._extra, put)
+        if writer._expiry is not None:
+            writer._expiry.note()
+        if writer._has_unacknowledging():
+            writer._stop = self
+        writer._watch()
+
+    def tick(self) -> ZenohStop | None:
+        """Put it again, if that is still due; return what to call next time."""
+        if not self.is_repeated:
+            return None
+        self.repeat()
+        return self
+
+    def _begin(self, sequence: int, source_ns: int) -> None:
+        self._extra = attachment.pack(sequence, source_ns, self._writer.gid)
+        self._ends_ns = perf_ns() + REPEAT_NS
+
+    def _no_more(self, payload: bytes, extra: bytes) -> None:
+        """Do nothing: it was put past the loop."""
+
+    def _put(self, payload: bytes, extra: bytes) -> None:
+        """Put it where the last message was put."""
+        writer = self._writer
+        patient, publisher = writer._patient, writer._publisher
+        if patient is not None and publisher is not None:
+            if len(patient):  # its thread waits for a slow reader, the others do not
+                self.repeat()
+            writer._put_patiently(publisher, payload, extra)
+        elif writer.used_bulk and publisher is not None:
+            writer._large.put(partial(writer._send, publisher, payload, extra))
+        else:
+            self.repeat()
+
+    def send_past_loop(self, sequence: int, source_ns: int) -> None:
+        """Put it, and tell the readers that acknowledge to wait for nothing before it.
+
+        The loop could not send again what they lack.
+        """
+        self._past = sequence
+        self._begin(sequence, source_ns)
+        self.repeat()
+        writer = self._writer
+        if writer._history is not None:
+            for reader in list(writer._history.readers.values()):
+                if not reader.away_until_ns:
+                    writer.heartbeat(reader, sequence, sequence)
+
+    def repeat(self) -> None:
+        """Put it at once, with the priority of the messages before it."""
+        writer = self._writer
+        publisher = writer._publisher
+        if publisher is None:
+            return
+        try:
+            if writer.used_bulk:
+                writer._send(publisher, self._payload, self._extra)
+            else:
+                publisher.put(self._payload, attachment=self._extra)
+        except zenoh.ZError as error:  # the session was closed meanwhile
+            logger.debug("%s: not sent: %s", writer._key, reason(error))

@@ -1,0 +1,56 @@
+"""What a reliable publisher sends to single readers: heartbeats, gaps, and messages once more."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from aionode.transport.zenoh._delivery import BULK_BYTES
+from aionode.transport.zenoh._handlers import BULK_PRIORITY
+from aionode.wire import _acknack as acknack
+from aionode.wire import _attachment as attachment
+from aionode.wire._acknack import SubmessageKind
+
+if TYPE_CHECKING:
+    from aionode.transport._reliability import Entry, ReaderProxy
+    from aionode.transport.zenoh._session_state import SessionState
+
+__all__ = ["SubmessageSender"]
+
+
+class SubmessageSender:
+    """The part of a publisher that sends submessages.
+
+    Attributes:
+        state: The state of the session.
+        gid: The publisher.
+    """
+
+    state: SessionState
+    gid: bytes
+
+    def heartbeat(self, reader: ReaderProxy, first: int, last: int) -> None:
+        """Send a reader a HEARTBEAT; any thread may."""
+        self._send_submessage(
+            SubmessageKind.HEARTBEAT, reader, first, last, self.state.participant.encode()
+        )
+
+    def gap(self, reader: ReaderProxy, first: int, last: int) -> None:
+        """Send a reader a GAP."""
+        self._send_submessage(SubmessageKind.GAP, reader, first, last)
+
+    def resend(self, reader: ReaderProxy, entry: Entry) -> None:
+        """Send a message again to one reader."""
+        fields = attachment.unpack_fields(entry.attachment)
+        source_ns = 0 if fields is None else fields[1]
+        self._send_submessage(SubmessageKind.DATA, reader, entry.sequence, source_ns, entry.payload)
+
+    def _send_submessage(
+        self, kind: SubmessageKind, reader: ReaderProxy, first: int, last: int, rest: bytes = b""
+    ) -> None:
+        data = acknack.pack(kind, self.gid, reader.gid, first, last, rest)
+        send = self.state.acknowledgements.send
+        if len(data) < BULK_BYTES:
+            send(reader.participant, data)
+        else:  # Zenoh sends it in fragments, each of which may wait
+            self.state.bulk.submit(partial(send, reader.participant, data, BULK_PRIORITY))
