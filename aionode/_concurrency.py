@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 __all__ = [
     "SLICE_NS",
     "checkpoint",
+    "is_cancelled_task",
     "run_in_thread",
     "spin_before_blocking",
     "thread_calls",
@@ -71,6 +72,15 @@ async def run_in_thread(callback: Callable[P, T], *args: P.args, **kwargs: P.kwa
         calls.discard(ended)
         if not ended.done():
             ended.set_result(None)
+
+
+def is_cancelled_task() -> bool:
+    """Return whether the running task is being cancelled.
+
+    If not, a CancelledError that comes up to it is one of something that it awaited, or a mistake.
+    """
+    task = asyncio.current_task()
+    return task is not None and task.cancelling() > 0
 
 
 async def to_the_end(work: Coroutine[Any, Any, T]) -> T:

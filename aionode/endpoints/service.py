@@ -132,9 +132,6 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
             if is_unfinished(entered):
                 return self._finish(request, entered)
             self._reply(request, entered)
-        except asyncio.CancelledError:
-            request.drop()
-            raise
         except Exception as error:  # noqa: BLE001  # see `_fail`
             self._fail(request, error)
         return None

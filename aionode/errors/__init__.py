@@ -363,7 +363,9 @@ class CallbackSignatureError(AionodeError, TypeError, RuntimeError):
 
 
 class CallbackCancelledError(AionodeError, RuntimeError):
-    """An awaitable inside a callback was cancelled, and the callback did not handle it.
+    """A callback raised CancelledError, although nobody has cancelled it.
+
+    Something that it awaited was cancelled, or it took the result of a cancelled future.
 
     Attributes:
         subject: Name of the callback.
@@ -372,8 +374,9 @@ class CallbackCancelledError(AionodeError, RuntimeError):
     def __init__(self, subject: str) -> None:
         self.subject = subject
         super().__init__(
-            f"{subject}: an awaitable inside it was cancelled (was its client or clock "
-            "destroyed?); catch asyncio.CancelledError in the callback if that is expected"
+            f"{subject}: it raised CancelledError, though nobody cancelled it: something inside it "
+            "was cancelled (was its client or clock destroyed?); catch asyncio.CancelledError in "
+            "the callback if that is expected"
         )
 
 

@@ -21,6 +21,7 @@ from collections import deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from aionode._concurrency import is_cancelled_task
 from aionode.errors import CallbackCancelledError, TransitionError
 from aionode.lifecycle._entities import SimpleManagedEntity
 from aionode.lifecycle.states import (
@@ -283,12 +284,6 @@ class TransitionRunner:
                 yield await reader.get()
         finally:
             self._readers.discard(reader)
-
-
-def is_cancelled_task() -> bool:
-    """Whether the running task is being cancelled."""
-    task = asyncio.current_task()
-    return task is not None and task.cancelling() > 0
 
 
 class EventQueue:

@@ -52,7 +52,7 @@ transports
 """
 TRANSPORT = """
 abandon all_known close create_node create_reader create_requester create_server create_writer
-link_status open
+link_status open send_rest
 """
 
 
@@ -68,7 +68,7 @@ def public_names(subject: object) -> list[str]:
         (LifecycleNode("node", context=local_context()), NODE + LIFECYCLE),
         (local_context(), CONTEXT),
         (Supervisor(lambda: Node("node")), "health node run"),
-        (ManualClock(), "advance call_at jump now steady_ns system_ns"),
+        (ManualClock(), "advance call_at jump now steady_ns system_ns through_suspend"),
         (FaultyTransport(LocalTransport()), TRANSPORT + "delay drop duplicate inner reorder"),
     ],
     ids=lambda value: "" if isinstance(value, str) else type(value).__name__,

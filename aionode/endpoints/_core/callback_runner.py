@@ -13,7 +13,7 @@ from collections.abc import Awaitable, Callable, Coroutine, Generator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
-from aionode._concurrency import SLICE_NS, checkpoint, run_in_thread
+from aionode._concurrency import SLICE_NS, checkpoint, is_cancelled_task, run_in_thread
 from aionode.clock import perf_ns
 from aionode.endpoints._core.node_tasks import create_own_task
 from aionode.errors import CallbackCancelledError, CallbackSignatureError, brief
@@ -150,7 +150,7 @@ class CallbackRunner:
             return self._finish(_Offloaded(self, args))
         try:
             outcome = self.callback(*args)
-        except Exception as error:  # noqa: BLE001  # the policy decides, see `fail`
+        except (Exception, asyncio.CancelledError) as error:  # noqa: BLE001  # the policy decides, see `fail`
             return self.conclude(waited_ns, perf_ns() - began_ns, None, error)
         took_ns = perf_ns() - began_ns
         if outcome is not None or took_ns > self.budget_ns:
@@ -178,11 +178,23 @@ class CallbackRunner:
             return self._finish(_Measured(self, outcome))
         stats._waited_ns.append(waited_ns)
         self._record_sync(took_ns)
-        if isinstance(error, Exception):
+        if isinstance(error, asyncio.CancelledError):
+            self.fail(self._cancelled(error))
+        elif isinstance(error, Exception):
             self.fail(error)
         elif error is not None:
             raise error
         return None
+
+    def _cancelled(self, cause: asyncio.CancelledError) -> CallbackCancelledError:
+        """Return the error of a callback that raised a cancellation which was not that of its task.
+
+        A sync callback always does: its task is only cancelled where it awaits. Left as it is, the
+        cancellation would end that task silently, and with it the entity.
+        """
+        error = CallbackCancelledError(self.subject)
+        error.__cause__ = cause
+        return error
 
     async def _finish(self, outcome: Any) -> None:
         try:
@@ -201,8 +213,10 @@ class CallbackRunner:
         began_ns = perf_ns()
         try:
             outcome = self.callback(*args)
-        except BaseException:
+        except BaseException as error:
             self._record_sync(perf_ns() - began_ns)
+            if isinstance(error, asyncio.CancelledError):
+                raise self._cancelled(error) from error
             raise
         if outcome is not None and isinstance(outcome, Awaitable):
             return _Measured(self, outcome)
@@ -221,12 +235,9 @@ class CallbackRunner:
         try:
             return await entered
         except asyncio.CancelledError as error:
-            task = asyncio.current_task()
-            if task is not None and task.cancelling():
+            if is_cancelled_task():
                 raise
-            # This task was not cancelled: without an error it would end silently, and with it
-            # its entity.
-            raise CallbackCancelledError(self.subject) from error
+            raise self._cancelled(error) from error
 
     async def call(self, *args: Any) -> Any:
         """Run the callback and return its result; see `enter` and `outcome` for the errors."""
@@ -247,7 +258,10 @@ class CallbackRunner:
             self._callbacks.logger.error(f"{self.subject} failed:\n{trace}")
         else:
             context = CallbackContext(self._callbacks.node, self.subject, self._entity)
-            self._on_error(error, context)
+            try:
+                self._on_error(error, context)
+            except asyncio.CancelledError as cause:
+                raise self._cancelled(cause) from cause
 
     def _record_sync(self, took_ns: int) -> None:
         self.stats._record_took(took_ns)
@@ -375,11 +389,22 @@ class _Offloaded:
         began_ns = perf_ns()
         waiting.add(self)
         try:
-            return await run_in_thread(self._runner.callback, *self._args)
+            return await run_in_thread(self._call)
         finally:
             waiting.discard(self)
             stats.run_time.record(perf_ns() - began_ns)
             stats.blocking.record(0)
+
+    def _call(self) -> Any:
+        """Call the callback, in the thread.
+
+        A future takes no StopIteration (before Python 3.13 the wait for it would never end), so it
+        becomes a RuntimeError, as Python has it for coroutines.
+        """
+        try:
+            return self._runner.callback(*self._args)
+        except StopIteration as error:
+            raise RuntimeError(f"{self._runner.subject} raised StopIteration") from error
 
 
 def is_unfinished(entered: object) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from asyncio import CancelledError
 from typing import TYPE_CHECKING, Any, Protocol, TypedDict
 
 from aionode.clock import perf_ns
@@ -196,7 +197,7 @@ class SubscriptionReader(MessageQueue[Any]):
             stats.received += 1
             try:
                 outcome = callback(msg)
-            except Exception as error:  # noqa: BLE001  # the policy decides, see `fail`
+            except (Exception, CancelledError) as error:  # noqa: BLE001  # the policy decides, see `fail`
                 return runner.conclude(began_ns - entered_ns, perf_ns() - began_ns, None, error)
             ended_ns = perf_ns()
             took_ns = ended_ns - began_ns

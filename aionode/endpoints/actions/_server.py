@@ -9,6 +9,7 @@ from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
+from aionode._concurrency import is_cancelled_task
 from aionode.clock import perf_ns
 from aionode.endpoints._core.callback_runner import accepts, checked_concurrency, consume
 from aionode.endpoints._core.loop_affinity import in_thread_of_node
@@ -356,8 +357,9 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
                 goal.execute()
             else:
                 await awaited(callback(goal))
-        except Exception as error:
-            goal._failed(error)  # otherwise its client would wait for ever
+        except (Exception, asyncio.CancelledError) as error:
+            if not is_cancelled_task():
+                goal._failed(error)  # otherwise its client would wait for ever
             raise
 
     # Execution

@@ -220,7 +220,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
             )
         self._set_result(checked)
 
-    def _failed(self, error: Exception) -> None:
+    def _failed(self, error: BaseException) -> None:
         """Take an exception of the callback: the goal is aborted, unless it has already ended."""
         if self.is_active:
             self._error_text = f"{type(error).__name__}: {error}"
