@@ -52,6 +52,7 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
     ├── QueueFullError (RuntimeError)
     ├── ServiceError (RuntimeError)
     │   └── ServiceUnavailableError (TimeoutError)
+    ├── RequestRefusedError (ValueError)
     ├── RequestTimeoutError (TimeoutError)
     ├── TimeSourceChangedError (RuntimeError)
     ├── TransitionError (RuntimeError)
@@ -137,6 +138,7 @@ __all__ = [
     "ParameterNotDeclaredException",
     "ParameterUninitializedException",
     "QueueFullError",
+    "RequestRefusedError",
     "RequestTimeoutError",
     "ServiceError",
     "ServiceUnavailableError",
@@ -241,6 +243,10 @@ class ServiceUnavailableError(ServiceError, TimeoutError):
             service,
             "the server went away before it replied; await wait_for_service() and call again",
         )
+
+
+class RequestRefusedError(AionodeError, ValueError):
+    """A request to a service that every node offers is beyond the limits of that service."""
 
 
 class RequestTimeoutError(AionodeError, TimeoutError):

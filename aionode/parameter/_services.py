@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from collections.abc import Callable, Sequence, Sized
+from typing import Any, Final, NamedTuple
 
-from aionode.errors import ParameterNotDeclaredException, ParameterUninitializedException
+from aionode.errors import (
+    ParameterNotDeclaredException,
+    ParameterUninitializedException,
+    RequestRefusedError,
+)
 from aionode.interfaces.rcl_interfaces import srv
 from aionode.interfaces.rcl_interfaces.msg import Parameter as ParameterMsg
 from aionode.interfaces.rcl_interfaces.msg import SetParametersResult
@@ -13,6 +17,12 @@ from aionode.parameter._store import ParameterStore
 from aionode.parameter._value import Parameter
 
 __all__ = ["ParameterService", "parameter_services"]
+
+MOST_NAMES: Final = 10_000
+"""How many names or values one request may have; `ros2 param dump` asks for all of a node."""
+
+LARGEST_ANSWER: Final = 2**24
+"""How many bytes the values in one answer may have: a name may be asked for again and again."""
 
 
 class ParameterService(NamedTuple):
@@ -49,6 +59,8 @@ class Answers:
 
     If one of several names is undeclared, reading answers with an empty list: there is no other
     way in these services to say so.
+
+    Each of them raises `RequestRefusedError` for a request or an answer beyond the limits above.
     """
 
     def __init__(self, store: ParameterStore) -> None:
@@ -58,6 +70,7 @@ class Answers:
         self, request: srv.DescribeParameters.Request, response: srv.DescribeParameters.Response
     ) -> srv.DescribeParameters.Response:
         """Answer describe_parameters."""
+        refuse_many(request.names)
         try:
             response.descriptors = self.store.describe_parameters(request.names)
         except ParameterNotDeclaredException:
@@ -68,10 +81,17 @@ class Answers:
         self, request: srv.GetParameters.Request, response: srv.GetParameters.Response
     ) -> srv.GetParameters.Response:
         """Answer get_parameters."""
+        refuse_many(request.names)
         try:
             parameters = self.store.get_parameters(request.names)
         except (ParameterNotDeclaredException, ParameterUninitializedException):
             parameters = []
+        size_bytes = sum(size_of(parameter.value) for parameter in parameters)
+        if size_bytes > LARGEST_ANSWER:
+            raise RequestRefusedError(
+                f"the values have {size_bytes} bytes, at most {LARGEST_ANSWER} fit into an answer; "
+                "ask for fewer parameters at once"
+            )
         response.values = [parameter.get_parameter_value() for parameter in parameters]
         return response
 
@@ -79,6 +99,7 @@ class Answers:
         self, request: srv.GetParameterTypes.Request, response: srv.GetParameterTypes.Response
     ) -> srv.GetParameterTypes.Response:
         """Answer get_parameter_types."""
+        refuse_many(request.names)
         try:
             response.types = bytes(self.store.get_parameter_types(request.names))
         except ParameterNotDeclaredException:
@@ -89,6 +110,7 @@ class Answers:
         self, request: srv.ListParameters.Request, response: srv.ListParameters.Response
     ) -> srv.ListParameters.Response:
         """Answer list_parameters."""
+        refuse_many(request.prefixes)
         response.result = self.store.list_parameters(request.prefixes, request.depth)
         return response
 
@@ -96,6 +118,7 @@ class Answers:
         self, request: srv.SetParameters.Request, response: srv.SetParameters.Response
     ) -> srv.SetParameters.Response:
         """Answer set_parameters: one by one, in order."""
+        refuse_many(request.parameters)
         response.results = [self._set([each]) for each in request.parameters]
         return response
 
@@ -105,6 +128,7 @@ class Answers:
         response: srv.SetParametersAtomically.Response,
     ) -> srv.SetParametersAtomically.Response:
         """Answer set_parameters_atomically: all or none."""
+        refuse_many(request.parameters)
         response.result = self._set(request.parameters)
         return response
 
@@ -117,3 +141,25 @@ class Answers:
             return self.store.set_parameters_atomically(parameters)
         except ParameterNotDeclaredException as error:
             return SetParametersResult(successful=False, reason=str(error))
+
+
+def refuse_many(items: Sequence[object]) -> None:
+    """Refuse a request with more items than any tool sends.
+
+    Raises:
+        RequestRefusedError: there are more than `MOST_NAMES`.
+    """
+    if len(items) > MOST_NAMES:
+        raise RequestRefusedError(
+            f"the request has {len(items)} names, at most {MOST_NAMES} fit; ask in several requests"
+        )
+
+
+def size_of(value: object) -> int:
+    """Return about how many bytes the value of a parameter takes in an answer."""
+    if isinstance(value, str | bytes):
+        return len(value)
+    if isinstance(value, Sized):
+        strings = isinstance(value, list) and value and isinstance(value[0], str)
+        return sum(map(len, value)) if strings else 8 * len(value)  # type: ignore[call-overload]  # a list of strings
+    return 8

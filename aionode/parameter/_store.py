@@ -299,8 +299,9 @@ class ParameterStore(ParameterCallbacks):
             message = f"The depth must be greater than or equal to zero, not {depth}"
             raise ValueError(message)
         result = ListParametersResult(names=[], prefixes=[])
+        wanted = frozenset(prefixes)
         for name in self._parameters:
-            if is_listed(name, prefixes, depth):
+            if is_listed(name, wanted, depth):
                 result.names.append(name)
                 group = name.rpartition(PARAMETER_SEPARATOR_STRING)[0]
                 if group and group not in result.prefixes:
@@ -474,18 +475,21 @@ def expect_names(names: Iterable[str]) -> list[str]:
     return result
 
 
-def is_listed(name: str, prefixes: list[str], depth: int) -> bool:
-    """Return whether `list_parameters` includes a name."""
+def is_listed(name: str, prefixes: frozenset[str], depth: int) -> bool:
+    """Return whether `list_parameters` includes a name.
+
+    The groups of the name are looked up among the prefixes, of which another node may send many.
+    """
     if not prefixes:
         return is_shallow(name, depth)
-    return any(
-        name == prefix
-        or (
-            name.startswith(prefix + PARAMETER_SEPARATOR_STRING)
-            and is_shallow(name[len(prefix) + 1 :], depth)
-        )
-        for prefix in prefixes
-    )
+    if name in prefixes:
+        return True
+    at = name.find(PARAMETER_SEPARATOR_STRING)
+    while at >= 0:
+        if name[:at] in prefixes and is_shallow(name[at + 1 :], depth):
+            return True
+        at = name.find(PARAMETER_SEPARATOR_STRING, at + 1)
+    return False
 
 
 def is_shallow(name: str, depth: int) -> bool:

@@ -24,6 +24,7 @@ from aionode.errors import (
     ParameterImmutableException,
     ParameterNotDeclaredException,
     ParameterUninitializedException,
+    RequestRefusedError,
 )
 from aionode.interfaces.rcl_interfaces import msg, srv
 from aionode.interfaces.rcl_interfaces.msg import (
@@ -792,6 +793,55 @@ def test_there_are_six_services_with_rcls_names() -> None:
         "set_parameters": srv.SetParameters,
         "set_parameters_atomically": srv.SetParametersAtomically,
     }
+
+
+@pytest.mark.parametrize(
+    ("name", "request_"),
+    [
+        ("describe_parameters", srv.DescribeParameters.Request(names=["a"] * 10_001)),
+        ("get_parameters", srv.GetParameters.Request(names=["a"] * 10_001)),
+        ("get_parameter_types", srv.GetParameterTypes.Request(names=["a"] * 10_001)),
+        ("list_parameters", srv.ListParameters.Request(prefixes=["a"] * 10_001)),
+        ("set_parameters", srv.SetParameters.Request(parameters=[msg.Parameter()] * 10_001)),
+        (
+            "set_parameters_atomically",
+            srv.SetParametersAtomically.Request(parameters=[msg.Parameter()] * 10_001),
+        ),
+    ],
+)
+def test_a_request_with_more_names_than_any_node_has_is_refused(name: str, request_: Any) -> None:
+    """Forty thousand times one name are a small request, and took 2.3 GB to answer."""
+    parameters = store()
+    parameters.declare_parameter("a", "x")
+
+    with pytest.raises(RequestRefusedError, match="has 10001 names, at most 10000 fit"):
+        call(parameters, name, request_)
+
+
+@pytest.mark.parametrize("value", ["x" * 100_000, ["x" * 100] * 1000, [0.0] * 12_500])
+def test_an_answer_of_many_megabytes_is_refused(value: Any) -> None:
+    """One name may be asked for again and again, and a value may be long."""
+    parameters = store()
+    parameters.declare_parameter("a", value)
+    some, many = (srv.GetParameters.Request(names=["a"] * count) for count in (160, 170))
+
+    assert len(call(parameters, "get_parameters", some).values) == 160
+    with pytest.raises(RequestRefusedError, match="at most 16777216 fit into an answer"):
+        call(parameters, "get_parameters", many)
+
+
+def test_many_prefixes_are_looked_up_and_not_gone_through() -> None:
+    """Ten thousand prefixes and a thousand names would stop the loop for seconds."""
+    parameters = store()
+    for number in range(1000):
+        parameters.declare_parameter(f"group{number}.inner.value", number)
+    request = srv.ListParameters.Request(
+        prefixes=[*(f"other{number}" for number in range(9_998)), "group7", "group8.inner"], depth=2
+    )
+
+    result = call(parameters, "list_parameters", request).result
+
+    assert result.names == ["group7.inner.value", "group8.inner.value"]
 
 
 def test_services_read_declared_parameters() -> None:

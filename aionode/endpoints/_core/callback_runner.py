@@ -16,7 +16,12 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 from aionode._concurrency import SLICE_NS, checkpoint, is_cancelled_task, run_in_thread
 from aionode.clock import perf_ns
 from aionode.endpoints._core.node_tasks import create_own_task
-from aionode.errors import CallbackCancelledError, CallbackSignatureError, brief
+from aionode.errors import (
+    CallbackCancelledError,
+    CallbackSignatureError,
+    RequestRefusedError,
+    brief,
+)
 
 if TYPE_CHECKING:
     from aionode.endpoints._core.entity import Entity
@@ -37,6 +42,9 @@ __all__ = [
 
 T = TypeVar("T")
 
+
+REFUSED_SEC = 1.0
+"""The shortest time between two reports of requests beyond the limits of a service."""
 
 REPORT_INTERVAL_NS = 1_000_000_000
 """The shortest time between two reports of slow callbacks of one entity."""
@@ -253,7 +261,12 @@ class CallbackRunner:
         if self._on_error == "raise":
             error.add_note(f"in {self.subject} of node {self._callbacks.node}")
             raise error
-        if self._on_error == "log":
+        if self._on_error == "log" and isinstance(error, RequestRefusedError):
+            # Whoever sends such requests must not fill the log of this node.
+            self._callbacks.logger.warning(
+                f"{self.subject} refused a request: {error}", throttle_duration_sec=REFUSED_SEC
+            )
+        elif self._on_error == "log":
             trace = "".join(traceback.format_exception(error))
             self._callbacks.logger.error(f"{self.subject} failed:\n{trace}")
         else:
