@@ -5,9 +5,9 @@ What holds, whatever happens in whichever order:
 1. `on_silence` is called once for each silence: after a message was handed to the callback, when
    nothing has arrived for `silence_sec`, or when nobody is left who has published.
 2. When it is called, no callback of the subscription runs any more, and nothing is queued.
-3. A message that was published before the silence was noticed is never handed to the callback
-   after that. It may come late for any reason: it waited in a queue or a socket, here or there, or
-   is sent again.
+3. A message that was published before `on_silence` is called is never handed to the callback after
+   that. It may come late for any reason: it waited in a queue or a socket, here or there, or is
+   sent again.
 4. Nothing that was queued is handed to the callback while `on_silence` is due. So the time is
    compared whenever a message arrives or is taken from the queue, not only when the alarm rings:
    an event loop that stood still finds queue, socket and alarm in any order.
@@ -147,9 +147,9 @@ class SilenceWatch:
         self._newest = b""
         self._newest_ns = 0
         self._heard: dict[bytes, int] = {}
-        # When a silence was noticed last, and whether `on_silence` is due.
-        self._fired_ns: int | None = None
+        # Whether a silence was noticed, and when `on_silence` was called last.
         self._due = False
+        self._called_ns: int | None = None
         # Callbacks that were started and have not ended.
         self._running: set[asyncio.Task[None]] = set()
         self._timers: set[asyncio.TimerHandle] = set()  # of `_later`, until they have run
@@ -208,7 +208,7 @@ class SilenceWatch:
                 arrived_ns = published_ns
             else:
                 self._fire()
-        if self._fired_ns is not None and published_ns < self._fired_ns:
+        if self._due or (self._called_ns is not None and published_ns < self._called_ns):
             self._reader.stats.dropped += 1
             return False
         self._hear(gid, arrived_ns)
@@ -243,7 +243,6 @@ class SilenceWatch:
 
     def _fire(self) -> None:
         """Drop and cancel what may still drive, and have `on_silence` called next."""
-        self._fired_ns = self._steady_ns()
         self._forget()
         self._due = True
         self._reader.discard()
@@ -398,6 +397,7 @@ class SilenceWatch:
         """Call it once no callback runs."""
         if self._running:
             await asyncio.wait(self._running)
+        self._called_ns = self._steady_ns()
         self._due = False
         rest = self._on_silence.run()
         if rest is not None:

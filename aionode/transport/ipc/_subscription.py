@@ -524,7 +524,7 @@ class IpcReader(ReaderRegistration):
         """Take a message that came over Zenoh."""
         remote_publisher = self.remote_publishers.get(gid)
         if remote_publisher is None:
-            self.deliver_local(msg, gid, sequence, source_ns, inline_deadline_ns)
+            self.deliver_local(msg, gid, sequence, source_ns, inline_deadline_ns, arrived_ns)
         else:
             message = Message(msg, sequence, source_ns, arrived_ns)
             remote_publisher.from_zenoh(message, inline_deadline_ns)

@@ -106,6 +106,8 @@ class Watcher:
         self._opening = True
         self._subscriber: zenoh.Subscriber[None] | None = None
         self._queue = state.queue(self._take)
+        self._changes = state.queue(self._take_change)
+        self._listener: zenoh.TransportEventsListener[None] | None = None
 
     def start(self, session: zenoh.Session) -> None:
         """Subscribe to the tokens; existing ones arrive at once."""
@@ -114,13 +116,20 @@ class Watcher:
             self._subscriber = session.liveliness().declare_subscriber(
                 f"{PREFIX}/**", direct(self._queue.put), history=True
             )
+            self._listener = session.info.declare_transport_events_listener(
+                direct(self._changes.put)
+            )
 
     def stop(self) -> None:
         """Unsubscribe, and forget all tokens."""
         if self._subscriber is not None:
             self._subscriber.undeclare()
             self._subscriber = None
+        if self._listener is not None:
+            self._listener.undeclare()
+            self._listener = None
         self._queue.clear()
+        self._changes.clear()
         self._check = None
         self._missing = set()
         self._known.clear()
@@ -193,6 +202,13 @@ class Watcher:
             self.newest_ns = perf_ns()
             if not item.answered.done():
                 item.answered.set_result(item.complete)
+
+    def _take_change(self, event: zenoh.TransportEvent) -> None:
+        """Note the loss of a router: the tokens of everyone behind it go as well."""
+        lost = event.kind == zenoh.SampleKind.DELETE
+        graph = self._state.graph
+        if lost and event.transport.whatami == zenoh.WhatAmI.ROUTER and graph is not None:
+            graph.router_lost_ns = perf_ns()
 
     def _end_check(self, check: Check) -> None:
         if check is not self._check:

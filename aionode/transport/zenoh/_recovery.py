@@ -29,7 +29,6 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import zenoh
 
-from aionode.clock import perf_ns
 from aionode.errors import ConfigurationError
 from aionode.transport._send_thread import start_thread
 from aionode.transport._zenoh_config import introducers, look_settings
@@ -184,8 +183,6 @@ class Recovery:
         now_s = self._changed_s = asyncio.get_running_loop().time()
         zid = str(event.transport.zid)
         if event.kind == zenoh.SampleKind.DELETE:
-            if event.transport.whatami == zenoh.WhatAmI.ROUTER and self._state.graph is not None:
-                self._state.graph.router_lost_ns = perf_ns()
             if now_s >= self._until_s:
                 self._lost.clear()  # the looks for those have ended
             self._until_s = now_s + WATCH_S

@@ -195,12 +195,12 @@ class ZenohReader(Declaration, ReaderRegistration):
                     return  # its publisher has sent it again
                 self._note_last(gid, sequence)
             if self._keep_all:
-                self._accept_or_wait(payload, SampleInfo(gid, sequence, source_ns), None)
+                self._accept_or_wait(payload, self._held(gid, sequence, source_ns), None)
                 return
         elif sequence == proxy.expected and (not self._keep_all or self._has_room()):
             proxy.note_in_order(len(payload))
         else:
-            self._take_in_order(proxy, payload, SampleInfo(gid, sequence, source_ns))
+            self._take_in_order(proxy, payload, self._held(gid, sequence, source_ns))
             return
         # As `_hand_over`, which would be one more call for each message.
         decode = self._decode
@@ -218,6 +218,10 @@ class ZenohReader(Declaration, ReaderRegistration):
         if extra is not None:
             self.state.note_malformed(self._key, "an attachment")
         return 0, 0, UNKNOWN_GID
+
+    def _held(self, gid: bytes, sequence: int, source_ns: int) -> SampleInfo:
+        """Return what is known of a message that may wait here, with the time of its arrival."""
+        return SampleInfo(gid, sequence, source_ns, self.state.time_base.system_ns())
 
     def _note_last(self, gid: bytes, sequence: int) -> None:
         """Record the last message of a publisher without a proxy."""
@@ -301,6 +305,7 @@ class ZenohReader(Declaration, ReaderRegistration):
                 sample_info.sequence,
                 sample_info.source_ns,
                 self._waker.inline_deadline_ns,
+                sample_info.arrived_ns,
             )
 
     def _reject(self, error: DecodeError) -> None:
@@ -328,7 +333,7 @@ class ZenohReader(Declaration, ReaderRegistration):
         elif submessage.kind is SubmessageKind.GAP:
             proxy.gap(submessage.first, submessage.last)
         else:
-            sample_info = SampleInfo(submessage.writer, submessage.first, submessage.last)
+            sample_info = self._held(submessage.writer, submessage.first, submessage.last)
             self._take_in_order(proxy, submessage.rest, sample_info)
             return
         if proxy.next <= proxy.last:
