@@ -27,6 +27,7 @@ from aionode.lifecycle._entities import (
 )
 from aionode.lifecycle._manager import LifecycleManager
 from aionode.lifecycle._node import LifecycleNode
+from aionode.lifecycle._node_watch import ManagedNodeEvent
 from aionode.lifecycle._runner import LifecycleEvent
 from aionode.lifecycle.states import State, TransitionCallbackReturn
 
@@ -39,6 +40,7 @@ __all__ = [
     "LifecycleState",
     "LifecycleTimer",
     "ManagedEntity",
+    "ManagedNodeEvent",
     "Node",
     "Publisher",
     "SimpleManagedEntity",

@@ -226,6 +226,25 @@ class LifecycleTimer(SimpleManagedEntity):
         super().__init__()
         self.timer = timer
 
+    def reset(self) -> None:
+        """Make the next call one period from now, even if the timer was canceled.
+
+        While the node is not active this has no effect: the activation starts the timer.
+
+        Raises:
+            EntityDestroyedError: the timer or its node was destroyed (a RuntimeError).
+        """
+        if self.is_activated:
+            self.timer.reset()
+
+    def cancel(self) -> None:
+        """Make no more calls until `reset`, or the next activation."""
+        self.timer.cancel()
+
+    def is_canceled(self) -> bool:
+        """Return whether the timer makes no calls, as it was canceled or the node is not active."""
+        return self.timer.is_canceled()
+
     def on_activate(self, state: State) -> TransitionCallbackReturn:
         """Start the timer."""
         self.timer.reset()

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import TYPE_CHECKING, Self
 
-from aionode.errors import TransitionError
+from aionode.errors import AionodeError, TransitionError
 from aionode.interfaces.lifecycle_msgs.msg import Transition
 from aionode.interfaces.lifecycle_msgs.srv import ChangeState, GetState
+from aionode.lifecycle._events import EventSource
+from aionode.lifecycle._node_watch import LEVELS, ManagedNodeEvent, NodeWatch
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import AsyncIterator, Sequence
     from types import TracebackType
 
     from aionode.endpoints.client import Client
@@ -17,11 +20,20 @@ if TYPE_CHECKING:
 
 __all__ = ["LifecycleManager"]
 
-DOWN = {
-    "active": ("deactivate", "cleanup"),
-    "inactive": ("cleanup",),
+UPWARD = ("configure", "activate")
+"""The transitions from each of `LEVELS` to the next."""
+
+DOWNWARD = ("cleanup", "deactivate")
+"""The transitions that undo them."""
+
+GOALS = {
+    "configure": "inactive",
+    "activate": "active",
+    "deactivate": "inactive",
+    "cleanup": "unconfigured",
+    "shutdown": "finalized",
 }
-"""The transitions that lead from a state back to unconfigured."""
+"""The state that each transition leads to."""
 
 
 class LifecycleManager:
@@ -32,24 +44,52 @@ class LifecycleManager:
         async with LifecycleManager(node, ["/camera", "/planner"]):
             ...  # both are active; at the end /planner goes down first, then /camera
 
+    Within ``async with`` it watches the nodes. The log and `events` tell of a node that has gone or
+    cannot be reached any more, and of one that is back: a `Supervisor` or a launch file starts it
+    again, and it is unconfigured then. With `restore` it is brought to the state that it had.
+
     Args:
         node: The node whose clients call the managed ones; it must be running.
         node_names: Full names of the managed nodes, in the order in which they are brought up.
         timeout_sec: How long a node may take to appear, and to answer each request, in seconds.
+        restore: Whether a node that is back is brought to the state that it had. It may begin to
+            move then without anybody's request, so the default is to leave it as it is. The nodes
+            that use it keep their states.
     """
 
-    def __init__(self, node: Node, node_names: Sequence[str], *, timeout_sec: float = 10.0) -> None:
+    def __init__(
+        self,
+        node: Node,
+        node_names: Sequence[str],
+        *,
+        timeout_sec: float = 10.0,
+        restore: bool = False,
+    ) -> None:
         self.node_names = list(node_names)
+        self._node = node
         self._timeout_s = timeout_sec
+        self._restores = restore
         self._changes: dict[str, Client[ChangeState.Request, ChangeState.Response]] = {}
         self._states: dict[str, Client[GetState.Request, GetState.Response]] = {}
         for name in self.node_names:
             self._changes[name] = node.create_client(ChangeState, f"{name}/change_state")
             self._states[name] = node.create_client(GetState, f"{name}/get_state")
+        self._last_states: dict[str, str] = {}  # what is known, without asking
+        self._events: EventSource[ManagedNodeEvent] = EventSource()
+        self._tasks: asyncio.TaskGroup | None = None
+        self._watch: NodeWatch | None = None
+        self._watching: asyncio.Task[None] | None = None
 
     async def __aenter__(self) -> Self:
-        """Bring the nodes up; see `startup`."""
+        """Bring the nodes up, as `startup` does, and watch them."""
         await self.startup()
+        if self._watch is not None:  # it was entered before
+            self._events = EventSource()
+        services = {name: client.srv_name for name, client in self._changes.items()}
+        self._watch = NodeWatch(self._node, services, self._last_states, self._tell)
+        self._tasks = await asyncio.TaskGroup().__aenter__()
+        work = self._welcome_all(self._watch)
+        self._watching = self._tasks.create_task(work, name="lifecycle manager")
         return self
 
     async def __aexit__(
@@ -58,14 +98,25 @@ class LifecycleManager:
         exc: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        """Bring them down; see `reset`."""
-        await self.reset()
+        """Bring the nodes down; see `reset`. The log names those that are gone."""
+        assert self._watch is not None  # noqa: S101  # set by __aenter__
+        assert self._tasks is not None  # noqa: S101  # as above
+        assert self._watching is not None  # noqa: S101  # as above
+        self._watch.close()
+        # A transition that is under way ends first: a node that is configuring cannot go down.
+        await asyncio.wait([self._watching], timeout=self._timeout_s)
+        self._watching.cancel()
+        await self._tasks.__aexit__(None, None, None)
+        try:
+            await self.reset()
+        finally:
+            self._events.end()
 
     async def startup(self) -> None:
         """Configure the nodes in order, then activate them in order.
 
         If one fails, or this is cancelled, the nodes already configured are brought down again, the
-        last one first.
+        last one first; the log names those that could not be.
 
         Raises:
             TransitionError: a node refused, failed, or did not appear.
@@ -76,18 +127,22 @@ class LifecycleManager:
                 for name in self.node_names:
                     await self.change_state(name, label)
         except BaseException:
-            await self._down(self.node_names, strict=False)
+            for error in await self._down():
+                self._node.get_logger().error(f"lifecycle manager: {error}")
             raise
 
     async def reset(self) -> None:
         """Bring the nodes down to unconfigured, the last one first, whatever states they are in.
 
-        Every node is brought down, even if another one fails.
+        Every node is brought down, even if another one fails. The log names the nodes that were
+        configured or active when they were last seen, and are gone.
 
         Raises:
             ExceptionGroup: the failures of the nodes.
         """
-        await self._down(self.node_names, strict=True)
+        errors = await self._down()
+        if errors:
+            raise ExceptionGroup("managed nodes could not be brought down", errors)
 
     async def shutdown(self) -> None:
         """Finalize the nodes, the last one first.
@@ -117,6 +172,7 @@ class LifecycleManager:
         if not response.success:
             state = await self.get_state(node_name)
             raise TransitionError(node_name, label, state, "it refused or failed; see its log")
+        self._last_states[node_name] = GOALS.get(label, "unknown")
 
     async def get_state(self, node_name: str) -> str:
         """Return the label of a node's state.
@@ -127,17 +183,88 @@ class LifecycleManager:
         response = await self._states[node_name].call(
             GetState.Request(), timeout_sec=self._timeout_s
         )
-        return response.current_state.label
+        state: str = response.current_state.label
+        if state in (*LEVELS, "finalized"):
+            self._last_states[node_name] = state
+        return state
 
-    async def _down(self, names: Iterable[str], *, strict: bool) -> None:
+    async def events(self) -> AsyncIterator[ManagedNodeEvent]:
+        """Iterate over what becomes of the nodes, from the first step of the iteration on.
+
+        It ends when ``async with`` is left. The newest hundred events are kept for a slow reader.
+        """
+        async for event in self._events.iterate():
+            yield event
+
+    async def _down(self) -> list[Exception]:
+        """Bring all nodes down that are there; return the failures."""
         errors: list[Exception] = []
-        for name in reversed(list(names)):
-            if not self._states[name].service_is_ready():
-                continue  # it is gone, or never appeared
+        for name in reversed(self.node_names):
+            last_state = self._last_states.get(name, "")
             try:
-                for label in DOWN.get(await self.get_state(name), ()):
-                    await self.change_state(name, label)
-            except (TransitionError, TimeoutError) as error:
+                if self._states[name].service_is_ready():
+                    await self._lead(name, "unconfigured")
+                elif last_state in LEVELS[1:]:
+                    self._node.get_logger().warning(
+                        f"lifecycle manager: {name} was {last_state} when it was last seen, and "
+                        "has gone or cannot be reached: it could not be brought down; check that "
+                        "it has stopped"
+                    )
+            except (AionodeError, TimeoutError) as error:
                 errors.append(error)
-        if errors and strict:
-            raise ExceptionGroup("managed nodes could not be brought down", errors)
+        return errors
+
+    async def _lead(self, name: str, goal: str) -> None:
+        """Have a node make the transitions from its state to `goal`, one of `LEVELS`.
+
+        Raises:
+            TransitionError: it refused or failed, or its state leads nowhere.
+            RequestTimeoutError: it did not answer in time.
+        """
+        state = await self.get_state(name)
+        if state == "finalized" and goal == "unconfigured":
+            return
+        if state not in LEVELS:
+            raise TransitionError(name, f"become {goal}", state, "no transition leads there")
+        start, end = LEVELS.index(state), LEVELS.index(goal)
+        for label in UPWARD[start:end] or reversed(DOWNWARD[end:start]):
+            await self.change_state(name, label)
+
+    # Nodes that go and return
+
+    def _tell(self, event: ManagedNodeEvent) -> None:
+        """Write an event to the log, and hand it to the readers."""
+        if event.kind in ("lost", "failed"):
+            self._node.get_logger().error(f"lifecycle manager: {event}")
+        else:
+            self._node.get_logger().info(f"lifecycle manager: {event}")
+        self._events.emit(event)
+
+    async def _welcome_all(self, watch: NodeWatch) -> None:
+        """Look at each node that is back, until the watch is closed or the manager's node ends."""
+        while (name := await watch.next_return()) is not None:
+            try:
+                await self._welcome(name, watch)
+            except (AionodeError, TimeoutError) as error:
+                if self._node.destroyed:
+                    return
+                state = self._last_states.get(name, "unknown")
+                self._tell(ManagedNodeEvent(name, "failed", state, watch.state_before(name), error))
+
+    async def _welcome(self, name: str, watch: NodeWatch) -> None:
+        """Tell of a node that is back, and restore its state if that is wanted.
+
+        Raises:
+            TransitionError: it refused or failed, or went again.
+            RequestTimeoutError: it did not answer in time.
+        """
+        if not await self._states[name].wait_for_service(self._timeout_s):
+            raise TransitionError(name, "be asked for its state", "unknown", "it has gone again")
+        state = await self.get_state(name)
+        before = watch.state_before(name)
+        if watch.was_lost(name) or state != before:
+            self._tell(ManagedNodeEvent(name, "returned", state, before))
+        if self._restores and state != before and before in LEVELS:
+            await self._lead(name, before)
+            self._tell(ManagedNodeEvent(name, "restored", before, before))
+        watch.settle(name)

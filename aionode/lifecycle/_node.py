@@ -16,6 +16,7 @@ from aionode.interfaces.lifecycle_msgs.srv import (
     GetState,
 )
 from aionode.lifecycle._entities import Gate, LifecyclePublisher, LifecycleTimer, ManagedEntity
+from aionode.lifecycle._events import EventSource
 from aionode.lifecycle._runner import SUCCESS, TransitionRunner
 from aionode.lifecycle.states import (
     ERROR_PROCESSING,
@@ -79,6 +80,7 @@ class LifecycleNode(Node):
     def __init__(
         self, node_name: str, *, enable_communication_interface: bool = True, **options: Any
     ) -> None:
+        self._events: EventSource[LifecycleEvent] = EventSource()
         super().__init__(node_name, **options)
         for verb in ("configure", "cleanup", "activate", "deactivate", "shutdown"):
             self._accepts(f"on_{verb}", 1, wanted="(state)")
@@ -93,6 +95,7 @@ class LifecycleNode(Node):
             self.get_logger(),
             self._callback_of,
             self._publish_event,
+            self._events,
         )
         if enable_communication_interface:
             self._serve()
@@ -174,9 +177,14 @@ class LifecycleNode(Node):
     def lifecycle_events(self) -> AsyncIterator[LifecycleEvent]:
         """Iterate over state changes and progress reports; a slow reader gets the newest 100.
 
-        Events are collected from the first step of the iteration.
+        Events are collected from the first step of the iteration, which ends with the node.
         """
-        return self._transitions.events()
+        return self._events.iterate()
+
+    def _leave(self) -> None:
+        """End the iterations over events as well."""
+        super()._leave()
+        self._events.end()
 
     async def trigger_configure(self) -> TransitionCallbackReturn:
         """Configure the node, and return the result of `on_configure`.

@@ -17,7 +17,6 @@ from __future__ import annotations
 import asyncio
 import inspect
 import traceback
-from collections import deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -32,9 +31,10 @@ from aionode.lifecycle.states import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Callable
+    from collections.abc import Callable
 
     from aionode.lifecycle._entities import ManagedEntity
+    from aionode.lifecycle._events import EventSource
     from aionode.lifecycle.states import State, Transition
     from aionode.logging import RcutilsLogger
 
@@ -43,9 +43,6 @@ __all__ = ["LifecycleEvent", "TransitionRunner"]
 SUCCESS = TransitionCallbackReturn.SUCCESS
 FAILURE = TransitionCallbackReturn.FAILURE
 ERROR = TransitionCallbackReturn.ERROR
-
-KEPT_EVENTS = 100
-"""How many events are kept for a slow reader; after that the oldest are dropped."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +75,7 @@ class TransitionRunner:
         callback: Returns the callback for the label of a transition, or for ``"error"``. That takes
             the state and the exception, and may return an awaitable.
         publish: Called with the old and the new state at each change.
+        events: Where state changes and progress go.
 
     Attributes:
         machine: The current state.
@@ -90,6 +88,7 @@ class TransitionRunner:
         logger: RcutilsLogger,
         callback: Callable[[str], Callable[[State, Exception | None], Any]],
         publish: Callable[[State, State], None],
+        events: EventSource[LifecycleEvent],
     ) -> None:
         self.machine = StateMachine()
         self.entities: list[ManagedEntity] = []
@@ -104,7 +103,7 @@ class TransitionRunner:
         self._shutdowns_waiting = 0
         self._idle = asyncio.Event()  # set while no transition is in progress
         self._idle.set()
-        self._readers: set[EventQueue] = set()
+        self._events = events
 
     # Transitions
 
@@ -264,43 +263,9 @@ class TransitionRunner:
         move()
         state = self.machine.state
         self._publish(start, state)
-        self._emit(LifecycleEvent(state, start, self._label, error=self._error))
+        self._events.emit(LifecycleEvent(state, start, self._label, error=self._error))
 
     def report(self, progress: str, fraction: float | None) -> None:
         """Report the progress of a transition to readers of events."""
         state = self.machine.state
-        self._emit(LifecycleEvent(state, state, self._label, progress, fraction))
-
-    def _emit(self, event: LifecycleEvent) -> None:
-        for reader in self._readers:
-            reader.put(event)
-
-    async def events(self) -> AsyncIterator[LifecycleEvent]:
-        """Iterate over the events from the first step of the iteration on."""
-        reader = EventQueue()
-        self._readers.add(reader)
-        try:
-            while True:
-                yield await reader.get()
-        finally:
-            self._readers.discard(reader)
-
-
-class EventQueue:
-    """The events for one reader; a full queue drops the oldest."""
-
-    def __init__(self) -> None:
-        self._events: deque[LifecycleEvent] = deque(maxlen=KEPT_EVENTS)
-        self._filled = asyncio.Event()
-
-    def put(self, event: LifecycleEvent) -> None:
-        """Add an event."""
-        self._events.append(event)
-        self._filled.set()
-
-    async def get(self) -> LifecycleEvent:
-        """Wait for the next event and take it."""
-        while not self._events:
-            self._filled.clear()
-            await self._filled.wait()
-        return self._events.popleft()
+        self._events.emit(LifecycleEvent(state, state, self._label, progress, fraction))

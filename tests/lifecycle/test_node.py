@@ -514,6 +514,61 @@ async def test_a_timer_runs_only_while_active(
     assert len(ticks) == 2
 
 
+async def test_a_timer_of_an_active_node_can_be_reset_and_canceled(
+    manual_clock: ManualClock, node_factory: Callable[..., Any]
+) -> None:
+    """It is the watchdog of managed wheels: each command resets it."""
+    managed: Managed = node_factory(Managed)
+    ticks: list[int] = []
+    timer = managed.create_lifecycle_timer(1.0, lambda: ticks.append(1))
+    await managed.trigger_configure()
+    await managed.trigger_activate()
+    for _ in range(3):
+        await manual_clock.advance(0.9)
+        timer.reset()
+    assert ticks == []
+
+    await manual_clock.advance(1.0)
+    assert ticks == [1]
+
+    timer.cancel()
+    assert timer.is_canceled()
+    await manual_clock.advance(5.0)
+    timer.reset()
+    await manual_clock.advance(1.0)
+    assert ticks == [1, 1]
+
+
+async def test_a_timer_of_a_node_that_is_not_active_is_not_reset(
+    manual_clock: ManualClock, node_factory: Callable[..., Any]
+) -> None:
+    """The callback of a subscription may reset it in any state."""
+    managed: Managed = node_factory(Managed)
+    ticks: list[int] = []
+    timer = managed.create_lifecycle_timer(1.0, lambda: ticks.append(1))
+    timer.reset()
+    await manual_clock.advance(2.0)
+
+    assert ticks == []
+    assert timer.is_canceled()
+
+
+async def test_the_events_of_a_node_end_with_it(managed: Managed) -> None:
+    """Whoever reads them would wait for ever."""
+
+    async def read() -> list[str]:
+        return [event.state.label async for event in managed.lifecycle_events()]
+
+    async with asyncio.TaskGroup() as tasks:
+        reading = tasks.create_task(read())
+        await settle()
+        await managed.trigger_configure()
+        managed.destroy_node()
+
+    assert reading.result() == ["configuring", "inactive"]
+    assert await read() == []
+
+
 async def test_no_entity_stays_enabled_when_activation_fails(managed: Managed) -> None:
     """Although `super().on_activate` has enabled it before."""
     publisher = managed.create_lifecycle_publisher(String, "/chatter", 10)
