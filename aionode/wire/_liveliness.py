@@ -38,6 +38,7 @@ __all__ = [
     "Token",
     "endpoint_token",
     "gid_of",
+    "is_node_token",
     "node_token",
     "parse_qos",
     "parse_token",
@@ -83,6 +84,11 @@ class Token(NamedTuple):
 def node_token(domain_id: int, node: NodeInfo) -> str:
     """Return the token of a node."""
     return "/".join(node_chunks(domain_id, node, node.node_id, NODE_KIND))
+
+
+def is_node_token(token: str) -> bool:
+    """Return whether a token is that of a node."""
+    return token.split("/", 6)[5:6] == [NODE_KIND]
 
 
 def endpoint_token(domain_id: int, endpoint: EndpointInfo, backends: str = "") -> str:

@@ -143,12 +143,12 @@ class Acknowledgements:
         """Subscribe, and declare the token. To be called before any endpoint is declared."""
         self._session = session
         liveliness = session.liveliness()
-        own = self._prefix + self._participant + self._suffix
+        own = self.token_of(self._participant)
         with translated("acknowledgements"):
             self._declared = [
                 session.declare_subscriber(own, direct(self._queue.put)),
                 liveliness.declare_subscriber(
-                    f"{self._prefix}*{self._suffix}", direct(self._tokens.put), history=True
+                    self.token_of("*"), direct(self._tokens.put), history=True
                 ),
                 liveliness.declare_token(own),
             ]
@@ -166,6 +166,14 @@ class Acknowledgements:
         self._ticks.clear()
         self._probes.clear()
 
+    def tokens(self) -> set[str]:
+        """Return the tokens of this context and of those that are present."""
+        return {self.token_of(each) for each in (self._participant, *self.present)}
+
+    def token_of(self, participant: str) -> str:
+        """Return the token of a context that acknowledges; also its key for submessages."""
+        return self._prefix + participant + self._suffix
+
     def send(self, participant: str, data: bytes, priority: zenoh.Priority = LOOP_PRIORITY) -> None:
         """Send a submessage to another context; it may be lost. Large ones go from a thread."""
         session = self._session
@@ -173,7 +181,7 @@ class Acknowledgements:
             return
         try:
             session.put(
-                self._prefix + participant + self._suffix,
+                self.token_of(participant),
                 data,
                 congestion_control=zenoh.CongestionControl.DROP,
                 priority=priority,

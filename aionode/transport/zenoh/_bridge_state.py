@@ -184,5 +184,5 @@ class BridgeDeclaration(Declaration):
         """Declare it if a bridge serves its key, else withdraw it; twice is the same as once."""
         if not self.bridges.serves(bridge_key(self.endpoint.name)):
             self.undeclare()
-        elif not self._declared:
+        elif not self.is_declared:
             super().declare(session)

@@ -11,7 +11,7 @@ from aionode.clock import perf_ns
 from aionode.graph import EndpointInfo, NodeInfo
 from aionode.transport.zenoh._handlers import direct, translated
 from aionode.transport.zenoh._session_state import Declaration
-from aionode.wire._liveliness import PREFIX, node_token, parse_token
+from aionode.wire._liveliness import PREFIX, is_node_token, node_token, parse_token
 
 if TYPE_CHECKING:
     import asyncio
@@ -25,6 +25,9 @@ logger = logging.getLogger("aionode.transport.zenoh")
 
 CHECK_S: Final = 2.0
 """How long the tokens may take to come; it takes a millisecond."""
+
+ATTEMPTS: Final = 5
+"""How often it is asked for them if an answer lacks those of this context."""
 
 ANSWER_S: Final = 60.0
 """How long Zenoh waits for the tokens of all peers; a frozen one is cut long before."""
@@ -78,9 +81,11 @@ class Check:
         found: The tokens in the replies.
         changed: Tokens that were declared or undeclared meanwhile; replies may be older.
         failed: Whether replies may be missing.
+        attempt: Which attempt it is, beginning with 1.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, attempt: int) -> None:
+        self.attempt = attempt
         self.found: set[str] = set()
         self.changed: set[str] = set()
         self.failed = False
@@ -162,17 +167,23 @@ class Watcher:
         """Return whether a token is in the graph, or is one of this context."""
         return key in self._known or key.split("/", 3)[2] == self._state.participant
 
-    def check(self) -> None:
+    def node_tokens(self) -> set[str]:
+        """Return the tokens of all nodes that are known, those of this context included."""
+        own = {token for token in self._state.own_tokens() if is_node_token(token)}
+        return own | {token for token, info in self._known.items() if isinstance(info, NodeInfo)}
+
+    def check(self, attempt: int = 1) -> None:
         """Compare the graph with the tokens that exist, and correct it.
 
         While connections break and are made anew, Zenoh may deliver the end of a token on the old
         one after its declaration on the new one. At the same time its replies may lack existing
-        tokens: one is removed if it is missing twice, and its context is not connected.
+        tokens: one is removed if it is missing twice, and its context is not connected. Replies
+        without the tokens of this context count for nothing, and it is asked again.
         """
         session = self._state.session
         if session is None or self._check is not None:
             return
-        check = self._check = Check()
+        check = self._check = Check(attempt)
         session.liveliness().get(
             f"{PREFIX}/{self._state.domain_id}/**",
             direct(self._queue.put, lambda: self._queue.put(check)),
@@ -218,6 +229,10 @@ class Watcher:
             self._add(key)
         session = self._state.session
         if check.failed or session is None:
+            return
+        if not self._state.own_tokens() <= check.found | check.changed:
+            if check.attempt < ATTEMPTS:
+                self.check(check.attempt + 1)
             return
         missing = self._known.keys() - check.found - check.changed
         connected = {str(transport.zid) for transport in session.info.transports()}

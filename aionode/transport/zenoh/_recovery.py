@@ -39,10 +39,12 @@ from aionode.transport.zenoh._sockets import cut
 from aionode.wire._liveliness import PREFIX as ROS_PREFIX
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
+    from collections.abc import Set as AbstractSet
 
     from aionode.transport._zenoh_config import Network
     from aionode.transport.zenoh._descriptors import Pair
+    from aionode.transport.zenoh._graph_watcher import Watcher
     from aionode.transport.zenoh._session_state import SessionState
 
 __all__ = ["Recovery", "is_look", "nodes_at_introducer"]
@@ -87,6 +89,9 @@ NODES_S: Final = 3.0
 ATTEMPTS: Final = 4
 """How often the connection is cut for one participant; some are visible, but not reachable."""
 
+ANSWERS: Final = 5
+"""How often a session is asked whose answer lacks tokens that are known."""
+
 CHECKS: Final = 3
 """How often the graph is compared after connections have come or gone."""
 
@@ -116,15 +121,13 @@ class Recovery:
     Args:
         state: The session state of the context.
         network: The settings of the context, with the endpoints that it dials.
-        on_change: Called a few times after connections were made or lost.
+        watcher: The graph, which is compared a few times after connections were made or lost.
     """
 
-    def __init__(
-        self, state: SessionState, network: Network, on_change: Callable[[], None]
-    ) -> None:
+    def __init__(self, state: SessionState, network: Network, watcher: Watcher) -> None:
         self._state = state
         self._network = network
-        self._on_change = on_change
+        self._watcher = watcher
         self._checks = 0
         self._changes = state.queue(self._take_change)
         self._looks = state.queue(self._take_look)
@@ -256,49 +259,65 @@ class Recovery:
         if self._looking:
             self._look_in(FIRST_S)
             return
+        known = self._watcher.node_tokens() | self._state.acknowledgements.tokens()
         self._looking = start_thread(
             threading.Thread(
-                target=self._look_in_thread, args=(session, set(self._lost)), name="aionode-zenoh"
+                target=self._look_in_thread,
+                args=(session, set(self._lost), known),
+                name="aionode-zenoh",
             )
         )
 
-    def _look_in_thread(self, session: zenoh.Session, lost: set[str]) -> None:
+    def _look_in_thread(self, session: zenoh.Session, lost: set[str], known: set[str]) -> None:
         missing: set[str] | None = None
         with suppress(zenoh.ZError, ConfigurationError, TimeoutError):
             connection = introducer_connection(session, self._network)
-            missing = self._reconnect(session, connection, lost) if connection else set()
+            if connection is not None:
+                missing = self._reconnect(session, connection, lost, known)
         self._looks.put(missing)
 
     def _reconnect(
-        self, session: zenoh.Session, connection: Introducer, lost: set[str]
+        self, session: zenoh.Session, connection: Introducer, lost: set[str], known: set[str]
     ) -> set[str]:
         """Cut what has to be made anew, and return the participants for which that was done."""
-        found = self._missing(session, connection, lost)
+        found, is_sure = self._missing(session, connection, lost, known)
         # Where many start at once, connecting takes seconds, and a cut makes it take longer: one
         # that was never connected has to be missing in two looks in a row.
-        missing = found & (lost | self._suspected | {self._state.participant})
+        missing = found & (lost | self._suspected)
+        if is_sure:
+            missing |= found & {self._state.participant}
         self._suspected = found
         if missing:
             threading.Event().wait(SURE_S)
-            missing &= self._missing(session, connection, lost)
+            missing &= self._missing(session, connection, lost, known)[0]
         missing = {zid for zid in missing if self._attempts.get(zid, 0) < ATTEMPTS}
         if missing:
             cut(find(pairs_to(session, missing) | {connection.pair}).values())
         return missing
 
-    def _missing(self, session: zenoh.Session, connection: Introducer, lost: set[str]) -> set[str]:
+    def _missing(
+        self, session: zenoh.Session, connection: Introducer, lost: set[str], known: set[str]
+    ) -> tuple[set[str], bool]:
         """Return the participants that are not connected as they should be.
 
         Those that only the introducer sees, lost ones that it sees and that are not connected
-        here, and this one if the introducer does not see it.
+        here, and this one if the introducer does not see it. Besides, whether the last is sure: the
+        introducer sees all others that are connected with both.
+
+        Raises:
+            TimeoutError: an answer is not complete.
         """
-        keys = participants(self._state.domain_id)
-        there = seen_at(self._network, connection, *keys)
-        here = tokens(session, *keys)
+        keys = participants(self._state)
         connected = {str(transport.zid) for transport in session.info.transports()}
+        common = {token for token in known if participant_of(token) in connected - lost}
+        there = seen_at(self._network, connection, *keys, expected=common)
+        here = tokens(session, *keys, expected=known)
+        if not known <= here:
+            raise TimeoutError(f"{len(known - here)} tokens that are known were not named")
         own = {token for token in here if participant_of(token) == self._state.participant}
         one_sided = {participant_of(token) for token in (there - here) | (own - there)}
-        return one_sided | ({participant_of(token) for token in there} & (lost - connected))
+        missing = one_sided | ({participant_of(token) for token in there} & (lost - connected))
+        return missing, common <= there
 
     def _take_look(self, missing: set[str] | None) -> None:
         """Take what a look has found to be missing; None if it could not be made."""
@@ -317,7 +336,7 @@ class Recovery:
             )
         if self._checks:
             self._checks -= 1
-            self._on_change()
+            self._watcher.check()
         now_s = asyncio.get_running_loop().time()
         if self._timer is None and now_s < self._until_s:
             self._look_in(FIRST_S if missing else AGAIN_S)
@@ -330,50 +349,92 @@ def look_at(network: Network, connection: Introducer) -> zenoh.Session:
 
 
 def seen_at(
-    network: Network, connection: Introducer, *keys: str, timeout_s: float = ANSWER_S
+    network: Network,
+    connection: Introducer,
+    *keys: str,
+    expected: AbstractSet[str] = frozenset(),
+    timeout_s: float = ANSWER_S,
 ) -> set[str]:
     """Return the tokens that match `keys` and are visible at the other end of a connection.
 
+    Args:
+        network: The settings of the context.
+        connection: The connection.
+        *keys: What is asked for.
+        expected: As for `tokens`.
+        timeout_s: How long each answer may take.
+
     Raises:
-        TimeoutError: the answer was not complete in time.
+        TimeoutError: an answer was not complete in time.
     """
     with closing(look_at(network, connection)) as look:
-        return tokens(look, *keys, timeout_s=timeout_s)
+        return tokens(look, *keys, expected=expected, timeout_s=timeout_s)
 
 
-def nodes_at_introducer(session: zenoh.Session, network: Network) -> set[str] | None:
+def nodes_at_introducer(
+    session: zenoh.Session, network: Network, known: AbstractSet[str]
+) -> set[str] | None:
     """Return the tokens of all nodes that an introducer sees, if there is one.
 
     None if it does not answer, or not completely.
+
+    Args:
+        session: The session, which is connected with an introducer or not.
+        network: The settings of the context.
+        known: The tokens of nodes that are known; without them an answer may not be complete.
     """
     try:
         connection = introducer_connection(session, network)
         if connection is None:
             return set()
         nodes = f"{ROS_PREFIX}/{network.domain_id}/*/*/*/NN/**"
-        return seen_at(network, connection, nodes, timeout_s=NODES_S)
+        return seen_at(network, connection, nodes, expected=known, timeout_s=NODES_S)
     except (zenoh.ZError, ConfigurationError, TimeoutError):
         return None
 
 
-def participants(domain_id: int) -> tuple[str, ...]:
+def participants(state: SessionState) -> tuple[str, ...]:
     """Return the keys of the tokens of nodes and contexts in a domain."""
-    return f"{ROS_PREFIX}/{domain_id}/*/*/*/NN/**", f"@aionode/{domain_id}/*/link/**"
+    return f"{ROS_PREFIX}/{state.domain_id}/*/*/*/NN/**", state.acknowledgements.token_of("*")
 
 
-def tokens(session: zenoh.Session, *keys: str, timeout_s: float = ANSWER_S) -> set[str]:
+def tokens(
+    session: zenoh.Session,
+    *keys: str,
+    expected: AbstractSet[str] = frozenset(),
+    timeout_s: float = ANSWER_S,
+) -> set[str]:
     """Return the tokens that match `keys` and that a session sees.
 
+    Beside a router, the answer of a peer may lack tokens, even all of them: Zenoh names them in one
+    thread, and in another passes on that the router's answer has ended, which may come first (1.10;
+    one answer in ten). So the session is asked again while `expected` are missing, and each token
+    that any answer names counts.
+
+    Args:
+        session: The session.
+        *keys: What is asked for.
+        expected: Tokens that a complete answer has; some may still be missing in what is returned.
+        timeout_s: How long each answer may take.
+
     Raises:
-        TimeoutError: the answer was not complete in time; what is missing in it may well be there.
+        TimeoutError: an answer was not complete in time; what is missing in it may well be there.
     """
-    found = set()
-    for key in keys:
-        for reply in session.liveliness().get(key, timeout=timeout_s):
-            if reply.ok is None:  # the time is up
-                raise TimeoutError(f"{key}: not all tokens were named within {timeout_s:g} s")
-            found.add(str(reply.ok.key_expr))
+    found: set[str] = set()
+    for _ in range(ANSWERS):
+        for key in keys:
+            found.update(answer(session, key, timeout_s))
+        if expected <= found:
+            break
     return found
+
+
+def answer(session: zenoh.Session, key: str, timeout_s: float) -> Iterator[str]:
+    """Yield the tokens that match one key and are named in one answer."""
+    for reply in session.liveliness().get(key, timeout=timeout_s):
+        if reply.ok is None:  # the time is up
+            raise TimeoutError(f"{key}: not all tokens were named within {timeout_s:g} s")
+        yield str(reply.ok.key_expr)
 
 
 def participant_of(token: str) -> str:

@@ -173,6 +173,10 @@ class SessionState:
         if self.session is not None and (self._graph_is_known or not declaration.needs_graph):
             declaration.declare(self.session)
 
+    def own_tokens(self) -> set[str]:
+        """Return the tokens of what is declared in the session."""
+        return {each.token for each in self._declarations if each.is_declared and each.token}
+
     def remove(self, declaration: Declaration) -> None:
         """Forget `declaration`."""
         self._declarations.pop(declaration, None)
@@ -320,6 +324,7 @@ class Declaration(Registration):
 
     Attributes:
         needs_graph: Whether it is declared only when the endpoints of connected peers are known.
+        is_declared: Whether it is declared now.
     """
 
     needs_graph = False
@@ -328,7 +333,7 @@ class Declaration(Registration):
         self.state = state
         self.token = token
         self.gid = gid or gid_of(token)
-        self._declared = False
+        self.is_declared = False
         self._declared_token: Any = None
 
     def __hash__(self) -> int:
@@ -338,14 +343,14 @@ class Declaration(Registration):
         """Declare its data, and then the token, which makes it visible to all other contexts."""
         with translated(self.token):
             self.declare_data(session)
-            self._declared = True
+            self.is_declared = True
             if self.token:
                 self._declared_token = self.state.declare_token(session, self.token)
 
     def undeclare(self) -> None:
         """Undeclare it, in the opposite order."""
         token, self._declared_token = self._declared_token, None
-        declared, self._declared = self._declared, False
+        declared, self.is_declared = self.is_declared, False
         with translated(self.token):
             if token is not None:
                 token.undeclare()

@@ -87,7 +87,7 @@ class ZenohTransport(Transport):
         # Done when the tokens of all connected peers are in the graph.
         self._answered: asyncio.Future[bool] | None = None
         self._expected = 0  # how many peers accept connections, and so should be connected
-        self._recovery = Recovery(self._state, network, self._watcher.check)
+        self._recovery = Recovery(self._state, network, self._watcher)
         self._local_router = LocalRouter(self._state, network)
         self._socket_options: SocketOptions | None = None
         self._presence: socket.socket | None = None  # in the list of this machine's sessions
@@ -194,7 +194,8 @@ class ZenohTransport(Transport):
         """Return the nodes that an introducer sees and the graph has not; None without answer."""
         ends_ns = perf_ns() + int(quiet_s * 1e9)
         while True:
-            look = partial(nodes_at_introducer, session, self.network)
+            known = self._watcher.node_tokens()
+            look = partial(nodes_at_introducer, session, self.network, known)
             seen = await run_in_own_thread(look)
             if seen is not None:
                 return set(filterfalse(self._watcher.knows, seen))
