@@ -7,6 +7,17 @@ belongs to the thread of the loop belongs to the borrower until `LendableLoop.gi
 
 A thread that waits for what the loop will read can go further, and wait for the loop's descriptors
 itself: `LendableLoop.readers`.
+
+Between `LendableLoop.borrow` and `LendableLoop.give_back`, and between `Readers.begin` and
+`Readers.end`, the loop depends on the thread that does its work. Two rules follow for the callers
+of these methods:
+
+- No exception leads past `give_back` or `end`. A ``finally`` is not enough in the main thread: a
+  handler of a signal may raise at the first bytecode of `end` itself. So the main thread calls
+  `borrow` and `begin` only while no handler is installed that may raise.
+- The thread waits for nothing else that needs the loop. Code of others may run in between all the
+  same: finalizers that the garbage collector calls, and handlers. It may use the methods that any
+  thread may call at any time: `borrow` and `begin` answer False then, `Readers.rouse` never waits.
 """
 
 from __future__ import annotations
@@ -25,6 +36,9 @@ if TYPE_CHECKING:
     from contextvars import Context
 
 __all__ = ["LendableLoop", "Readers"]
+
+LONGEST_WAIT_S = 3600.0
+"""How long one wait for descriptors takes at most."""
 
 LONGEST_END_S = 1.0
 """How long closing a loop waits for the thread that waits in place of it."""
@@ -159,6 +173,9 @@ class Readers:
         self._gate.register(self._fd, select.EPOLLIN)
         self._waiting = Lock()
         self._closing = False
+        self._is_gone = False
+        self._rousing: list[None] = []  # an element for each thread that is about to write
+        self._is_event_closed = Lock()  # acquired by who closes it, once
         self._event = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
         self._add(self._event, self._take_event)
 
@@ -183,10 +200,14 @@ class Readers:
     def wait(self, timeout_s: float | None) -> list[tuple[int, int]]:
         """Wait until something is readable, or `rouse` is called; with whole milliseconds.
 
+        Args:
+            timeout_s: The longest wait in seconds, None for ever; it ends after an hour all the
+                same, as the system has no waits of a month.
+
         Returns:
             What `call` takes; empty if the time has passed.
         """
-        return self._epoll.poll(timeout_s)
+        return self._epoll.poll(None if timeout_s is None else min(timeout_s, LONGEST_WAIT_S))
 
     def call(self, readable: list[tuple[int, int]]) -> bool:
         """Borrow the loop and call the callbacks of these descriptors.
@@ -211,9 +232,24 @@ class Readers:
         self._waiting.release()
 
     def rouse(self) -> None:
-        """End the wait of the thread that waits; any thread or signal handler may call this."""
-        with suppress(OSError):  # closed meanwhile
-            os.eventfd_write(self._event, 1)
+        """End the wait of the thread that waits; any thread or signal handler may call this.
+
+        After the loop is closed it has no effect.
+        """
+        # Not to a descriptor that has become another file: the last one that writes closes it. No
+        # lock, as the handler of a signal may be called in the middle, and call this.
+        self._rousing.append(None)
+        try:
+            if not self._is_gone:
+                os.eventfd_write(self._event, 1)
+        finally:
+            self._rousing.pop()
+            if self._is_gone:
+                self._close_event()
+
+    def _close_event(self) -> None:
+        if not self._rousing and self._is_event_closed.acquire(blocking=False):
+            os.close(self._event)
 
     def _take_event(self) -> None:
         with suppress(BlockingIOError):
@@ -253,7 +289,8 @@ class Readers:
         if self._waiting.acquire(timeout=LONGEST_END_S):
             self._epoll.close()
             self._gate.close()
-            os.close(self._event)
+            self._is_gone = True  # before the look: `rouse` looks in the other order
+            self._close_event()
 
 
 def _number_of(fd: int | HasFileno) -> int:

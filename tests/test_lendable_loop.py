@@ -242,6 +242,48 @@ def test_what_ends_the_wait_in_place_of_the_loop(way: str) -> None:
             readers.end()
 
 
+def test_rousing_after_the_loop_is_closed_touches_no_other_file() -> None:
+    """The number of its descriptor is another file's by then: the user's."""
+    with running_loop() as loop:
+        readers = readers_of(loop)
+        number = readers._event
+    counter = os.eventfd(0, os.EFD_NONBLOCK)  # as a file that takes what is written
+    os.dup2(counter, number)
+    try:
+        readers.rouse()
+
+        with pytest.raises(BlockingIOError):
+            os.eventfd_read(number)
+    finally:
+        os.close(number)
+        if counter != number:
+            os.close(counter)
+
+
+def test_the_descriptor_that_rouses_is_closed_by_the_last_one_who_uses_it() -> None:
+    """A thread may be about to write while another one closes the loop."""
+    with running_loop() as loop:
+        readers = readers_of(loop)
+        readers._rousing.append(None)
+    os.fstat(readers._event)
+    readers._rousing.pop()
+    readers.rouse()
+
+    with pytest.raises(OSError, match="Bad file descriptor"):
+        os.fstat(readers._event)
+
+
+def test_a_wait_of_months_is_possible() -> None:
+    """The system itself takes at most 24 days."""
+    with running_loop() as loop:
+        readers = readers_of(loop)
+        assert readers.begin()
+        readers.rouse()
+
+        assert readers.wait(5e6)
+        readers.end()
+
+
 def test_a_reader_that_was_removed_is_not_called(
     pair: tuple[socket.socket, socket.socket],
 ) -> None:

@@ -388,6 +388,7 @@ class NodeParameters:
             event.changed_parameters = changed
             event.deleted_parameters = deleted
             event.stamp = self._clock.now().to_msg()
+            self._parameter_event_publisher.handle.refuse_after_shutdown("Failed to publish")
             self._parameter_event_publisher.publish(event)
 
     def add_pre_set_parameters_callback(self, callback: Callable[[list[Any]], list[Any]]) -> None:

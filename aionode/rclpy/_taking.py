@@ -39,7 +39,7 @@ def find_ready(
         if node._waitables:  # few have any
             found += [
                 (waitable, node, take_waitable)
-                for waitable in node._waitables
+                for waitable in tuple(node._waitables)
                 if can_execute(waitable) and is_ready(waitable, context)
             ]
     for node in nodes:
@@ -62,7 +62,8 @@ def ready_entities(entities: list[Any], arrivals: Arrivals | None) -> list[Any]:
     """Return those that are ready; if none is, note in `arrivals` that all were looked at."""
     last = None if arrivals is None else arrivals.last
     ready = []
-    for entity in entities:
+    # A copy: another thread may destroy one meanwhile, and the one behind it would be left out.
+    for entity in tuple(entities):
         if entity._handle.ready():
             ready.append(entity)  # noqa: PERF401  # a comprehension is one more call
     if arrivals is not None and not ready:

@@ -70,7 +70,7 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
     def __init__(self) -> None:
         super().__init__()
         self._active_entity: Entity | None = None
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()
 
     def can_execute(self, entity: Entity) -> bool:
         """Return whether none of its callbacks runs."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from aionode.rclpy._entities import ServiceEntity, wait_until
 from aionode.rclpy._impl.destroyable import Wakeup
+from aionode.rclpy._impl.uninterrupted import refuse_to_wait
 from aionode.rclpy.task import Future
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ class Client(ServiceEntity["ClientHandle"], Generic[RequestT, ResponseT]):
         self._pending_requests: dict[int, Future[ResponseT]] = {}
         self.callback_group = callback_group
         self._executor_event = False
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()
 
     def call(self, request: RequestT, timeout_sec: float | None = None) -> ResponseT | None:
         """Send a request and block the thread until the response is here.
@@ -64,9 +65,11 @@ class Client(ServiceEntity["ClientHandle"], Generic[RequestT, ResponseT]):
         Raises:
             TypeError: `request` is of another class.
             TimeoutError: no response came in time; a later one is dropped.
+            RCLError: a finalizer calls this where it cannot wait.
         """
         if not isinstance(request, self.srv_type.Request):
             raise TypeError
+        refuse_to_wait()
         wakeup = Wakeup()
         responses: list[bytes] = []
 
@@ -111,12 +114,22 @@ class Client(ServiceEntity["ClientHandle"], Generic[RequestT, ResponseT]):
     def remove_pending_request(self, future: Future[ResponseT]) -> None:
         """Give a request up; its future is never completed."""
         with self._lock:
-            for sequence, pending in self._pending_requests.items():
-                if pending is future:
-                    del self._pending_requests[sequence]
-                    if not future.done():
-                        self._handle.forget(sequence)
-                    break
+            sequence = self._sequence_of(future)
+            if sequence is None:
+                return
+            self._pending_requests.pop(sequence, None)
+            if not future.done():
+                self._handle.forget(sequence)
+
+    def _sequence_of(self, future: Future[ResponseT]) -> int | None:
+        while True:
+            try:
+                for sequence, pending in self._pending_requests.items():
+                    if pending is future:
+                        return sequence
+            except RuntimeError:  # a handler of a signal has interrupted this, and sent a request
+                continue
+            return None
 
     def service_is_ready(self) -> bool:
         """Return whether a server is there."""

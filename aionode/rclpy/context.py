@@ -6,6 +6,7 @@ import sys
 import threading
 import warnings
 import weakref
+from contextlib import suppress
 from inspect import ismethod
 from typing import TYPE_CHECKING, Any, Self
 
@@ -23,7 +24,7 @@ class LoggingUse:
     """Counts the contexts that have configured logging; the last one ends that."""
 
     def __init__(self) -> None:
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()
         self._users = 0
 
     def begin(self, handle: ContextHandle) -> None:
@@ -114,7 +115,7 @@ class Context:
     def ok(self) -> bool:
         """Return whether it is initialised and not shut down."""
         handle = self._handle
-        return handle is not None and not handle.is_shut_down
+        return handle is not None and handle.ok()
 
     def _cleanup(self) -> None:
         handle = self._handle
@@ -170,7 +171,8 @@ class Context:
                 self._callbacks.append(callback)
 
     def _forget(self, callback: Any) -> None:
-        if callback in self._callbacks:
+        # Called wherever the garbage collector is at work; the list may be gone meanwhile.
+        with suppress(ValueError):
             self._callbacks.remove(callback)
 
     def get_domain_id(self) -> int:

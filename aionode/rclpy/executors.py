@@ -101,10 +101,11 @@ class Executor:
         self._nodes: dict[NodeLike, None] = {}
         self._nodes_lock = threading.RLock()
         self._tasks: list[Work] = []
-        self._tasks_lock = threading.Lock()
+        # Of the kind that a thread can acquire again: a handler of a signal, or a finalizer, may
+        # interrupt the thread that holds it.
+        self._tasks_lock = threading.RLock()
         self._wakeup = Wakeup()
         self._is_shutdown = False
-        self._shutdown_lock = threading.Lock()
         self._cb_iter: Generator[Ready | Work, None, None] | None = None
         self._last_args: tuple[Any, ...] = ()
         if self._context.handle is None:
@@ -141,7 +142,11 @@ class Executor:
 
         Returns:
             Whether it is new here.
+
+        Raises:
+            ForkedProcessError: the context belongs to the parent of this forked process.
         """
+        self._io.refuse_if_inherited()
         with self._nodes_lock:
             if node in self._nodes:
                 return False
@@ -179,8 +184,7 @@ class Executor:
         Returns:
             True.
         """
-        with self._shutdown_lock:
-            self._is_shutdown = True
+        self._is_shutdown = True
         self.wake()
         for node in self.get_nodes():
             self.remove_node(node)
@@ -220,12 +224,10 @@ class Executor:
             left.timeout = left_ns / 1e9
 
     def _goes_on(self, future: Future[Any]) -> bool:
-        return not (
-            self._context_handle.is_shut_down
-            or future.done()
-            or future.cancelled()
-            or self._is_shutdown
-        )
+        if self._context_handle.is_shut_down:
+            self._context_handle.note_told()
+            return False
+        return not (future.done() or future.cancelled() or self._is_shutdown)
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Wait for one callback and call it, or have a thread call it. One thread at a time may.
@@ -358,6 +360,8 @@ class Executor:
             self.wake()  # another thread may wait, too
             raise ShutdownException
         if self._context_handle.is_shut_down:
+            self._context_handle.note_told()
+            self._io.refuse_if_inherited()
             self.wake()
             raise ExternalShutdownException
         if condition():
@@ -394,13 +398,15 @@ class Executor:
         """Wait until something may be ready, or the time has passed."""
         waits = [] if left_ns is None else [left_ns]
         for node in nodes:
-            for timer in node._timers:
+            for timer in tuple(node._timers):
                 # One whose group is busy is waited for by that group's end.
                 if self.can_execute(timer):
                     due_ns = timer.handle.due_in_ns()
                     if due_ns is not None:
                         waits.append(due_ns)
-        waitables = [each for node in nodes for each in node._waitables if self.can_execute(each)]
+        waitables = [
+            each for node in nodes for each in tuple(node._waitables) if self.can_execute(each)
+        ]
         wait_set = wait_set_of(waitables, self._context_handle) if waitables else None
         if wait_set is not None:
             due_ns = wait_set.due_in_ns()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from itertools import chain
-from threading import Lock
+from threading import RLock
 from typing import TYPE_CHECKING, Any
 
 from aionode.rclpy._impl import messages as msg
@@ -30,7 +30,7 @@ class ParameterCallbackHandle:
         self.parameter_name = parameter_name
         self.node_name = node_name
         self.callback = callback
-        self.mutex = Lock()
+        self.mutex = RLock()
 
 
 class ParameterEventCallbackHandle:
@@ -38,7 +38,7 @@ class ParameterEventCallbackHandle:
 
     def __init__(self, callback: Callable[[Any], Any]) -> None:
         self.callback = callback
-        self.mutex = Lock()
+        self.mutex = RLock()
 
 
 class ParameterEventHandler:
@@ -61,7 +61,7 @@ class ParameterEventHandler:
                 defaultdict(list)
             )
             self.event_callbacks: list[ParameterEventCallbackHandle] = []
-            self.mutex = Lock()
+            self.mutex = RLock()
 
         def event_callback(self, event: Any) -> None:
             """Call those that an event concerns."""

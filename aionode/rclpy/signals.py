@@ -45,7 +45,7 @@ class SignalHandlerGuardCondition(GuardCondition):
 
     def __init__(self, context: Context | None = None) -> None:
         super().__init__(callback=None, callback_group=None, context=context)
-        _signals.guards.add(self.handle)
+        _signals.guards[id(self.handle)] = self.handle
 
     def __del__(self) -> None:
         with contextlib.suppress(Exception):  # it may be destroyed, or half made
@@ -53,5 +53,5 @@ class SignalHandlerGuardCondition(GuardCondition):
 
     def destroy(self) -> None:
         """Destroy it."""
-        _signals.guards.discard(self.handle)
+        _signals.guards.pop(id(self.handle), None)
         super().destroy()

@@ -51,7 +51,7 @@ class Future(Generic[T]):
         self._exception_fetched = False
         self._callbacks: list[Callable[[Future[T]], object]] = []
         self._wakers: list[Callable[[], None]] = []
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()
         self._executor: weakref.ref[ExecutorLike] | None = None
         self._set_executor(executor)
 

@@ -27,7 +27,7 @@ __all__ = [
 RMW_IDENTIFIER = "rmw_zenoh_cpp"
 
 g_default_context: Context | None = None
-g_context_lock = threading.Lock()
+g_context_lock = threading.RLock()
 
 
 def get_default_context(*, shutting_down: bool = False) -> Context:

@@ -551,7 +551,24 @@ def signalled(trace: Trace, number: int) -> None:
 
 
 @scene
-def e16_after_a_signal_nothing_is_asked_or_sent(trace: Trace) -> None:
+def e16_a_loop_that_publishes_ends_by_sigterm(trace: Trace) -> None:
+    node = rclpy.create_node("e16")
+    publisher = node.create_publisher(Int32, "e16", 1)
+    sender = threading.Timer(0.1, lambda: os.kill(os.getpid(), signal.SIGTERM))
+    sender.start()
+
+    def loop() -> None:
+        while True:
+            publisher.publish(Int32())
+            time.sleep(0.01)
+
+    attempt(trace, "loop", loop)
+    sender.join()
+    trace("ok", rclpy.ok())
+
+
+@scene
+def e16_after_a_signal_nothing_is_asked(trace: Trace) -> None:
     node = rclpy.create_node("e16")
     publisher = node.create_publisher(Int32, "e16", 1)
     subscription = node.create_subscription(Int32, "e16", trace, 1)
@@ -573,7 +590,6 @@ def e16_after_a_signal_nothing_is_asked_or_sent(trace: Trace) -> None:
         "info": lambda: node.get_subscriptions_info_by_topic("e16"),
         "get_subscription_count": publisher.get_subscription_count,
         "get_publisher_count": lambda: subscription.get_publisher_count() >= 0,
-        "publish": lambda: publisher.publish(Int32()),
         "assert_liveliness": publisher.assert_liveliness,
         "wait_for_all_acked": publisher.wait_for_all_acked,
         "call_async": lambda: client.call_async(ListParameters.Request()).done(),

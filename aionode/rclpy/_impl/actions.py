@@ -182,8 +182,11 @@ class ActionServerHandle(Parts):
         self._timeout_ns = int(result_timeout * 1e9)
         self.action_type = action_type
         self._status_message = message_like(action_type, "action_msgs/msg/GoalStatus")
-        # Held until the states are sent: none may arrive after a newer one.
-        self._status_lock = threading.Lock()
+        # Held until the states are sent: none may arrive after a newer one. A handler of a signal
+        # that ends a goal meanwhile leaves the states to the thread that it has interrupted.
+        self._status_lock = threading.RLock()
+        self._is_sending_status = False
+        self._has_newer_status = False
         self.goals: dict[bytes, GoalState] = {}
         self.goal = ServiceHandle(node, impl.SendGoalService, f"{name}/send_goal", goal_qos)
         self.parts.append(self.goal)
@@ -214,12 +217,24 @@ class ActionServerHandle(Parts):
     def publish_status(self) -> None:
         """Publish the states of all goals."""
         with self._status_lock:
-            message = self.action_type.Impl.GoalStatusMessage()
-            message.status_list = [
-                self._status_message(goal_info=goal.info, status=int(goal.status))
-                for goal in list(self.goals.values())
-            ]
-            self.status.publish(message)
+            self._has_newer_status = True
+            if self._is_sending_status:
+                return
+            self._is_sending_status = True
+            try:
+                while self._has_newer_status:
+                    self._has_newer_status = False
+                    self._publish_status()
+            finally:
+                self._is_sending_status = False
+
+    def _publish_status(self) -> None:
+        message = self.action_type.Impl.GoalStatusMessage()
+        message.status_list = [
+            self._status_message(goal_info=goal.info, status=int(goal.status))
+            for goal in list(self.goals.values())
+        ]
+        self.status.publish(message)
 
     def notify_goal_done(self) -> None:
         """Note which goals have ended, to forget them after the time for results."""

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import atexit
+import os
 import weakref
+from threading import get_ident
 from typing import TYPE_CHECKING
 
 from aionode import Context
 from aionode.arguments import Arguments, parse_arguments
+from aionode.clock import MachineTime
 from aionode.errors import InvalidROSArgsError
 from aionode.rclpy._impl.destroyable import Destroyable
 from aionode.rclpy._impl.errors import (
@@ -21,10 +24,21 @@ from aionode.rclpy._impl.io_thread import IoThread
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["ContextHandle", "living_contexts", "parsed"]
+__all__ = ["ContextHandle", "contexts_by_id", "living_contexts", "parsed"]
 
-living_contexts: weakref.WeakSet[ContextHandle] = weakref.WeakSet()
-"""Those that are not shut down, for signal handlers."""
+contexts_by_id: weakref.WeakValueDictionary[int, ContextHandle] = weakref.WeakValueDictionary()
+
+LAST_WORDS_S = 2.0
+"""How long a thread may publish after a signal has shut its context down, and it was told so."""
+
+steady_ns = MachineTime().steady_ns
+
+
+def living_contexts() -> list[ContextHandle]:
+    """Return those that are not shut down; any thread, or handler of a signal, may ask."""
+    # Not iterated over: other threads make contexts meanwhile.
+    found = [reference() for reference in contexts_by_id.valuerefs()]
+    return [context for context in found if context is not None]
 
 
 def parsed(args: Sequence[str]) -> Arguments:
@@ -71,17 +85,43 @@ class ContextHandle(Destroyable):
         self.is_shut_down = False
         self._closed = False
         self._signalled = False
+        self._told_ns: dict[int, int] = {}  # by thread: when it was told of the signal
         arguments = parsed(args)
         context = Context(domain_id=domain_id)
         context.arguments = arguments
         self.arguments = arguments
         self.io = IoThread(context)
         self.io.start()
-        living_contexts.add(self)
+        contexts_by_id[id(self)] = self
 
     def ok(self) -> bool:
         """Return whether it is not shut down."""
-        return not self.is_shut_down
+        if self.is_shut_down:
+            self.note_told()
+            return False
+        return True
+
+    def note_told(self) -> None:
+        """Note that this thread of the program has been told of the shutdown."""
+        if self._signalled:
+            self._told_ns.setdefault(get_ident(), steady_ns())
+
+    def refuse_to_publish(self) -> None:
+        """Raise after shutdown, unless a signal has done that, and the message is a last word.
+
+        A robot is stopped by a message, which many programs publish at their end: in a ``finally``,
+        or after `spin`. With rclpy that is too late, as the signal has shut the context down
+        before. Here a thread may publish for a while after it was told of the shutdown: by an
+        exception, the end of a wait, or `ok`. Not before, as whatever it publishes then, in a
+        loop, belongs to what the signal is to end.
+
+        Raises:
+            RCLError: it is shut down.
+        """
+        if self.is_shut_down:
+            told_ns = self._told_ns.get(get_ident())
+            if self._closed or told_ns is None or steady_ns() - told_ns > LAST_WORDS_S * 1e9:
+                self.refuse_after_shutdown("Failed to publish", "publisher")
 
     def get_domain_id(self) -> int:
         """Return the ROS domain."""
@@ -93,10 +133,12 @@ class ContextHandle(Destroyable):
         Raises:
             InvalidHandle: it is destroyed.
             RCLError: it is shut down.
+            ForkedProcessError: it belongs to the parent of this forked process.
         """
         if not self.is_valid:
             raise InvalidHandle("cannot use Destroyable because destruction was requested")
-        if self.is_shut_down:
+        if not self.ok():
+            self.io.refuse_if_inherited()
             raise RCLError(
                 f"failed to create {wanted}: the given context is not valid, either rcl_init() "
                 "was not called or rcl_shutdown() was called."
@@ -111,8 +153,10 @@ class ContextHandle(Destroyable):
 
         Raises:
             RCLError: it is shut down.
+            ForkedProcessError: it belongs to the parent of this forked process.
         """
-        if self.is_shut_down:
+        if not self.ok():
+            self.io.refuse_if_inherited()
             raise RCLError(f"{failure}: {user}'s context is invalid")
 
     def mark_shut_down(self) -> None:
@@ -135,7 +179,7 @@ class ContextHandle(Destroyable):
             raise RuntimeError("Context already shutdown.")
         self._closed = True
         self.mark_shut_down()
-        living_contexts.discard(self)
+        contexts_by_id.pop(id(self), None)
 
     def close(self) -> None:
         """Send what was published, leave the graph, and end the thread."""
@@ -150,6 +194,17 @@ class ContextHandle(Destroyable):
 @atexit.register
 def close_all() -> None:
     """Send what a program has published that ends without `shutdown`."""
-    for context in list(living_contexts):
+    for context in living_contexts():
         context.mark_shut_down()
         context.close()
+
+
+def abandon_all() -> None:
+    """Leave all contexts to the parent. Called in a forked child before anything else runs."""
+    for context in living_contexts():
+        context.is_shut_down = True
+        context.io.abandon()
+
+
+if hasattr(os, "register_at_fork"):  # not on Windows
+    os.register_at_fork(after_in_child=abandon_all)

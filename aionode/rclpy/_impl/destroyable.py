@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 from _thread import allocate_lock
+from contextlib import suppress
 from typing import TYPE_CHECKING, Protocol, Self
 
+from aionode.clock import MachineTime
 from aionode.rclpy._impl.errors import InvalidHandle
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from types import TracebackType
 
-__all__ = ["Arrivals", "Destroyable", "Signal", "Wakeup"]
+__all__ = ["LONGEST_WAIT_S", "Arrivals", "Destroyable", "Signal", "Wakeup"]
 
 LONGEST_WAIT_S = 3600.0
-"""A lock cannot be waited for much longer than a month; who waits asks again then."""
+"""How long one call of the system waits at most, in seconds, for a lock or for descriptors.
+
+Some systems refuse more than 24 days. A longer wait consists of several.
+"""
+
+steady_ns = MachineTime().steady_ns
 
 
 class Wakeup:
@@ -48,12 +55,15 @@ class Wakeup:
     def wait(self, timeout_sec: float | None) -> bool:
         """Wait for a wake-up; return whether one came within the limit. None waits for ever."""
         if timeout_sec is None:
-            while not self._lock.acquire(timeout=LONGEST_WAIT_S):
-                pass
-            return True
+            return self._lock.acquire()
+        ends_ns = steady_ns() + timeout_sec * 1e9
+        while timeout_sec > LONGEST_WAIT_S:
+            if self._lock.acquire(timeout=LONGEST_WAIT_S):
+                return True
+            timeout_sec = (ends_ns - steady_ns()) / 1e9
         if timeout_sec <= 0:
             return self._lock.acquire(blocking=False)
-        return self._lock.acquire(timeout=min(timeout_sec, LONGEST_WAIT_S))
+        return self._lock.acquire(timeout=timeout_sec)
 
 
 class Wakeable(Protocol):
@@ -69,23 +79,22 @@ class Signal:
     __slots__ = ("_wakeups",)
 
     def __init__(self) -> None:
-        # Replaced, never changed: it is read without a lock.
-        self._wakeups: tuple[Wakeable, ...] = ()
+        # Changed by single calls of C only, which neither another thread nor a handler of a signal
+        # interrupts, and read as a copy.
+        self._wakeups: list[Wakeable] = []
 
     def add(self, wakeup: Wakeable) -> None:
         """Wake `wakeup` from now on, once more for each time it is added."""
-        self._wakeups = (*self._wakeups, wakeup)
+        self._wakeups.append(wakeup)
 
     def remove(self, wakeup: Wakeable) -> None:
         """Undo one `add`; without one nothing happens."""
-        rest = list(self._wakeups)
-        if wakeup in rest:
-            rest.remove(wakeup)
-            self._wakeups = tuple(rest)
+        with suppress(ValueError):
+            self._wakeups.remove(wakeup)
 
     def notify(self) -> None:
         """Wake all."""
-        for wakeup in self._wakeups:
+        for wakeup in tuple(self._wakeups):
             wakeup.wake()
 
 
@@ -110,7 +119,7 @@ class Arrivals:
         """Wake those who wait for the node, after something was put into a handle."""
         # A new object each time, as threads would lose count: executors compare it with `seen`.
         self.last = object()
-        for wakeup in self._signal._wakeups:
+        for wakeup in tuple(self._signal._wakeups):
             wakeup.wake()
 
 
@@ -126,15 +135,17 @@ class Destroyable:
 
     def __init__(self, signal: Signal | None = None) -> None:
         self.signal = Signal() if signal is None else signal
-        self._use_lock = allocate_lock()
-        self._uses = 0
+        # Changed without a lock, which a handler of a signal, or a finalizer that the garbage
+        # collector calls, would wait for if this thread had it.
+        self._uses: list[None] = []
+        self._is_ended = allocate_lock()  # acquired by who destroys it, once
         self._unwanted = False
 
     def __enter__(self) -> Self:
-        with self._use_lock:
-            if self._unwanted:
-                raise InvalidHandle("cannot use Destroyable because destruction was requested")
-            self._uses += 1
+        self._uses.append(None)  # before the look: whoever destroys it looks in the other order
+        if self._unwanted:
+            self._leave()
+            raise InvalidHandle("cannot use Destroyable because destruction was requested")
         return self
 
     def __exit__(
@@ -143,10 +154,15 @@ class Destroyable:
         exc: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        with self._use_lock:
-            self._uses -= 1
-            last = self._unwanted and not self._uses
-        if last:
+        self._leave()
+
+    def _leave(self) -> None:
+        self._uses.pop()
+        if self._unwanted:
+            self._destroy_if_unused()
+
+    def _destroy_if_unused(self) -> None:
+        if not self._uses and self._is_ended.acquire(blocking=False):
             self._destroy()
 
     def __del__(self) -> None:
@@ -165,13 +181,9 @@ class Destroyable:
 
     def destroy_when_not_in_use(self) -> None:
         """Destroy it at the end of the last ``with``, or at once; again has no effect."""
-        with self._use_lock:
-            if self._unwanted:
-                return
+        if not self._unwanted:
             self._unwanted = True
-            unused = not self._uses
-        if unused:
-            self._destroy()
+            self._destroy_if_unused()
 
     def _destroy(self) -> None:
         """Release what it holds."""

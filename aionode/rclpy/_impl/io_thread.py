@@ -6,21 +6,25 @@ import asyncio
 import logging
 from collections import deque
 from collections.abc import Callable
-from concurrent.futures import Future
-from threading import Event, Lock, Thread, current_thread, get_ident, local, main_thread
+from functools import partial
+from threading import Lock, Thread, get_ident
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode import Context
 from aionode.clock import MachineTime
+from aionode.errors import ForkedProcessError
 from aionode.lendable_loop import LendableLoop
+from aionode.rclpy._impl import uninterrupted
+from aionode.rclpy._impl.destroyable import Wakeup
 from aionode.rclpy._impl.errors import InvalidHandle
 
 if TYPE_CHECKING:
-    from aionode.rclpy._impl.destroyable import Wakeup
+    from aionode.lendable_loop import Readers
 
-__all__ = ["IoThread", "postpone"]
+__all__ = ["IoThread"]
 
 T = TypeVar("T")
+ArgT = TypeVar("ArgT")
 
 MOST_WAITING = 1000
 """How many messages may wait for the thread before `publish` waits for it."""
@@ -44,55 +48,29 @@ logger = logging.getLogger("aionode.rclpy")
 steady_ns = MachineTime().steady_ns
 
 
-class Borrowing(local):
-    """Whether this thread does the work of a context's thread."""
-
-    active = False
-
-
-borrowing = Borrowing()
-
-postponed: list[Callable[[], object]] = []
-"""What handlers of signals have to do once this thread does no more such work."""
-
-
-def postpone(action: Callable[[], object]) -> bool:
-    """Have `action` called soon if this thread does the work of a context's thread.
-
-    A handler of a signal may raise KeyboardInterrupt, which would leave such work half done.
-
-    Returns:
-        Whether it will be called.
-    """
-    if borrowing.active:
-        postponed.append(action)
-    return borrowing.active
-
-
-def call_postponed() -> None:
-    """Call what `postpone` has kept, in the thread that handles signals."""
-    while postponed and current_thread() is main_thread():
-        postponed.pop(0)()
-
-
 class IoThread:
     """Runs a context in an event loop of its own thread, from `start` to `stop`.
 
     Attributes:
         context: The context; it and all that belongs to it are used in this thread only.
-        delivery_lock: Held while a message is delivered inside this context, in the thread that
-            publishes it, and while a subscription is made. Nothing waits while it is held.
     """
 
     def __init__(self, context: Context) -> None:
         self.context = context
         self._work: deque[Callable[[], object]] = deque()
-        self._scheduled = True  # the loop looks once it runs
+        # How often the loop has looked at the work, and after which look it was last woken. Equal:
+        # it will look again. The loop looks once it runs.
+        self._looks = 0
+        self._woken_after = 0
         self._ended = False
         self._loop: LendableLoop | None = None
         self._stopping: asyncio.Event | None = None
-        self._opened: Future[None] = Future()
-        self.delivery_lock = Lock()
+        self._opened = Wakeup()
+        self._failure: BaseException | None = None  # to open the context
+        self._inherited = False  # whether it belongs to the parent of this forked process
+        # Held while a message is delivered inside this context, in the thread that publishes it,
+        # and while subscriptions come and go. Nothing waits while it is held.
+        self._delivery_lock = Lock()
         self._graph_watchers: list[Callable[[], None]] = []
         # A daemon, as the interpreter waits for others before it calls what `atexit` has.
         self._thread = Thread(target=self._main, name="rclpy-io", daemon=True)
@@ -104,7 +82,9 @@ class IoThread:
             TransportError: a transport cannot connect.
         """
         self._thread.start()
-        self._opened.result()
+        self._opened.wait(None)
+        if self._failure is not None:
+            raise self._failure
 
     def stop(self) -> None:
         """Close the context, once what was published is sent, and end the thread."""
@@ -122,26 +102,37 @@ class IoThread:
 
         Raises:
             InvalidHandle: the context is shut down.
+            RCLError: a finalizer calls this where it cannot wait.
+            ForkedProcessError: the context belongs to the parent of this forked process.
             Exception: what the function raises.
         """
         if self.is_current:
             return function(*args)
-        result: Future[T] = Future()
+        uninterrupted.refuse_to_wait()
+        self.refuse_if_inherited()
+        results: list[T] = []
+        errors: list[BaseException] = []
+        done = Wakeup()
 
         def work() -> None:
-            if self._ended:
-                result.set_exception(InvalidHandle("the context is shut down"))
-                return
             try:
-                result.set_result(function(*args))
+                self._refuse_if_ended()
+                results.append(function(*args))
             except BaseException as error:  # noqa: BLE001  # raised in the calling thread
-                result.set_exception(error)
+                errors.append(error)
+            done.wake()
 
         self.post(work)
-        return result.result()
+        done.wait(None)
+        if errors:
+            raise errors[0]
+        return results[0]
 
     def post(self, action: Callable[[], object]) -> None:
-        """Call `action` in the thread soon, after everything that was posted before."""
+        """Call `action` in the thread soon, after everything that was posted before.
+
+        Any thread, handler of a signal or finalizer may call this at any time.
+        """
         self._work.append(action)
         self._schedule()
 
@@ -149,23 +140,65 @@ class IoThread:
         """Call `action`, which sends something, after everything that was posted before.
 
         In this thread and at once if the context's thread sleeps, and in the latter soon if not.
+
+        Raises:
+            ForkedProcessError: the context belongs to the parent of this forked process.
         """
-        loop = self._loop
-        borrowing.active = True
+        self.refuse_if_inherited()
+        if self._work or not uninterrupted.begin():
+            self.post(action)
+            return
         try:
-            if self._work or loop is None or not loop.borrow():
-                self.post(action)
-                return
-            try:
-                action()
-            except Exception:
-                logger.exception("in the input and output of a context")
-            finally:
-                loop.give_back()
+            self._send(action)
         finally:
-            borrowing.active = False
-            if postponed:
-                call_postponed()
+            uninterrupted.end()
+
+    def _send(self, action: Callable[[], object]) -> None:
+        loop = self._loop
+        if self._work or loop is None or not loop.borrow():
+            self.post(action)
+            return
+        try:
+            action()
+        except Exception:
+            logger.exception("in the input and output of a context")
+        finally:
+            loop.give_back()
+
+    def deliver(self, work: Callable[[ArgT], Callable[[], object] | None], arg: ArgT) -> None:
+        """Call `work`, which delivers inside this context, and then, as `send` does, its result.
+
+        One call is under way at a time. It is done when this returns; only for a finalizer that
+        has interrupted such a call it is done later.
+
+        Raises:
+            Exception: what `work` raises.
+        """
+        if uninterrupted.begin():
+            try:
+                with self._delivery_lock:
+                    action = work(arg)
+                    if action is not None:
+                        self._send(action)
+            finally:
+                uninterrupted.end()
+        elif uninterrupted.current.active:
+            self.post(partial(self.deliver, work, arg))
+        else:
+            self.call(self.deliver, work, arg)
+
+    def change_delivery(self, change: Callable[[], T]) -> T:
+        """Call `change`, which changes who gets what is delivered; in the thread only.
+
+        Nothing is delivered inside this context meanwhile.
+        """
+        begun = uninterrupted.begin()
+        try:
+            with self._delivery_lock:
+                return change()
+        finally:
+            if begun:
+                uninterrupted.end()
 
     def wait(self, wakeup: Wakeup, timeout_sec: float | None) -> bool:
         """Wait for a wake-up, and meanwhile read what comes in, so that no other thread has to.
@@ -176,54 +209,58 @@ class IoThread:
 
         Returns:
             Whether a wake-up has come.
+
+        Raises:
+            ForkedProcessError: the context belongs to the parent of this forked process.
         """
+        self.refuse_if_inherited()
         readers = None if self._loop is None else self._loop.readers
         ends_ns = None if timeout_sec is None else steady_ns() + timeout_sec * 1e9
-        left_s = timeout_sec
-        if readers is not None and (left_s is None or left_s > PRECISE_S) and readers.begin():
+        if (
+            readers is not None
+            and (timeout_sec is None or timeout_sec > PRECISE_S)
+            and uninterrupted.begin()
+        ):
             try:
-                while left_s is None or left_s > PRECISE_S:
-                    wakeup.rouse = readers.rouse
-                    if wakeup.take(False):
-                        return True
-                    readable = readers.wait(None if left_s is None else left_s - PRECISE_S)
-                    wakeup.rouse = None
-                    borrowing.active = True
+                uninterrupted.current.rouse = readers.rouse
+                if readers.begin():
                     try:
-                        may_go_on = readers.call(readable)
+                        if read_until(wakeup, readers, ends_ns):
+                            return True
                     finally:
-                        borrowing.active = False
-                        if postponed:
-                            call_postponed()
-                    if wakeup.take(False):
-                        return True
-                    if not may_go_on:
-                        break
-                    left_s = None if ends_ns is None else (ends_ns - steady_ns()) / 1e9
+                        wakeup.rouse = None
+                        readers.end()
             finally:
-                wakeup.rouse = None
-                readers.end()
+                uninterrupted.end()
         return wakeup.wait(None if ends_ns is None else (ends_ns - steady_ns()) / 1e9)
 
     def pace(self) -> None:
         """Wait while more is posted than the thread has done; for those who post much."""
-        if len(self._work) >= MOST_WAITING and not self.is_current:
-            turn = Event()
-            self.post(turn.set)
-            turn.wait()
+        if (
+            len(self._work) >= MOST_WAITING
+            and not self.is_current
+            and not uninterrupted.current.active
+        ):
+            turn = Wakeup()
+            self.post(turn.wake)
+            turn.wait(None)
 
     def _schedule(self) -> None:
         if self._ended:
             self._drain()
-        elif not self._scheduled:
-            self._scheduled = True
+        elif self._woken_after != self._looks and not self._inherited:
+            looks = self._looks
             try:
                 self.loop.call_soon_threadsafe(self._drain)
             except RuntimeError:  # the loop has just been closed
                 self._drain()
+                return
+            # Not before it is woken: a handler of a signal may interrupt this, post something
+            # itself and wait for it; or raise, so that the loop is never woken.
+            self._woken_after = looks
 
     def _drain(self) -> None:
-        self._scheduled = False
+        self._looks += 1
         work = self._work
         left = SLICE
         while work and left:
@@ -240,6 +277,25 @@ class IoThread:
         if work:
             self._schedule()
 
+    def _refuse_if_ended(self) -> None:
+        if self._ended:
+            raise InvalidHandle("the context is shut down")
+
+    def refuse_if_inherited(self) -> None:
+        """Raise in a forked child.
+
+        Raises:
+            ForkedProcessError: the context belongs to the parent of this forked process.
+        """
+        if self._inherited:
+            raise ForkedProcessError("the context of rclpy")
+
+    def abandon(self) -> None:
+        """Leave everything to the parent process, from which this one was forked."""
+        self._inherited = True
+        self._loop = None
+        self._work.clear()
+
     def _stop(self) -> None:
         if self._stopping is not None:
             self._stopping.set()
@@ -249,12 +305,13 @@ class IoThread:
             with asyncio.Runner(loop_factory=LendableLoop) as runner:
                 runner.run(self._run())
         except BaseException as error:
-            if self._opened.done():
+            if self._loop is not None:
                 logger.exception("a context ended")
             else:
-                self._opened.set_exception(error)
+                self._failure = error
         finally:
             self._ended = True
+            self._opened.wake()
             while self._work:
                 self._drain()
 
@@ -265,7 +322,7 @@ class IoThread:
             self._loop = loop
             self._stopping = asyncio.Event()
             watching = tasks.create_task(self._watch_graph())
-            self._opened.set_result(None)
+            self._opened.wake()
             self._drain()  # a signal may have ended `start`, so that `stop` is here already
             await self._stopping.wait()
             watching.cancel()
@@ -291,3 +348,26 @@ class IoThread:
             await self.context.graph.changed()
             for watcher in list(self._graph_watchers):
                 watcher()
+
+
+def read_until(wakeup: Wakeup, readers: Readers, ends_ns: float | None) -> bool:
+    """Read what comes in, in place of the loop, and return whether a wake-up has come.
+
+    It ends without one shortly before the time has passed, when the loop is not to be had, and when
+    a signal is to be handled.
+    """
+    while not uninterrupted.postponed:
+        left_s = None if ends_ns is None else (ends_ns - steady_ns()) / 1e9
+        if left_s is not None and left_s <= PRECISE_S:
+            break
+        wakeup.rouse = readers.rouse
+        if wakeup.take(False):
+            return True
+        readable = readers.wait(None if left_s is None else left_s - PRECISE_S)
+        wakeup.rouse = None
+        may_go_on = readers.call(readable)
+        if wakeup.take(False):
+            return True
+        if not may_go_on:
+            break
+    return False

@@ -210,7 +210,7 @@ class NodeHandle(Destroyable):
             self._stop_rosout()
         bare = getattr(self, "bare", None)
         if bare is not None:
-            self.io.post(bare.destroy_node)
+            self.io.post(partial(self.io.change_delivery, bare.destroy_node))
         self.signal.notify()
 
 

@@ -1,4 +1,4 @@
-"""SIGINT and SIGTERM: they shut contexts down, and then do what they did before."""
+"""SIGINT, SIGTERM and SIGHUP: they shut contexts down, and then do what they did before."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from enum import IntFlag
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from aionode.clock import MachineTime
 from aionode.rclpy._impl.context import living_contexts
-from aionode.rclpy._impl.io_thread import postpone
 from aionode.rclpy._impl.timers import GuardConditionHandle
+from aionode.rclpy._impl.uninterrupted import own_handlers, postpone
 
 if TYPE_CHECKING:
     from types import FrameType
@@ -38,12 +39,26 @@ SIGNALS = {
     SignalHandlerOptions.SIGTERM: signal.SIGTERM,
 }
 
+HANGUP = getattr(signal, "SIGHUP", None)
+"""The terminal, or the session of ssh, is lost. rclpy's programs end by it without cleanup; here it
+is a second SIGTERM, unless the program or ``nohup`` has made something else of it.
+"""
+
+AGAIN_S = 1.0
+"""For how long after a SIGINT another one is the same Ctrl-C.
+
+A terminal sends it to all processes of a group, and those that have started others forward it. A
+second KeyboardInterrupt would end the cleanup that the first one began.
+"""
+
+steady_ns = MachineTime().steady_ns
+
 replaced: dict[int, Any] = {}
 """By signal: the handler that was there before."""
 
 
-guards: weakref.WeakSet[GuardConditionHandle] = weakref.WeakSet()
-"""What is triggered by each of the signals."""
+guards: weakref.WeakValueDictionary[int, GuardConditionHandle] = weakref.WeakValueDictionary()
+"""What is triggered by each of the signals, by its `id`."""
 
 
 def current_options() -> SignalHandlerOptions:
@@ -57,8 +72,15 @@ def current_options() -> SignalHandlerOptions:
 
 def install(options: SignalHandlerOptions) -> None:
     """Handle these signals. In threads other than the main one nothing can be changed."""
-    for option, number in SIGNALS.items():
-        if option in options and number not in replaced:
+    numbers = [number for option, number in SIGNALS.items() if option in options]
+    if (
+        SignalHandlerOptions.SIGTERM in options
+        and HANGUP is not None
+        and signal.getsignal(HANGUP) is signal.SIG_DFL
+    ):
+        numbers.append(HANGUP)
+    for number in numbers:
+        if number not in replaced:
             try:
                 replaced[number] = signal.signal(number, handle)
             except ValueError:  # not the main thread
@@ -79,15 +101,42 @@ def uninstall() -> None:
 def handle(number: int, frame: FrameType | None) -> None:
     """Shut all contexts down, and call the handler that was there before.
 
-    The default of SIGTERM, which ends the process, is left out: the executors end, and with them
-    the program.
+    The default of SIGTERM and SIGHUP, which ends the process, is left out: the executors end, and
+    with them the program.
     """
     if postpone(partial(handle, number, None)):
         return
-    for context in list(living_contexts):
+    contexts = living_contexts()
+    for context in contexts:
         context.interrupt()
-    for guard in list(guards):
-        guard.trigger_guard_condition()
+    for reference in guards.valuerefs():  # not iterated over: other threads add some meanwhile
+        guard = reference()
+        if guard is not None:
+            guard.trigger_guard_condition()
     before = replaced.get(number)
-    if callable(before):
+    if not callable(before) or (before is signal.default_int_handler and is_again()):
+        return
+    try:
         before(number, frame)
+    except BaseException:
+        for context in contexts:
+            context.note_told()
+        raise
+
+
+class Interrupt:
+    """The last Ctrl-C that became a KeyboardInterrupt."""
+
+    at_ns: float = float("-inf")
+
+
+def is_again() -> bool:
+    """Whether a SIGINT belongs to the last Ctrl-C; if not, it is the last one from now on."""
+    now_ns = steady_ns()
+    if now_ns - Interrupt.at_ns < AGAIN_S * 1e9:
+        return True
+    Interrupt.at_ns = now_ns
+    return False
+
+
+own_handlers.add(handle)

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from aionode.bare_node import BareEndpoint, BarePublisher
     from aionode.graph import EndpointInfo
-    from aionode.qos import QoSProfile
     from aionode.rclpy._impl.destroyable import Arrivals
     from aionode.rclpy._impl.node import NodeHandle
 
@@ -50,9 +49,10 @@ class PublisherHandle(Destroyable):
         self.io = node.io
         node.context_handle.refuse_after_shutdown("Failed to create publisher")
         name = node.resolve(topic)
-        self.bare: BarePublisher = node.io.call(
+        create = partial(
             node.bare.create_publisher, self._support.wire_type, name, profile_of(qos_profile)
         )
+        self.bare: BarePublisher = node.io.call(node.io.change_delivery, create)
         self.feed: Feed = []
         self.assertions: list[Callable[[bytes], None]] = []  # of subscriptions only
 
@@ -77,23 +77,32 @@ class PublisherHandle(Destroyable):
 
         Raises:
             RCLError: the context is shut down, or a KEEP_ALL subscription of it is full.
+            ForkedProcessError: the context belongs to the parent of this forked process.
         """
         if self._node.context_handle.is_shut_down:
-            self._refuse_after_shutdown("Failed to publish")
-        msg = self._support.wire_type(data)
+            self._node.context_handle.refuse_to_publish()
         io = self.io
         io.pace()
-        with io.delivery_lock:
-            try:
-                sample_info = self.bare.publish_here(msg, now_ns())
-            except QueueFullError as error:
-                raise RCLError(f"Failed to publish: {error}") from error
-            if sample_info is not None:
-                io.send(partial(self.bare.publish_elsewhere, msg, sample_info))
+        io.deliver(self._publish_here, self._support.wire_type(data))
         if self.feed:
             io.post(self._tell_feed)
 
-    def _refuse_after_shutdown(self, failure: str) -> None:
+    def _publish_here(self, msg: Any) -> Callable[[], object] | None:
+        """Deliver a message inside this context; return what sends it to others."""
+        try:
+            sample_info = self.bare.publish_here(msg, now_ns())
+        except QueueFullError as error:
+            raise RCLError(f"Failed to publish: {error}") from error
+        if sample_info is None:
+            return None
+        return partial(self.bare.publish_elsewhere, msg, sample_info)
+
+    def refuse_after_shutdown(self, failure: str) -> None:
+        """Raise after shutdown, whoever has done that.
+
+        Raises:
+            RCLError: the context is shut down.
+        """
         self._node.context_handle.refuse_after_shutdown(failure, "publisher")
 
     def _tell_feed(self) -> None:
@@ -106,7 +115,7 @@ class PublisherHandle(Destroyable):
         Raises:
             RCLError: the context is shut down.
         """
-        self._refuse_after_shutdown("failed to get subscription count")
+        self.refuse_after_shutdown("failed to get subscription count")
         return len(self.io.call(self.bare.matched))
 
     def get_topic_name(self) -> str:
@@ -123,7 +132,7 @@ class PublisherHandle(Destroyable):
         Raises:
             RCLError: the context is shut down.
         """
-        self._refuse_after_shutdown("Failed to assert liveliness on the Publisher")
+        self.refuse_after_shutdown("Failed to assert liveliness on the Publisher")
         self.io.post(self._assert_liveliness)
 
     def _assert_liveliness(self) -> None:
@@ -137,14 +146,14 @@ class PublisherHandle(Destroyable):
             RCLError: the context is shut down.
         """
         del timeout
-        self._refuse_after_shutdown("Failed to wait for all acknowledgements")
+        self.refuse_after_shutdown("Failed to wait for all acknowledgements")
         self.io.call(lambda: None)
         return True
 
     def _destroy(self) -> None:
         bare = getattr(self, "bare", None)
         if bare is not None:
-            self.io.post(bare.destroy)
+            self.io.post(partial(self.io.change_delivery, bare.destroy))
 
 
 class Inbox:
@@ -174,7 +183,7 @@ class Inbox:
         self.assertions: list[Callable[[bytes], None]] = []
         self._arrivals = arrivals
         self._post = post
-        self._room_waiters: list[Callable[[], None]] = []
+        self.room_waiters: list[Callable[[], None]] = []
 
     def deliver(
         self,
@@ -221,13 +230,16 @@ class Inbox:
         """Return at once: publishers of this context drop what does not fit."""
 
     def when_room(self, callback: Callable[[], None]) -> None:
-        """Call `callback` once the next message was taken."""
-        self._room_waiters.append(callback)
+        """Call `callback` once there is room; in the thread of the context only."""
+        self.room_waiters.append(callback)
+        if self.has_room():  # the last message was taken meanwhile, when nobody waited
+            self._post(self.tell_of_room)
 
-    def made_room(self) -> list[Callable[[], None]]:
-        """Return what waits for room, and forget it."""
-        waiters, self._room_waiters = self._room_waiters, []
-        return waiters
+    def tell_of_room(self) -> None:
+        """Call what waits for room, once; in the thread of the context only."""
+        waiters, self.room_waiters = self.room_waiters, []
+        for waiter in waiters:
+            waiter()
 
 
 class SubscriptionHandle(Destroyable):
@@ -258,7 +270,10 @@ class SubscriptionHandle(Destroyable):
                 content_filter_options.expression_parameters,
             )
         name = node.resolve(topic)
-        self.bare: BareEndpoint = node.io.call(self._create, name, profile)
+        create = partial(
+            node.bare.create_subscription, self._support.wire_type, name, profile, self.inbox
+        )
+        self.bare: BareEndpoint = node.io.call(node.io.change_delivery, create)
         self._lifespans: dict[bytes, int] = {}
         self._received = 0
         self._complained = False
@@ -267,12 +282,6 @@ class SubscriptionHandle(Destroyable):
     def endpoint(self) -> EndpointInfo:
         """What the graph knows of it."""
         return self.bare.endpoint
-
-    def _create(self, name: str, profile: QoSProfile) -> BareEndpoint:
-        with self.io.delivery_lock:
-            return self._node.bare.create_subscription(
-                self._support.wire_type, name, profile, self.inbox
-            )
 
     def ready(self) -> bool:
         """Return whether a message waits."""
@@ -291,9 +300,8 @@ class SubscriptionHandle(Destroyable):
                 data, sample_info, arrived_ns = inbox.items.popleft()
             except IndexError:  # another thread was faster
                 return None
-            if inbox.keep_all:
-                for waiter in inbox.made_room():
-                    self.io.post(waiter)
+            if inbox.room_waiters:
+                self.io.post(inbox.tell_of_room)
             # 0 for the messages of most publishers, which do not expire.
             if self._lifespans.get(sample_info.gid) != 0 and self._has_expired(sample_info):
                 continue
@@ -399,5 +407,5 @@ class SubscriptionHandle(Destroyable):
     def _destroy(self) -> None:
         bare = getattr(self, "bare", None)
         if bare is not None:
-            self.io.post(bare.destroy)
+            self.io.post(partial(self.io.change_delivery, bare.destroy))
         self.signal.notify()

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Generic
 from aionode.endpoints.actions.goal import GoalStatus
 from aionode.rclpy._entities import wait_until
 from aionode.rclpy._impl.actions import ActionClientHandle
+from aionode.rclpy._impl.destroyable import Wakeup
 from aionode.rclpy.action._entity import ActionEntity
 from aionode.rclpy.executors import await_or_execute
 from aionode.rclpy.qos import (
@@ -101,9 +102,9 @@ class ClientGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
 
 def blocked(future: Future[Any]) -> Any:
     """Block the thread until a future is done; return its result."""
-    done = threading.Event()
-    future.add_done_callback(lambda _: done.set())
-    done.wait()
+    done = Wakeup()
+    future.add_done_callback(lambda _: done.wake())
+    done.wait(None)
     return future.result()
 
 
@@ -157,7 +158,7 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
         self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
         # The states that were published last: they may be here before the response of a goal.
         self._states: list[Any] = []
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()
         self._logger = node.get_logger().get_child("action_client")
         node.add_waitable(self)
 

@@ -63,7 +63,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         self._action_server = action_server
         self._goal_info = goal_info
         self._goal_request = goal_request
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, ServerGoalHandle) and self.goal_id == other.goal_id
@@ -205,7 +205,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         result_timeout: float = 10,
     ) -> None:
         super().__init__(callback_group or node.default_callback_group)
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()
         self.register_handle_accepted_callback(handle_accepted_callback)
         self.register_goal_callback(goal_callback)
         self.register_cancel_callback(cancel_callback)

@@ -1,0 +1,73 @@
+"""Handlers of signals, and finalizers, use what the thread they interrupt is just using.
+
+`interruptions.py` has the programs. In rclpy a call is one of C, which nothing interrupts; here
+nothing may hang, be lost, or leave a context that no longer hears.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.support.peers import isolated_environment
+
+PROGRAM = Path(__file__).parent / "interruptions.py"
+PATIENCE_S = 40.0
+WELL = dict.fromkeys(("publish", "spin", "ask"), "well at 30 places")
+
+pytestmark = [
+    pytest.mark.timeout(60),
+    pytest.mark.skipif(sys.platform == "win32", reason="signals are POSIX's"),
+]
+
+
+def run(name: str) -> dict[str, Any]:
+    """Return what a program says."""
+    process = subprocess.run(
+        [sys.executable, "-m", "aionode.rclpy", str(PROGRAM), name],
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_S,
+        env={**os.environ, **isolated_environment()},
+        check=False,
+    )
+    assert process.stdout, process.stderr
+    said: dict[str, Any] = json.loads(process.stdout)
+    return said
+
+
+def test_a_handler_publishes_while_the_main_thread_publishes() -> None:
+    """The last command of a program that is to end: all of them are numbered and sent."""
+    assert run("publishes") == {"handled": True, "stops": True, "commands": 10_000}
+
+
+def test_a_handler_asks_while_the_main_thread_publishes_or_spins() -> None:
+    """The answer comes over a link, which some thread has to read."""
+    assert run("asks") == {"answers": True}
+
+
+def test_a_handler_creates_and_destroys_entities_while_the_main_thread_does() -> None:
+    """What is left is what the program had before, with the topic of its parameters."""
+    assert run("makes_entities") == {"left": [3, 1]}
+
+
+def test_a_handler_raises_at_any_place() -> None:
+    """A handler that ends a program does: what comes after it is sent and heard."""
+    assert run("raises") == WELL
+
+
+def test_a_handler_that_puts_itself_off_raises_at_any_place() -> None:
+    """As rclpy's own does: with it, the main thread sends and reads itself."""
+    assert run("puts_itself_off") == WELL
+
+
+@pytest.mark.parametrize("does", ["publishes", "asks"])
+def test_a_finalizer_communicates_at_any_place(does: str) -> None:
+    """The garbage collector calls it anywhere; where it cannot wait for an answer, it is told."""
+    assert run(f"finalizer_{does}") == WELL
