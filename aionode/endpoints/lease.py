@@ -103,8 +103,10 @@ class CommandLease(Generic[MsgT]):
 
     The stop goes out once, as soon as the block ends, however it ends; when the holder has
     published nothing for the time to live; when the publisher, its node or its context is
-    destroyed, or the node fails. This does not take the holder's task to run again, nor, for other
-    processes, the event loop.
+    destroyed, or the node fails. It also goes out when a second Ctrl-C ends `aionode.run` at once,
+    when the interpreter exits, and before Ctrl-Z suspends a process whose main thread has the event
+    loop. This does not take the holder's task to run again, nor, for other processes, the event
+    loop.
 
     When the time to live is over, the block is cancelled as by `asyncio.timeout`, and raises
     LeaseExpiredError. `publish` compares the time itself: a holder that stood still sends nothing.

@@ -25,6 +25,9 @@ PATIENCE_S = 40.0
 class Process:
     """A Python program whose lines can be waited for; killed in the end if it still runs.
 
+    It has a process group of its own: the system suspends no process whose group is orphaned, as
+    that of a test may be.
+
     Attributes:
         started_s: When it was started, by `time.monotonic`.
         lines: Each line so far, with when it came.
@@ -40,6 +43,7 @@ class Process:
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
+            process_group=0,
             cwd=ROOT,
             env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHONUNBUFFERED": "1", **(env or {})},
         )

@@ -4,6 +4,11 @@
 from a coroutine, a callback in a thread and a goal, and 0.0 when these end; it tells ``driving``
 and ``stopped``. With END ``signal`` it ends with a signal, with ``destroy`` it destroys its node
 when a line comes, with ``leave`` it leaves the node's block then.
+``… holder END`` publishes 1.0 on /timer with a lease of a minute, whose stop is 0.0, and tells
+``driving`` as soon as the reader hears it over the route that it keeps. Then, with END ``sleep``
+and ``loop``, it blocks its event loop, and with ``shield`` it refuses to be cancelled; with
+``exit`` it leaves the interpreter when a line comes.
+With ``run`` or ``asyncio`` after that, `aionode.run` or `asyncio.run` runs it.
 ``… commander END`` publishes 1.0 on /timer until a line comes or it is stopped; then it publishes
 ten more messages at once, the last of which is 0.0, and does not end: with END ``sleep`` and
 ``loop`` it blocks its event loop, with ``await`` only its own end.
@@ -116,6 +121,30 @@ class Commander(Node):
             await asyncio.Event().wait()
 
 
+async def holder(end: str) -> None:
+    """Drive with a lease, and end in no good way."""
+    async with Node("robot", enable_rosout=False, start_parameter_services=False) as node:
+        publisher = node.create_publisher(Float64, "/timer", 20)
+        await publisher.wait_for_subscribers()
+        async with publisher.lease(stop=Float64(data=0.0), ttl_sec=60.0) as lease:
+            for _ in range(25):  # while a link takes over
+                lease.publish(Float64(data=1.0))
+                await node.get_clock().sleep(STEP_SEC)
+            tell("driving")
+            if end in {"sleep", "loop"}:
+                lease.publish(Float64(data=2.0))
+                block(end)
+            if end == "exit":
+                sys.stdin.readline()
+                asyncio.get_running_loop().stop()  # the loop ends, and nothing that runs in it
+            while True:
+                lease.publish(Float64(data=1.0))
+                try:
+                    await node.get_clock().sleep(STEP_SEC)
+                except asyncio.CancelledError:
+                    tell("no")
+
+
 async def robot(end: str) -> None:
     """Drive until the end."""
     lines: asyncio.Queue[str] = asyncio.Queue()
@@ -152,6 +181,14 @@ class Reader(Node):
 if __name__ == "__main__":
     if sys.argv[1] == "reader":
         aionode.run(Reader, args=[])
+    elif sys.argv[1:] == ["holder", "exit"]:
+        loop = asyncio.new_event_loop()
+        kept = [loop.create_task(holder("exit"))]
+        loop.run_forever()
+    elif sys.argv[1] == "holder" and sys.argv[3] == "asyncio":
+        asyncio.run(holder(sys.argv[2]))
+    elif sys.argv[1] == "holder":
+        aionode.run(lambda: holder(sys.argv[2]), args=[])
     elif sys.argv[1] == "commander":
         aionode.run(lambda: Commander(sys.argv[2]), args=[])
     elif sys.argv[2] == "run":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import threading
 
@@ -117,3 +118,86 @@ def test_two_signals_a_few_milliseconds_apart_stop_a_robot(
 
         reader.expect("/timer 0.0", "/thread 0.0")
         assert robot.wait() == 0
+
+
+HOLDERS = [
+    ("on", "sleep"),
+    ("off", "loop"),
+    ("on", "shield"),
+    pytest.param("off", "sleep", marks=pytest.mark.stress),
+    pytest.param("on", "loop", marks=pytest.mark.stress),
+    pytest.param("off", "shield", marks=pytest.mark.stress),
+]
+
+
+@pytest.mark.parametrize(("link", "end"), HOLDERS)
+def test_a_second_signal_sends_the_stop_of_a_lease(
+    monkeypatch: pytest.MonkeyPatch, link: str, end: str
+) -> None:
+    """Long before its time to live is over, also past a loop that is blocked."""
+    monkeypatch.setenv("AIONODE_LINK", link)
+    with Process(PROGRAM, "reader") as reader, Process(PROGRAM, "holder", end, "run") as robot:
+        robot.expect("driving")
+        reader.expect("/timer 2.0" if end != "shield" else "/timer 1.0")
+        robot.send(signal.SIGINT)
+        threading.Event().wait(1.1)
+
+        took_s, status = robot.stop(signal.SIGINT)
+
+        reader.expect("/timer 0.0")
+        assert status == 130
+        assert took_s < 0.2 + 0.2
+        assert reader.rest_so_far()[-1] == "/timer 0.0"
+
+
+@pytest.mark.parametrize(("link", "end"), HOLDERS)
+def test_ctrl_z_sends_the_stop_of_a_lease_before_it_suspends_the_program(
+    monkeypatch: pytest.MonkeyPatch, link: str, end: str
+) -> None:
+    """Nobody commands the robot from then on, and nothing follows the stop."""
+    monkeypatch.setenv("AIONODE_LINK", link)
+    with Process(PROGRAM, "reader") as reader, Process(PROGRAM, "holder", end, "run") as robot:
+        robot.expect("driving")
+        reader.expect("/timer 2.0" if end != "shield" else "/timer 1.0")
+
+        robot.send(signal.SIGTSTP)
+
+        reader.expect("/timer 0.0")
+        os.waitid(os.P_PID, robot.pid, os.WSTOPPED)
+        robot.send(signal.SIGCONT)
+        robot.send(signal.SIGTERM)
+        assert reader.rest_so_far()[-1] == "/timer 0.0"
+
+
+@pytest.mark.parametrize("link", ["on", pytest.param("off", marks=pytest.mark.stress)])
+def test_a_lease_that_is_open_when_the_interpreter_exits_sends_its_stop(
+    monkeypatch: pytest.MonkeyPatch, link: str
+) -> None:
+    """Its event loop was stopped, and nothing runs in it any more."""
+    monkeypatch.setenv("AIONODE_LINK", link)
+    with Process(PROGRAM, "reader") as reader, Process(PROGRAM, "holder", "exit") as robot:
+        robot.expect("driving")
+        robot.write("exit")
+
+        reader.expect("/timer 0.0")
+        assert robot.wait() == 0
+
+
+def test_a_lease_in_a_program_of_asyncio_ends_with_each_kind_of_ctrl_c(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The second raises KeyboardInterrupt in a loop that is blocked, the third in `asyncio.run`."""
+    monkeypatch.setenv("AIONODE_LINK", "on")
+    for end, count in (("sleep", 2), ("shield", 3)):
+        with (
+            Process(PROGRAM, "reader") as reader,
+            Process(PROGRAM, "holder", end, "asyncio") as robot,
+        ):
+            robot.expect("driving")
+            reader.expect("/timer 1.0")
+            for _ in range(count):
+                robot.send(signal.SIGINT)
+                threading.Event().wait(0.3)
+
+            reader.expect("/timer 0.0")
+            assert robot.wait() == -signal.SIGINT

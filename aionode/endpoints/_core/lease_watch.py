@@ -9,6 +9,7 @@ from queue import Empty, SimpleQueue
 from typing import Final, Protocol
 
 from aionode._sudden_end import STOPS
+from aionode._suspension import suspension
 from aionode.clock import perf_ns
 
 __all__ = ["REPEAT_S", "LeaseWatch", "Watched", "watch"]
@@ -94,6 +95,7 @@ class LeaseWatch:
 
     def add(self, lease: Watched) -> None:
         """Watch a lease until `remove`."""
+        suspension.install()
         with self._guard:
             self._leases[lease] = Record()
             if self._thread is not None:
@@ -107,6 +109,7 @@ class LeaseWatch:
     def remove(self, lease: Watched) -> None:
         """Watch a lease no more."""
         if self._leases.pop(lease, None) is not None and not self._leases:
+            suspension.remove()
             self.wake()  # to its end
 
     def wake(self) -> None:
