@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial, wraps
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from aionode import names, qos
 from aionode._node import builtin_services
@@ -151,6 +151,8 @@ class Node(NodeEndpoints, NodeGraphQueries):
         concurrent: bool | int = True,
         on_error: OnError = "log",
         offload: bool = False,
+        on_client_lost: Literal["cancel", "continue"] = "continue",
+        client_lost_sec: float = 3.0,
     ) -> ActionServer[GoalT, ResultT, FeedbackT]:
         """Return a server that executes goals; see `aionode.ActionServer` for all arguments."""
         from aionode.action import ActionServer  # nodes without actions start faster
@@ -167,6 +169,8 @@ class Node(NodeEndpoints, NodeGraphQueries):
             concurrent=concurrent,
             on_error=on_error,
             offload=offload,
+            on_client_lost=on_client_lost,
+            client_lost_sec=client_lost_sec,
         )
 
     def create_action_client(

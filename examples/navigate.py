@@ -69,7 +69,11 @@ async def serve(node: Node) -> None:
         return NavigateTo.Result(travelled=distance)
 
     node.create_action_server(
-        NavigateTo, "/navigate_to", drive, cancel_callback=lambda _handle: CancelResponse.ACCEPT
+        NavigateTo,
+        "/navigate_to",
+        drive,
+        cancel_callback=lambda _handle: CancelResponse.ACCEPT,
+        on_client_lost="cancel",
     )
     node.get_logger().info("Action server ready: /navigate_to")
     await asyncio.Event().wait()

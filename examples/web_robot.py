@@ -67,6 +67,7 @@ class Robot(Node):
             self.drive,
             goal_callback=self.decide,
             cancel_callback=lambda _handle: CancelResponse.ACCEPT,
+            on_client_lost="cancel",
         )
         self.create_subscription(Float32, "/battery", self.check_battery, 10)
         self.get_logger().info("Ready to drive")

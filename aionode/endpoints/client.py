@@ -224,7 +224,7 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
         except BaseException:
             exchange.cancel()
             raise
-        if self._introspects:
+        if self._introspects and not self._is_internal(request):
             self._introspect(request, sample_info, exchange)
         return exchange
 

@@ -79,6 +79,7 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
             WAITING_REQUESTS, self.stats, keep_all=True
         )
         self._concurrent = checked_concurrency(concurrent, self._subject)
+        self._client_gid = b""  # of the last request that was begun
         wants = accepts(
             callback, 2, 1, subject=self._subject, wanted="(request, response) or (request)"
         )
@@ -122,7 +123,8 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
             return None
         self.stats.received += 1
         self.stats.queue_wait.record(perf_ns() - entered_ns)
-        if self._introspects:
+        self._client_gid = request.sample_info.gid
+        if self._introspects and not self._is_internal(request.message):
             self._introspection.publish(REQUEST_RECEIVED, request.sample_info, request.message)
         try:
             if self._wants_response:
@@ -158,7 +160,7 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
                 f"{type_name(self.srv_type.Response)}; it must end with `return response`"
             )
         request.reply(response)
-        if self._introspects:
+        if self._introspects and not self._is_internal(request.message):
             self._introspection.publish(RESPONSE_SENT, request.sample_info, response)
 
     def _close(self) -> None:

@@ -153,6 +153,8 @@ class IntrospectedEntity(Endpoint):
         self.srv_type = srv_type
         self._introspection = Introspection(srv_type, setup.endpoint.name, create_publisher)
         self._introspects = False  # whether it publishes events
+        # Returns whether a request is internal, and is not to be published.
+        self._is_internal: Callable[[Any], bool] = lambda _request: False
 
     @property
     def srv_name(self) -> str:

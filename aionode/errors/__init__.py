@@ -306,15 +306,18 @@ class GoalAbortedError(GoalError):
 
 
 class GoalCanceledError(GoalError):
-    """A goal was canceled, by this client or by another.
+    """A goal was canceled: by this client, by another, or by a server that had lost this one.
 
     Attributes:
         result: The result message, as far as the server filled it in.
+        error_text: Why the server canceled it by itself; empty if a client asked for it.
     """
 
-    def __init__(self, action: str, goal_id: str, result: object) -> None:
+    def __init__(self, action: str, goal_id: str, result: object, error_text: str = "") -> None:
         self.result = result
-        super().__init__(action, goal_id, "was canceled")
+        self.error_text = error_text
+        reason = f": {error_text}" if error_text else ""
+        super().__init__(action, goal_id, f"was canceled{reason}")
 
 
 class GoalLostError(GoalError):

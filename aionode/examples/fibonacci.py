@@ -27,6 +27,7 @@ class FibonacciServer(Node):
             "/fibonacci",
             self.execute,
             cancel_callback=lambda _handle: CancelResponse.ACCEPT,
+            on_client_lost="cancel",
         )
 
     async def execute(self, handle: Handle) -> Fibonacci.Result:

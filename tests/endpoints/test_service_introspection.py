@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Literal
 
 import pytest
 
@@ -222,16 +222,19 @@ async def test_invalid_arguments_are_refused(bench: Bench) -> None:
         bench.client.configure_introspection(None, 10, METADATA)  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize("on_client_lost", ["cancel", "continue"])
 async def test_the_services_of_an_action_are_introspected(
-    node: Node, node_factory: Callable[..., Node]
+    node: Node,
+    node_factory: Callable[..., Node],
+    on_client_lost: Literal["cancel", "continue"],
 ) -> None:
-    """On either side: a goal, and the result that was asked for."""
+    """On either side: a goal, and the result that was asked for; no signs of life."""
 
     def execute(goal: Any) -> Fibonacci.Result:
         goal.succeed()
         return Fibonacci.Result(sequence=[0, 1])
 
-    server = ActionServer(node, Fibonacci, "/count", execute)
+    server = ActionServer(node, Fibonacci, "/count", execute, on_client_lost=on_client_lost)
     client = ActionClient(node, Fibonacci, "/count")
     goals: list[Any] = []
     results: list[Any] = []

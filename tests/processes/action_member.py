@@ -2,16 +2,18 @@
 
 ``python tests/processes/action_member.py server`` serves /count and tells ``open``, ``executing``,
 ``ended STATUS``; a line with a word on stdin makes it tell ``WORD GOALS RESULTS REQUESTS``, the
-sizes of its tables. ``… client STEPS`` sends one goal of so many steps and tells ``open``,
-``ready``, ``accepted``, ``feedback N``, ``result STATUS TEXT``, ``error TYPE: TEXT``, and
-``tables GOALS``. ``… impatient SECONDS`` calls with a goal that does not end, leaves the call after
-so many seconds, as anyio and web servers do, and ends at once.
+sizes of its tables. ``… server cancel`` cancels the goals of lost clients. ``… client STEPS``
+sends one goal of so many steps and tells ``open``, ``ready``, ``accepted``, ``feedback N``,
+``result STATUS TEXT``, ``error TYPE: TEXT``, and ``tables GOALS``. ``… blocked`` sends a goal that
+does not end, tells ``blocks``, and blocks its loop. ``… impatient SECONDS`` calls with a goal that
+does not end, leaves the call after so many seconds, as anyio and web servers do, and ends at once.
 """
 
 from __future__ import annotations
 
 import asyncio
 import sys
+import time  # noqa: TID251  # to block
 from typing import Any
 
 import anyio
@@ -23,6 +25,7 @@ from aionode.interfaces.example_interfaces.action import Fibonacci
 
 STEP_SEC = 0.02
 RESULT_TIMEOUT_SEC = 0.2
+CLIENT_LOST_SEC = 0.6
 
 
 def tell(*words: object) -> None:
@@ -42,6 +45,8 @@ class Counter(Node):
             self.count,
             cancel_callback=lambda _goal: CancelResponse.ACCEPT,
             result_timeout=RESULT_TIMEOUT_SEC,
+            on_client_lost="cancel" if sys.argv[2:] == ["cancel"] else "continue",
+            client_lost_sec=CLIENT_LOST_SEC,
         )
 
     async def count(self, goal: ServerGoalHandle[Any, Any, Any]) -> Fibonacci.Result:
@@ -111,6 +116,19 @@ async def leave() -> None:
             await client.call(Fibonacci.Goal(order=100_000))
 
 
+async def block() -> None:
+    """Be a client whose loop is blocked by a callback."""
+    async with Node("asking", enable_rosout=False, start_parameter_services=False) as node:
+        client = node.create_action_client(Fibonacci, "/count")
+        await client.wait_for_server()
+        goal = await client.send_goal(Fibonacci.Goal(order=100_000))
+        await anext(goal)
+        tell("blocks")
+        time.sleep(20)  # noqa: ASYNC251  # a callback that does so is what is tested
+
+
+PARTS = {"server": serve, "client": ask, "impatient": leave, "blocked": block}
+
 if __name__ == "__main__":
-    aionode.run({"server": serve, "client": ask, "impatient": leave}[sys.argv[1]])
+    aionode.run(PARTS[sys.argv[1]])
     tell("stopped")

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.processes.action_member import CLIENT_LOST_SEC
 from tests.processes.process import Process
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 PROGRAM = "tests/processes/action_member.py"
 LONG = "100000"
@@ -93,6 +94,55 @@ def test_the_goal_of_a_killed_client_goes_on_and_leaves_nothing_behind() -> None
         client.send(signal.SIGKILL)
         server.expect("ended SUCCEEDED")
         expect_empty_tables(server)
+
+
+def kill(client: Process) -> None:
+    """End the process at once."""
+    client.send(signal.SIGKILL)
+
+
+def freeze(client: Process) -> None:
+    """Stop the process; its sockets stay open."""
+    client.send(signal.SIGSTOP)
+
+
+def let_it_block(client: Process) -> None:
+    """Wait until its loop is blocked; its other threads go on."""
+    client.expect("blocks")
+
+
+@pytest.mark.parametrize(
+    ("part", "lose", "link"),
+    [
+        (["client", LONG], kill, "on"),
+        (["client", LONG], freeze, "on"),
+        (["client", LONG], freeze, "off"),
+        (["blocked"], let_it_block, "on"),
+    ],
+    ids=["killed", "frozen", "frozen-zenoh", "blocked"],
+)
+def test_the_goal_of_a_lost_client_is_canceled(
+    monkeypatch: pytest.MonkeyPatch,
+    part: list[str],
+    lose: Callable[[Process], None],
+    link: str,
+) -> None:
+    """Half a second after `client_lost_sec` at the latest; while it is alive, the goal goes on."""
+    monkeypatch.setenv("AIONODE_LINK", link)
+    with Process(PROGRAM, "server", "cancel") as server:
+        server.expect("open")
+        with Process(PROGRAM, *part) as client:
+            if part[0] == "client":
+                client.expect("feedback 5")
+            lose(client)
+            lost_s = time.monotonic()
+            ended_s = server.started_s + server.expect("ended CANCELED") - lost_s
+            kill(client)
+        lines = [line for _, line in server.lines]
+        expect_empty_tables(server)
+
+    assert ended_s < CLIENT_LOST_SEC + 0.5
+    assert [line for line in lines if line.startswith("ended")] == ["ended CANCELED"]
 
 
 def test_ctrl_c_at_the_client_cancels_its_goal() -> None:

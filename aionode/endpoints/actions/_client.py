@@ -16,7 +16,8 @@ from aionode.endpoints._core.loop_affinity import in_thread_of_node
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints.actions._cancel_request import CancelRequest
 from aionode.endpoints.actions._client_goal import ActionResult, ClientGoalHandle
-from aionode.endpoints.actions._common import ActionEntity, expect_action_type
+from aionode.endpoints.actions._common import ActionEntity, expect_action_type, uuid_message
+from aionode.endpoints.actions._life_signs import LifeSigns
 from aionode.endpoints.actions.goal import GoalStatus, reason_id
 from aionode.endpoints.stats import CallbackStats
 from aionode.errors import (
@@ -169,8 +170,11 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
                     status_sub_qos_profile,
                 )
             )
+            self._get_result._is_internal = self._is_sign
+            self._signs = LifeSigns(self._get_result, node.graph, node.context.time_base)
         except BaseException:
-            self._close_parts()
+            for part in self._parts:
+                part.destroy()
             raise
         node._add_entity(self)
 
@@ -253,7 +257,8 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         Raises:
             GoalRejectedError: the server rejected the goal.
             GoalAbortedError: the server aborted the goal; carries the reason, if known.
-            GoalCanceledError: the goal was canceled by a request of another client.
+            GoalCanceledError: the goal was canceled by a request of another client, or by the
+                server because it had lost this one; carries the reason, if known.
             GoalLostError: the server went away, or no longer knows the goal.
             TypeError, MessageError, ServiceError, EntityDestroyedError, CancelledError: as
                 `send_goal`.
@@ -265,7 +270,9 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         if outcome.status is GoalStatus.SUCCEEDED:
             return outcome.result
         if outcome.status is GoalStatus.CANCELED:
-            raise GoalCanceledError(self.action_name, handle.text, outcome.result)
+            raise GoalCanceledError(
+                self.action_name, handle.text, outcome.result, outcome.error_text
+            )
         if outcome.status is GoalStatus.ABORTED:
             raise GoalAbortedError(
                 self.action_name, handle.text, outcome.result, outcome.error_text
@@ -360,12 +367,14 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         handle.accepted = True
         handle.stamp = response.stamp
         handle._update_status(GoalStatus.ACCEPTED)
+        self._signs.add(handle._key)
         self._accepted.put(handle)
         return handle
 
     def _forget(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
         if self._goals.get(goal._key) is goal:
             del self._goals[goal._key]
+            self._signs.remove(goal._key)
 
     async def _kept(self, answer: asyncio.Future[T]) -> T:
         """Wait for `answer`, which stays open if the wait ends before it.
@@ -417,6 +426,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             self._begin_to_cancel(goal).answer.add_done_callback(answered)
 
     def _begin_to_cancel(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> CancelRequest:
+        goal._cancel_requested = True
         request = CancelRequest(self._cancel_goal, goal, self._on_cancel_answered)
         self._cancel_requests[request] = None
         self._expect_at_end(request.answer)
@@ -424,6 +434,9 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
 
     def _on_cancel_answered(self, request: CancelRequest) -> None:
         self._cancel_requests.pop(request, None)
+        self._close_parts_after_destroy()
+
+    def _close_parts_after_destroy(self) -> None:
         if self.destroyed:
             self._close_parts()
 
@@ -486,7 +499,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             await self._until_askable()
             response = await self._ask(goal.goal_id)
             status = GoalStatus(response.status)
-            text = await self._reason(goal) if status is GoalStatus.ABORTED else ""
+            text = await self._reason(goal, status)
         except ServiceUnavailableError:
             problem = "the server went away before it ended"
             goal._end(lost=GoalLostError(self.action_name, goal.text, problem))
@@ -529,8 +542,11 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         request = self.action_type.Impl.GetResultService.Request(goal_id=goal_id)
         return await self._get_result.call(request, timeout_sec)
 
-    async def _reason(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> str:
-        """Return why `goal` was aborted, if the server runs aionode and knows; else ""."""
+    async def _reason(self, goal: ClientGoalHandle[ResultT, FeedbackT], status: GoalStatus) -> str:
+        """Return why the server ended `goal`, if it runs aionode and knows; else ""."""
+        is_own_wish = status is GoalStatus.CANCELED and goal._cancel_requested
+        if is_own_wish or status not in (GoalStatus.ABORTED, GoalStatus.CANCELED):
+            return ""
         try:
             await self._ask(uuid_message(reason_id(goal._key)), ANSWER_LIMIT_S)
         except ServiceError as error:
@@ -544,7 +560,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     def _close(self) -> None:
         """Withdraw the client; end its waits, and cancel the goals that tasks await.
 
-        The other goals continue at the server.
+        The other goals continue at the server, which is told so.
         """
         for goal in self._goals.values():
             if goal._is_awaited and not goal.done:
@@ -555,21 +571,20 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             if not wait.done():
                 wait.set_result(None)
         self._futures.close()
+        for answer in self._signs.leave(self._close_parts_after_destroy):
+            self._expect_at_end(answer)
         self._close_parts()
         goals, self._goals = self._goals, {}
         for goal in goals.values():
             goal._end()
 
     def _close_parts(self) -> None:
-        """Destroy all parts, except those that are still needed to cancel goals."""
+        """Destroy all parts, except those that are still needed to cancel or to leave goals."""
+        needed: list[object] = []
+        if self._cancel_requests:
+            needed += [self._send_goal, self._cancel_goal]
+        if self._signs.is_leaving:  # a server could take the end of the first for a loss
+            needed += [self._send_goal, self._get_result]
         for part in self._parts:
-            if not (self._cancel_requests and part in (self._send_goal, self._cancel_goal)):
+            if part not in needed:
                 part.destroy()
-
-
-def uuid_message(goal_id: bytes) -> Any:
-    """Return 16 bytes as unique_identifier_msgs/msg/UUID."""
-    # Imported here, because programs without actions never need this message.
-    from aionode.interfaces.unique_identifier_msgs.msg import UUID
-
-    return UUID(uuid=list(goal_id))

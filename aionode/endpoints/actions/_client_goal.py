@@ -37,8 +37,8 @@ class ActionResult(Generic[ResultT]):
         status: ``SUCCEEDED``, ``CANCELED`` or ``ABORTED``; ``UNKNOWN`` if the server does not, or
             no longer, know the goal.
         result: The result message; an empty one if the server had none.
-        error_text: Why the goal was aborted; empty if no reason was given, or if the server does
-            not run aionode.
+        error_text: Why the goal was aborted, or canceled by the server itself, which had lost its
+            client; empty if no reason was given, or if the server does not run aionode.
     """
 
     status: GoalStatus
@@ -119,6 +119,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         # The exchange that sends the goal, from when that begins.
         self._sending: Exchange | None = None
         self._cancel_sent = False  # whether a cancel request is under way
+        self._cancel_requested = False  # whether there was ever one from here
         self._waiting = 0  # how many tasks wait for the goal
         self._blocks = 0  # how many `async with` blocks it is bound to
         self._iterations: WeakSet[FeedbackIterator[Any]] = WeakSet()

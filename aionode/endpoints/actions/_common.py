@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import asyncio
 import math
 from collections.abc import Awaitable
 from typing import TYPE_CHECKING, Any
 
 from aionode.endpoints._core.entity import EndStage, Entity
+from aionode.endpoints.actions.goal import is_sign
 from aionode.endpoints.client import Client
 from aionode.endpoints.service import Service
 from aionode.errors import brief, shortened
@@ -23,12 +23,16 @@ __all__ = [
     "AbortReason",
     "ActionEntity",
     "awaited",
+    "checked_client_lost",
     "expect_action_type",
-    "in_event_loop",
     "pass_reason",
     "seconds_to_ns",
     "stamp_ns",
+    "uuid_message",
 ]
+
+
+SHORTEST_LOSS_NS = 30_000_000
 
 
 class ActionEntity(Entity):
@@ -37,10 +41,15 @@ class ActionEntity(Entity):
     def __init__(self, subject: str, stage: EndStage = EndStage.CALLBACKS) -> None:
         super().__init__(subject, stage)
         self._parts: list[Entity] = []
+        self._goals: dict[bytes, Any] = {}  # those that are known, by id
 
     def _part(self, part: Any) -> Any:
         self._parts.append(part)
         return part
+
+    def _is_sign(self, request: Any) -> bool:
+        """Return whether a request for a result only tells that a client is alive."""
+        return is_sign(bytes(request.goal_id.uuid), self._goals)
 
     def configure_introspection(
         self,
@@ -114,6 +123,35 @@ def seconds_to_ns(seconds: float, subject: str) -> int:
     return round(seconds * 1e9)
 
 
+def checked_client_lost(on_client_lost: str, client_lost_sec: float, subject: str) -> int:
+    """Return after how many nanoseconds without a sign a client is lost.
+
+    Raises:
+        TypeError: `client_lost_sec` is not a number.
+        ValueError: it is too short or not finite, or `on_client_lost` is unknown.
+    """
+    if on_client_lost not in ("cancel", "continue"):
+        raise ValueError(
+            f"{subject}: on_client_lost={brief(on_client_lost)} is unknown; "
+            'use "cancel" or "continue"'
+        )
+    lost_ns = seconds_to_ns(client_lost_sec, f"{subject}: client_lost_sec")
+    if lost_ns < SHORTEST_LOSS_NS:
+        raise ValueError(
+            f"{subject}: client_lost_sec={client_lost_sec}; it must be at least "
+            f"{SHORTEST_LOSS_NS / 1e9:g} s, as clients give three signs in that time"
+        )
+    return lost_ns
+
+
+def uuid_message(goal_id: bytes) -> Any:
+    """Return 16 bytes as unique_identifier_msgs/msg/UUID."""
+    # Imported here, because programs without actions never need this message.
+    from aionode.interfaces.unique_identifier_msgs.msg import UUID
+
+    return UUID(uuid=list(goal_id))
+
+
 def stamp_ns(stamp: Any) -> int:
     """Return a builtin_interfaces/msg/Time in nanoseconds."""
     return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
@@ -125,12 +163,3 @@ def stamp_ns(stamp: Any) -> int:
 async def awaited(outcome: Any) -> Any:
     """Return `outcome`, awaited if it can be: the result of a sync or an async callback."""
     return await outcome if isinstance(outcome, Awaitable) else outcome
-
-
-def in_event_loop() -> bool:
-    """Return whether an event loop runs in this thread."""
-    try:
-        asyncio.get_running_loop()
-    except RuntimeError:
-        return False
-    return True

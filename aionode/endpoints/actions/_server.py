@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Coroutine
-from concurrent.futures import Future as ThreadFuture
 from contextlib import suppress
 from functools import partial
-from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar, cast
 
 from aionode._concurrency import is_cancelled_task
 from aionode.clock import perf_ns
@@ -15,16 +14,18 @@ from aionode.endpoints._core.callback_runner import accepts, checked_concurrency
 from aionode.endpoints._core.loop_affinity import in_thread_of_node
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints._core.node_tasks import create_own_task
+from aionode.endpoints.actions._client_watch import ClientWatch
 from aionode.endpoints.actions._common import (
     AbortReason,
     ActionEntity,
     awaited,
+    checked_client_lost,
     expect_action_type,
-    in_event_loop,
     pass_reason,
     seconds_to_ns,
     stamp_ns,
 )
+from aionode.endpoints.actions._early_cancels import EarlyCancels
 from aionode.endpoints.actions._server_goal import ServerGoalHandle
 from aionode.endpoints.actions.goal import (
     CancelCode,
@@ -60,10 +61,6 @@ FeedbackT = TypeVar("FeedbackT", bound=Message)
 
 UNLIMITED = 2**63 - 1
 """Depth of the queues of goals: `goal_callback` limits their number."""
-
-EARLY_CANCEL_NS = 10_000_000_000
-MAX_EARLY_CANCELS = 1000
-"""How long, and how many, ids of goals are kept that were cancelled before they were accepted."""
 
 DRAIN_LIMIT_S = 1.0
 """How long a result waits until the last feedback is sent, in seconds of real time."""
@@ -116,6 +113,12 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             `ServiceError` for a failing `goal_callback` or `cancel_callback`; a failing
             `handle_accepted_callback` aborts the goal.
         offload: Whether to run a sync `execute_callback` in a thread, where it may use its handle.
+        on_client_lost: What becomes of the goals of a client that is killed, frozen, blocked or cut
+            off: ``"cancel"`` cancels them, without asking `cancel_callback`; ``"continue"`` lets
+            them go on, as in rclpy. The goals of a client that ends properly go on in both cases.
+        client_lost_sec: After how many seconds without a sign a client is lost; at least 0.03.
+            Clients of aionode give signs three times in this time. Others, such as rclpy's, are
+            lost when they leave the graph.
         goal_service_qos_profile: Profile of the service that takes goals.
         result_service_qos_profile: Profile of the service that gives results.
         cancel_service_qos_profile: Profile of the service that takes cancel requests.
@@ -129,7 +132,8 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
 
     Raises:
         TypeError: an argument has the wrong type, or a callback takes other arguments.
-        ValueError: `concurrent`, `on_error` or `result_timeout` has an invalid value.
+        ValueError: `concurrent`, `on_error`, `result_timeout`, `on_client_lost` or
+            `client_lost_sec` has an invalid value.
         InvalidTopicNameException: `action_name` is invalid (a ValueError).
         EntityDestroyedError: the node was destroyed (a RuntimeError).
     """
@@ -153,6 +157,8 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         concurrent: bool | int = True,
         on_error: OnError = "log",
         offload: bool = False,
+        on_client_lost: Literal["cancel", "continue"] = "continue",
+        client_lost_sec: float = 3.0,
         goal_service_qos_profile: QoSProfile | int = qos_profile_services_default,
         result_service_qos_profile: QoSProfile | int = qos_profile_services_default,
         cancel_service_qos_profile: QoSProfile | int = qos_profile_services_default,
@@ -169,17 +175,16 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._callbacks = node._callbacks
         self._logger = node.get_logger()
         self._timeout_ns = seconds_to_ns(result_timeout, f"{self._subject}: result_timeout")
+        lost_ns = checked_client_lost(on_client_lost, client_lost_sec, self._subject)
         self._concurrent = checked_concurrency(concurrent, self._subject)
         self._offload = offload
         self._checked_result: Callable[[ResultT], ResultT] = snapshotter(self.action_type.Result)
-        # By goal id: goals that are active or whose results are kept; cancel requests that came
-        # before their goal, with their steady time; and when kept results are dropped.
+        # By goal id: goals that are active or whose results are kept, and when these are dropped.
         self._goals: dict[bytes, ServerGoalHandle[GoalT, ResultT, FeedbackT]] = {}
-        self._early_cancels: dict[bytes, int] = {}
+        self._early_cancels = EarlyCancels(self._time_base)
         self._alarms: dict[bytes, Alarm] = {}
         self._accepted: MessageQueue[Any] = MessageQueue(UNLIMITED, CallbackStats(), keep_all=True)
         self._waiting: MessageQueue[Any] = MessageQueue(UNLIMITED, self.stats, keep_all=True)
-        self._loop: asyncio.AbstractEventLoop | None = None
         self._status_due = False
         self._hand_over = self._callbacks.make_runner(
             self._call_handle_accepted, self, CallbackStats(), on_error=on_error, offload=False
@@ -202,39 +207,50 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
                     impl.GoalStatusMessage, f"{hidden}/status", status_pub_qos_profile
                 )
             )
-            for srv_type, name, callback, qos_profile, options in (
-                # One after the other, or two goals could both be accepted as "the only one".
-                (
-                    impl.SendGoalService,
-                    "send_goal",
-                    self._on_goal,
-                    goal_service_qos_profile,
-                    {"on_error": on_error},
-                ),
-                (
-                    impl.CancelGoalService,
-                    "cancel_goal",
-                    self._on_cancel,
-                    cancel_service_qos_profile,
-                    {"on_error": on_error},
-                ),
-                # A request stays open until its goal ends, so many are open at once.
-                (
-                    impl.GetResultService,
-                    "get_result",
-                    self._on_result,
-                    result_service_qos_profile,
-                    {"on_error": pass_reason, "concurrent": True},
-                ),
-            ):
-                self._part(
-                    node.create_service(
-                        srv_type, f"{hidden}/{name}", callback, qos_profile=qos_profile, **options
-                    )
+
+            def serve(srv_type: Any, name: str, callback: Any, profile: Any, **options: Any) -> Any:
+                service = f"{hidden}/{name}"
+                return self._part(
+                    node.create_service(srv_type, service, callback, qos_profile=profile, **options)
                 )
+
+            # One after the other, or two goals could both be accepted as "the only one".
+            self._send_goal = serve(
+                impl.SendGoalService,
+                "send_goal",
+                self._on_goal,
+                goal_service_qos_profile,
+                on_error=on_error,
+            )
+            serve(
+                impl.CancelGoalService,
+                "cancel_goal",
+                self._on_cancel,
+                cancel_service_qos_profile,
+                on_error=on_error,
+            )
+            # A request stays open until its goal ends, so many are open at once.
+            get_result = serve(
+                impl.GetResultService,
+                "get_result",
+                self._on_result,
+                result_service_qos_profile,
+                on_error=pass_reason,
+                concurrent=True,
+            )
         except BaseException:
             self._close_parts()
             raise
+        get_result._is_internal = self._is_sign
+        self._client_watch: ClientWatch | None = None
+        if on_client_lost == "cancel":
+            self._client_watch = ClientWatch(
+                self._send_goal.srv_name,
+                node.graph,
+                node.context.time_base,
+                lost_ns,
+                self._on_client_lost,
+            )
         node._add_entity(self)
 
     def __repr__(self) -> str:
@@ -313,17 +329,6 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         """Return whether the goal is known already, or was cancelled before it came."""
         return goal_id in self._goals or goal_id in self._early_cancels
 
-    def _note_early_cancel(self, goal_id: bytes) -> None:
-        """Keep for a while that a goal was cancelled before it was accepted.
-
-        Its request is still queued, or its `goal_callback` is running.
-        """
-        now_ns = self._time_base.steady_ns()
-        for known, since_ns in list(self._early_cancels.items()):
-            if now_ns - since_ns > EARLY_CANCEL_NS or len(self._early_cancels) >= MAX_EARLY_CANCELS:
-                del self._early_cancels[known]
-        self._early_cancels[goal_id] = now_ns
-
     async def _welcomes(self, goal: GoalT) -> bool:
         if self._goal_callback is None:
             return True
@@ -347,6 +352,8 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             GoalKey(goal_id, stamp_ns(stamp)),
         )
         self._goals[goal_id] = goal
+        if self._client_watch is not None:
+            self._client_watch.add(goal_id, self._send_goal._client_gid)
         self._publish_status()
         return goal
 
@@ -366,7 +373,6 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
 
     async def _run(self) -> None:
         """Pass goals to `handle_accepted_callback` and execute them, until cancelled."""
-        self._loop = asyncio.get_running_loop()
         async with asyncio.TaskGroup() as tasks:
             hand_over = consume(
                 self._accepted, lambda _, goal: self._hand_over.run(goal), concurrent=True
@@ -433,22 +439,11 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         Raises:
             Exception: what `action` raised.
         """
-        loop = self._loop
-        if loop is None or self.destroyed or in_event_loop():
+        affinity = self._node_affinity
+        if affinity is None or self.destroyed or not affinity.is_other_thread():
             action(*args)
-            return
-        done: ThreadFuture[None] = ThreadFuture()
-
-        def act() -> None:
-            try:
-                action(*args)
-            except Exception as error:  # noqa: BLE001  # raised in the calling thread
-                done.set_exception(error)
-            else:
-                done.set_result(None)
-
-        loop.call_soon_threadsafe(act)
-        done.result()
+        else:
+            affinity.wait_for(action, *args)
 
     # Cancel requests
 
@@ -458,7 +453,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         code, meant = candidates([goal._current_key for goal in self._goals.values()], asked)
         response = self.action_type.Impl.CancelGoalService.Response()
         if code is CancelCode.UNKNOWN_GOAL_ID:
-            self._note_early_cancel(asked.goal_id)
+            self._early_cancels.note(asked.goal_id)
         refused = False
         for goal_id in meant:
             goal = self._goals.get(goal_id)
@@ -485,6 +480,16 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             )
         return answer is CancelResponse.ACCEPT
 
+    def _on_client_lost(self, goal_ids: list[bytes], text: str) -> None:
+        """Cancel the goals of a lost client, as an accepted request does."""
+        goals = [goal for goal_id in goal_ids if (goal := self._goals.get(goal_id))]
+        goals = [goal for goal in goals if is_cancelable(goal.status)]
+        if goals:
+            ids = ", ".join(goal.text for goal in goals)
+            self._warn(f"{text}; cancelling its goal{'s'[: len(goals) > 1]} {ids}")
+        for goal in goals:
+            goal._cancel(text)
+
     # Results
 
     async def _on_result(self, request: Any) -> Any:
@@ -492,9 +497,11 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         response = self.action_type.Impl.GetResultService.Response()
         goal = self._goals.get(goal_id)
         if goal is None:
-            aborted = self._goals.get(reason_id(goal_id))
-            if aborted is not None and aborted._error_text:
-                raise AbortReason(aborted._error_text)
+            ended = self._goals.get(reason_id(goal_id))
+            if ended is not None and ended._end_text:
+                raise AbortReason(ended._end_text)
+            if self._client_watch is not None:
+                response.status = self._client_watch.take(goal_id)
             return response
         status, result = await goal._outcome()
         await self._send_feedback_first()
@@ -512,6 +519,8 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     def _keep(self, goal: ServerGoalHandle[GoalT, ResultT, FeedbackT]) -> None:
         """Keep the result of `goal`, which has ended, for `result_timeout`. For its handle."""
         goal_id = goal._key.goal_id
+        if self._client_watch is not None:
+            self._client_watch.remove(goal_id)
         if self.destroyed or goal_id not in self._goals:
             return
         if self._timeout_ns == 0:  # after the status, which is sent in the next iteration
@@ -574,6 +583,8 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     def _close(self) -> None:
         """Withdraw the server; clients learn at once that their goals are lost."""
         self._close_parts()
+        if self._client_watch is not None:
+            self._client_watch.stop()
         for alarm in self._alarms.values():
             alarm.cancel()
         self._alarms.clear()

@@ -65,6 +65,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         self._task: asyncio.Task[Any] | None = None
         self._result: ResultT | None = None
         self._error_text = ""  # why it was aborted
+        self._cancel_text = ""  # why the server cancels it by itself
         self._known = asyncio.Event()
 
     def __repr__(self) -> str:
@@ -92,7 +93,10 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
 
     @property
     def is_cancel_requested(self) -> bool:
-        """Whether `cancel_callback` has accepted a request to cancel the goal."""
+        """Whether the goal is to be cancelled.
+
+        `cancel_callback` has accepted a request, or the server has lost the goal's client.
+        """
         return self.status is GoalStatus.CANCELING
 
     # For callbacks
@@ -193,11 +197,17 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         if task is not None and self.is_cancel_requested:
             task.cancel()
 
-    def _cancel(self) -> None:
-        """Cancel the goal: a request was accepted."""
+    @property
+    def _end_text(self) -> str:
+        """Why it was aborted, or canceled without a request; empty if there is no reason."""
+        return self._cancel_text if self.status is GoalStatus.CANCELED else self._error_text
+
+    def _cancel(self, text: str = "") -> None:
+        """Cancel the goal: a request was accepted, or the server does it because of `text`."""
+        self._cancel_text = text
         self._move(GoalEvent.CANCEL_GOAL)
         if self._task is not None:
-            self._task.cancel()
+            self._task.cancel(text or None)
         elif self._queued and not self._running:
             self._stopped()  # its callback has not started, so there is nothing to clean up
 

@@ -23,10 +23,11 @@ from typing import TYPE_CHECKING, NamedTuple
 from aionode.errors import GoalTransitionError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Container, Iterable
 
 __all__ = [
     "ALL_GOALS",
+    "LIVELINESS_ID",
     "TRANSITIONS",
     "CancelCode",
     "CancelResponse",
@@ -34,8 +35,11 @@ __all__ = [
     "GoalKey",
     "GoalResponse",
     "GoalStatus",
+    "alive_id",
     "candidates",
     "is_cancelable",
+    "is_sign",
+    "left_id",
     "next_status",
     "reason_id",
 ]
@@ -201,3 +205,34 @@ def reason_id(goal_id: bytes) -> bytes:
     no endpoint that ROS does not have, and works over every transport.
     """
     return bytes(byte ^ 0xFF for byte in goal_id)
+
+
+# Whether the client of a goal is alive
+
+LIVELINESS_ID = b"aionode:liveness"
+"""The id by which a client asks ``get_result`` how often the server wants a sign of life.
+
+The answer is in the status: 0, as of any unknown goal, if it wants none, else in units of 10 ms.
+"""
+
+
+def alive_id(goal_id: bytes) -> bytes:
+    """Return the id with which a client calls ``get_result`` as a sign that it is alive.
+
+    As for `reason_id`, this needs no endpoint that ROS does not have. So every rule of access
+    control that lets a client use the action lets its signs pass. Twice it is the id of the goal.
+    """
+    return bytes(byte ^ 0x55 for byte in goal_id)
+
+
+def left_id(goal_id: bytes) -> bytes:
+    """Return the id with which a client calls ``get_result`` before it ends without the goal.
+
+    Twice it is the id of the goal.
+    """
+    return bytes(byte ^ 0xAA for byte in goal_id)
+
+
+def is_sign(asked_id: bytes, goals: Container[bytes]) -> bool:
+    """Return whether a call of ``get_result`` with this id only tells that a client is alive."""
+    return asked_id == LIVELINESS_ID or alive_id(asked_id) in goals or left_id(asked_id) in goals

@@ -270,7 +270,7 @@ async def test_a_goal_that_is_cancelled_before_the_server_decides_is_never_execu
     ends: Ends, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The server rejects it, because its client has given up."""
-    noted = returns_of(monkeypatch, ends.server, "_note_early_cancel")
+    noted = returns_of(monkeypatch, ends.server._early_cancels, "note")
     answered = returns_of(monkeypatch, ends.client, "_on_cancel_answered")
     door = Doorkeeper()
     ends.server.register_goal_callback(door)
@@ -292,7 +292,7 @@ async def test_a_goal_that_is_cancelled_in_the_queue_of_the_server_is_never_exec
     ends: Ends, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Behind another goal that the server is still deciding on."""
-    noted = returns_of(monkeypatch, ends.server, "_note_early_cancel")
+    noted = returns_of(monkeypatch, ends.server._early_cancels, "note")
     answered = returns_of(monkeypatch, ends.client, "_on_cancel_answered")
     door = Doorkeeper()
     ends.server.register_goal_callback(door)
@@ -317,7 +317,7 @@ async def test_a_goal_that_another_server_accepts_after_its_cancellation_is_canc
     ends: Ends, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """One that is not of aionode says that it does not know the goal, and accepts it later."""
-    monkeypatch.setattr(ends.server, "_note_early_cancel", lambda _goal_id: None)
+    monkeypatch.setattr(ends.server._early_cancels, "note", lambda _goal_id: None)
     accepted = returns_of(monkeypatch, ends.server, "_accept")
     door = Doorkeeper()
     ends.server.register_goal_callback(door)

@@ -1,0 +1,564 @@
+"""``on_client_lost``: a robot must not drive on when the owner of its goal is lost."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections.abc import Callable
+from contextlib import AsyncExitStack
+from typing import Any
+
+import pytest
+
+from aionode.action import (
+    ActionClient,
+    ActionServer,
+    GoalStatus,
+    ServerGoalHandle,
+)
+from aionode.context import Context
+from aionode.endpoints.actions.goal import LIVELINESS_ID
+from aionode.errors import GoalCanceledError
+from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.node import Node
+from aionode.testing import ManualClock, local_context, settle
+from tests.support.actions import Goal, PlainClient, Worker
+from tests.support.peers import isolated_environment
+
+Client = ActionClient[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
+Serve = Callable[..., ActionServer[Any, Any, Any]]
+
+LOST_SEC = 3.0
+
+
+@pytest.fixture
+async def owner(node_factory: Callable[..., Node]) -> Node:
+    """The node of a client of plain calls."""
+    return node_factory("owner")
+
+
+@pytest.fixture
+def client(owner: Node) -> PlainClient:
+    """A client of plain calls, which gives no sign by itself."""
+    return PlainClient(owner)
+
+
+@pytest.fixture
+def worker() -> Worker:
+    """What executes goals until the test lets it end."""
+    return Worker()
+
+
+@pytest.fixture
+def serve(node: Node, worker: Worker) -> Serve:
+    """Make a server of ``fibonacci`` that refuses to cancel, as only its own decision counts."""
+
+    def make(
+        execute: Callable[[Goal], Any] = worker, **options: Any
+    ) -> ActionServer[Any, Any, Any]:
+        options = {"on_client_lost": "cancel", **options}
+        return node.create_action_server(Fibonacci, "fibonacci", execute, **options)
+
+    return make
+
+
+def expect(goal: Goal, status: GoalStatus) -> None:
+    """Compare the state of a goal, which mypy takes for a constant."""
+    assert goal.status is status
+
+
+# Clients that give signs
+
+
+async def test_a_goal_is_canceled_when_its_client_falls_silent(
+    serve: Serve,
+    client: PlainClient,
+    worker: Worker,
+    manual_clock: ManualClock,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """Three seconds after the last sign, whatever `cancel_callback` would say; the log tells."""
+    asked: list[Goal] = []
+    serve(cancel_callback=asked.append)
+    await client.send()
+    await client.sign()
+    goal = await worker.begun.get()
+
+    await manual_clock.advance(LOST_SEC - 0.001)
+    expect(goal, GoalStatus.EXECUTING)
+    await manual_clock.advance(0.001)
+
+    assert worker.cancelled == [goal]
+    expect(goal, GoalStatus.CANCELED)
+    assert asked == []
+    (record,) = caplog.records
+    assert record.getMessage() == (
+        "action server /fibonacci: its client /owner is lost: no sign of it for 3 s; cancelling "
+        f"its goal {goal.text}"
+    )
+
+
+async def test_each_sign_gives_a_client_more_time(
+    serve: Serve, client: PlainClient, worker: Worker, manual_clock: ManualClock
+) -> None:
+    """Two of three signs may be late or lost."""
+    serve()
+    await client.send()
+    await client.sign()
+    goal = await worker.begun.get()
+
+    for _ in range(10):
+        await manual_clock.advance(LOST_SEC - 0.001)
+        await client.sign()
+
+    expect(goal, GoalStatus.EXECUTING)
+
+
+async def test_the_time_can_be_chosen(
+    serve: Serve, client: PlainClient, worker: Worker, manual_clock: ManualClock
+) -> None:
+    """The client learns how often the server wants its sign, in units of 10 ms."""
+    serve(client_lost_sec=0.6)
+    await client.send()
+    await client.sign()
+    goal = await worker.begun.get()
+
+    assert await client.ask(LIVELINESS_ID) == 20
+    await manual_clock.advance(0.6)
+    expect(goal, GoalStatus.CANCELED)
+
+
+async def test_goals_go_on_by_default(
+    serve: Serve, client: PlainClient, owner: Node, worker: Worker, manual_clock: ManualClock
+) -> None:
+    """As in rclpy; and the server wants no signs."""
+    serve(on_client_lost="continue")
+    await client.send()
+    await client.sign()
+    goal = await worker.begun.get()
+
+    assert await client.ask(LIVELINESS_ID) == 0
+    await manual_clock.advance(3600)
+    owner.destroy_node()
+    await settle()
+
+    expect(goal, GoalStatus.EXECUTING)
+
+
+async def test_an_offloaded_callback_sees_that_its_client_is_lost(
+    serve: Serve, client: PlainClient, manual_clock: ManualClock
+) -> None:
+    """As after a cancel request that was accepted."""
+    running, told = threading.Event(), threading.Event()
+
+    def execute(goal: ServerGoalHandle[Any, Any, Any]) -> Fibonacci.Result:
+        running.set()
+        while not goal.is_cancel_requested:
+            told.wait(0.01)
+        goal.canceled()
+        return Fibonacci.Result()
+
+    serve(execute, offload=True)
+    await client.send()
+    await client.sign()
+    result = asyncio.ensure_future(client.result())  # noqa: TID251  # owned by the test
+    await asyncio.to_thread(running.wait)
+    manual_clock._move(int((LOST_SEC + 1.0) * 1e9))  # `advance` would wait for the thread
+    await asyncio.sleep(0.02)  # noqa: TID251
+    manual_clock._move(int((2 * LOST_SEC + 1.0) * 1e9))
+
+    assert (await result).status == GoalStatus.CANCELED
+
+
+async def test_a_goal_that_waits_for_its_turn_is_canceled_without_being_executed(
+    serve: Serve, client: PlainClient, worker: Worker, manual_clock: ManualClock
+) -> None:
+    """Accepted is enough: nobody is there for it any more."""
+    server = serve(concurrent=False)
+    await client.send(1)
+    await client.send(2)
+    await client.sign(2)
+    await worker.begun.get()
+
+    await manual_clock.advance(LOST_SEC)
+
+    assert (await client.result(2)).status == GoalStatus.CANCELED
+    assert server.stats.received == 1
+
+
+async def test_a_goal_that_was_handed_over_is_canceled_when_it_is_executed(
+    serve: Serve, client: PlainClient, worker: Worker, manual_clock: ManualClock
+) -> None:
+    """As after a cancel request that was accepted."""
+    kept: list[Goal] = []
+    serve(handle_accepted_callback=kept.append)
+    await client.send()
+    await client.sign()
+    await manual_clock.advance(LOST_SEC)
+    assert kept[0].is_cancel_requested
+
+    kept[0].execute()
+    await settle()
+
+    assert kept[0].status is GoalStatus.CANCELED
+
+
+async def test_only_the_goals_of_the_lost_client_end(
+    serve: Serve,
+    client: PlainClient,
+    node_factory: Callable[..., Node],
+    manual_clock: ManualClock,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """All of them, with one line in the log."""
+    server = serve()
+    other = PlainClient(node_factory("other"))
+    for number in (1, 2):
+        await client.send(number)
+        await client.sign(number)
+    await other.send(3)
+    await other.sign(3)
+
+    await manual_clock.advance(LOST_SEC - 1.0)
+    await other.sign(3)
+    await manual_clock.advance(1.0)
+
+    statuses = [goal.status for goal in server._goals.values()]
+    assert statuses == [GoalStatus.CANCELED, GoalStatus.CANCELED, GoalStatus.EXECUTING]
+    assert len(caplog.records) == 1
+    assert "cancelling its goals 0" in caplog.text
+
+
+async def test_a_client_that_leaves_its_goal_on_purpose_is_not_lost(
+    serve: Serve, client: PlainClient, owner: Node, worker: Worker, manual_clock: ManualClock
+) -> None:
+    """It has said so."""
+    serve()
+    await client.send()
+    await client.sign()
+    goal = await worker.begun.get()
+
+    await client.leave()
+    owner.destroy_node()
+    await manual_clock.advance(3600)
+
+    expect(goal, GoalStatus.EXECUTING)
+
+
+# Clients without signs, such as rclpy's
+
+
+async def test_a_client_without_signs_is_lost_when_it_leaves_the_graph(
+    serve: Serve,
+    client: PlainClient,
+    owner: Node,
+    worker: Worker,
+    manual_clock: ManualClock,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """Nothing else tells of it."""
+    serve()
+    await client.send()
+    goal = await worker.begun.get()
+    await manual_clock.advance(3600)
+    expect(goal, GoalStatus.EXECUTING)
+
+    owner.destroy_node()
+    await settle()
+
+    expect(goal, GoalStatus.CANCELED)
+    assert "its client /owner is lost: it has left the graph; cancelling" in caplog.text
+
+
+async def test_another_client_may_leave(
+    serve: Serve, client: PlainClient, node_factory: Callable[..., Node], worker: Worker
+) -> None:
+    """The goal is not its own."""
+    serve()
+    other = node_factory("other")
+    PlainClient(other)
+    await client.send()
+    goal = await worker.begun.get()
+
+    other.destroy_node()
+    await settle()
+
+    expect(goal, GoalStatus.EXECUTING)
+
+
+# A server that stood still
+
+
+async def test_a_server_that_stood_still_waits_before_it_judges(
+    serve: Serve, client: PlainClient, worker: Worker, manual_clock: ManualClock
+) -> None:
+    """The client was silent for as long as the server was deaf."""
+    serve()
+    await client.send()
+    await client.sign()
+    goal = await worker.begun.get()
+
+    await manual_clock.jump(70.0)
+    await manual_clock.advance(LOST_SEC - 0.001)
+    expect(goal, GoalStatus.EXECUTING)
+    await manual_clock.advance(0.001)
+    expect(goal, GoalStatus.CANCELED)
+
+
+async def test_a_server_that_stood_still_goes_on_with_a_client_that_is_alive(
+    serve: Serve, client: PlainClient, worker: Worker, manual_clock: ManualClock
+) -> None:
+    """Its signs have waited."""
+    serve()
+    await client.send()
+    await client.sign()
+    goal = await worker.begun.get()
+
+    await manual_clock.jump(70.0)
+    for _ in range(4):
+        await manual_clock.advance(1.0)
+        await client.sign()
+
+    expect(goal, GoalStatus.EXECUTING)
+
+
+async def test_a_server_that_stood_still_gives_those_time_that_have_left_the_graph(
+    serve: Serve, client: PlainClient, owner: Node, worker: Worker, manual_clock: ManualClock
+) -> None:
+    """Its own connections were cut meanwhile, so that everyone has left; they come back."""
+    serve()
+    await client.send()
+    goal = await worker.begun.get()
+
+    await manual_clock.jump(70.0)
+    owner.destroy_node()
+    await manual_clock.advance(LOST_SEC - 0.001)
+    expect(goal, GoalStatus.EXECUTING)
+    await manual_clock.advance(0.001)
+    expect(goal, GoalStatus.CANCELED)
+
+
+async def test_a_server_that_is_always_late_finds_a_lost_client_all_the_same(
+    serve: Serve, client: PlainClient, worker: Worker, manual_clock: ManualClock
+) -> None:
+    """A callback that blocks for a second again and again must not keep the robot driving."""
+    serve()
+    await client.send()
+    await client.sign()
+    goal = await worker.begun.get()
+
+    for _ in range(5):
+        await manual_clock.jump(1.8)
+
+    expect(goal, GoalStatus.CANCELED)
+
+
+# What it costs
+
+
+async def test_nothing_is_kept_of_goals_that_have_ended_or_never_were(
+    serve: Serve, client: PlainClient, worker: Worker, manual_clock: ManualClock
+) -> None:
+    """And nothing wakes a server without goals."""
+    worker.may_end.set()
+    server = serve(result_timeout=0)
+    waiting = len(manual_clock._timer_heap)
+    for number in range(100):
+        await client.send(number)
+        await client.sign(number)
+        await client.sign(number + 1000)
+    await settle()
+    await manual_clock.advance(0.001)
+
+    watch = server._client_watch
+    assert watch is not None
+    assert (watch._goals, watch._alarm) == ({}, None)
+    assert len(manual_clock._timer_heap) == waiting
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        ({"on_client_lost": "abort"}, 'on_client_lost=.abort. is unknown; use "cancel" or'),
+        ({"client_lost_sec": 0.02}, "client_lost_sec=0.02; it must be at least 0.03 s"),
+        ({"client_lost_sec": float("inf")}, "must be finite"),
+    ],
+)
+async def test_a_wrong_choice_is_refused(serve: Serve, options: dict[str, Any], text: str) -> None:
+    """Where it was made."""
+    with pytest.raises(ValueError, match=text):
+        serve(**options)
+
+
+# aionode's clients
+
+
+@pytest.fixture
+async def asking(owner: Node, serve: Serve) -> Client:
+    """A client of aionode, and a server that wants its signs."""
+    serve()
+    client: Client = owner.create_action_client(Fibonacci, "fibonacci")
+    await client.wait_for_server()
+    return client
+
+
+async def test_a_client_gives_three_signs_in_the_time(
+    asking: Client, worker: Worker, manual_clock: ManualClock
+) -> None:
+    """As long as it has a goal; then nothing wakes it."""
+    goal = await asking.send_goal(Fibonacci.Goal())
+    await settle()
+    calls = asking._get_result.stats.calls
+
+    await manual_clock.advance(30.0)
+    assert asking._get_result.stats.calls - calls == 30
+    assert (await worker.begun.get()).status is GoalStatus.EXECUTING
+
+    worker.may_end.set()
+    await goal.result()
+    await settle()
+    assert (asking._signs._goals, asking._signs._alarm) == ({}, None)
+
+
+async def test_a_server_that_wants_no_signs_is_asked_once(
+    serve: Serve, owner: Node, worker: Worker, manual_clock: ManualClock
+) -> None:
+    """Each further goal costs nothing more: a call for its result."""
+    serve(on_client_lost="continue")
+    client: Client = owner.create_action_client(Fibonacci, "fibonacci")
+    await client.wait_for_server()
+    await client.send_goal(Fibonacci.Goal())
+    await manual_clock.advance(1.0)
+    calls = client._get_result.stats.calls
+
+    await client.send_goal(Fibonacci.Goal())
+    await manual_clock.advance(60.0)
+
+    assert client._get_result.stats.calls - calls == 1
+    assert (client._signs._goals, client._signs._alarm) == ({}, None)
+
+
+async def test_a_new_server_is_asked_again(
+    serve: Serve, owner: Node, worker: Worker, manual_clock: ManualClock
+) -> None:
+    """The one before wanted no signs."""
+    server = serve(on_client_lost="continue")
+    client: Client = owner.create_action_client(Fibonacci, "fibonacci")
+    await client.wait_for_server()
+    await client.send_goal(Fibonacci.Goal())
+    await settle()
+    server.destroy()
+    await settle()
+    await worker.begun.get()
+
+    serve()
+    await client.send_goal(Fibonacci.Goal())
+    goal = await worker.begun.get()
+    await manual_clock.advance(60.0)
+
+    expect(goal, GoalStatus.EXECUTING)
+    assert client._signs._alarm is not None
+
+
+async def test_a_client_that_was_taken_for_lost_learns_why(
+    asking: Client, manual_clock: ManualClock
+) -> None:
+    """When it goes on: its goal was canceled by nobody's request."""
+    call = asyncio.ensure_future(asking.call(Fibonacci.Goal()))  # noqa: TID251  # owned by the test
+    await settle()
+    asking._signs.stop()  # as if the process were frozen
+
+    await manual_clock.advance(LOST_SEC)
+
+    with pytest.raises(GoalCanceledError, match="no sign of it for 3 s") as caught:
+        await call
+    assert caught.value.error_text.startswith("its client /owner is lost")
+
+
+def by_destroying_it(client: Client, _owner: Node) -> None:
+    """End the client alone."""
+    client.destroy()
+
+
+def with_its_node(_client: Client, owner: Node) -> None:
+    """End the node."""
+    owner.destroy_node()
+
+
+def fail() -> None:
+    """Be a callback that raises."""
+    raise ValueError("no map")
+
+
+@pytest.mark.parametrize("end", [by_destroying_it, with_its_node])
+async def test_a_client_that_ends_properly_leaves_goals_that_nobody_awaits(
+    asking: Client,
+    owner: Node,
+    worker: Worker,
+    manual_clock: ManualClock,
+    end: Callable[[Client, Node], None],
+) -> None:
+    """It was sent to go on."""
+    await asking.send_goal(Fibonacci.Goal())
+    goal = await worker.begun.get()
+
+    end(asking, owner)
+    await manual_clock.advance(3600)
+
+    expect(goal, GoalStatus.EXECUTING)
+    assert asking._get_result.destroyed
+
+
+async def test_a_node_that_fails_ends_properly(manual_clock: ManualClock) -> None:
+    """Its client says which goal it leaves, as one that is destroyed does."""
+    worker = Worker()
+    async with local_context(clock=manual_clock) as context, Node("s", context=context) as serving:
+        serving.create_action_server(Fibonacci, "fibonacci", worker, on_client_lost="cancel")
+        owner = Node("owner", context=context)
+        client: Client = owner.create_action_client(Fibonacci, "fibonacci")
+        running = asyncio.ensure_future(owner.run())  # noqa: TID251  # owned by the test
+        await client.wait_for_server()
+        await client.send_goal(Fibonacci.Goal())
+        goal = await worker.begun.get()
+
+        owner.create_timer(0.0, fail)
+        await manual_clock.advance(0.001)
+        with pytest.raises(ExceptionGroup):
+            await running
+        await manual_clock.advance(3600)
+
+        expect(goal, GoalStatus.EXECUTING)
+
+
+# Between contexts
+
+
+@pytest.mark.parametrize("link", [True, False], ids=["link", "zenoh"])
+async def test_signs_pass_between_contexts(monkeypatch: pytest.MonkeyPatch, *, link: bool) -> None:
+    """A goal lives as long as its client gives signs, and ends when they stay out."""
+    for name, value in isolated_environment().items():
+        monkeypatch.setenv(name, value)
+    worker = Worker()
+    async with AsyncExitStack() as stack, asyncio.timeout(30):
+        contexts = [await stack.enter_async_context(Context(link=link)) for _ in range(2)]
+        serving, asking = [
+            await stack.enter_async_context(Node(name, context=context))
+            for name, context in zip(("serving", "asking"), contexts, strict=True)
+        ]
+        serving.create_action_server(
+            Fibonacci, "fibonacci", worker, on_client_lost="cancel", client_lost_sec=0.5
+        )
+        client: Client = asking.create_action_client(Fibonacci, "fibonacci")
+        await client.wait_for_server()
+        sent = await client.send_goal(Fibonacci.Goal())
+        goal = await worker.begun.get()
+        with pytest.raises(TimeoutError):
+            async with asyncio.timeout(1.5):
+                await asyncio.shield(goal._outcome())
+
+        client._signs.stop()
+
+        assert (await sent.result()).status is GoalStatus.CANCELED
+        assert (await sent.result()).error_text == (
+            "its client /asking is lost: no sign of it for 0.5 s"
+        )
