@@ -483,6 +483,32 @@ def test_the_last_message_of_a_program_is_that_the_wheels_stop(domain: int) -> N
     assert "Error" not in text
 
 
+def test_the_wheels_stop_when_their_driver_is_killed_and_obey_an_emergency_stop(
+    domain: int,
+) -> None:
+    """Between processes, and by the commands of docs/howto/stopping.md."""
+    with running("examples/wheels.py", domain=domain) as wheels:
+        wheels.line_with("Motors: 0.0")
+        with running("examples/leased_driver.py", domain=domain) as driver:
+            wheels.line_with("Motors: 0.2")
+            driver.process.kill()
+            wheels.line_with("Motors: 0.0")
+        with running("examples/leased_driver.py", domain=domain) as driver:
+            wheels.line_with("Motors: 0.2")
+            stop = ("topic", "pub", "-r", "10", "/emergency_stop", "std_msgs/msg/Empty")
+            with running("-m", "aionode", *stop, domain=domain):
+                wheels.line_with("Motors: 0.0")
+            release = ("service", "call", "/wheels/release", "std_srvs/srv/Trigger")
+            with running("-m", "aionode", *release, domain=domain) as person:
+                assert "obey commands again" in person.rest()
+            wheels.line_with("Motors: 0.2")
+            assert driver.end_with(signal.SIGINT)[0] == 0
+            wheels.line_with("Motors: 0.0")
+        status, text = wheels.end_with(signal.SIGINT)
+
+    assert status == 0, text
+
+
 def test_the_robot_drives_where_a_client_in_another_process_tells_it(domain: int) -> None:
     """Feedback comes on the way, the result at the end."""
     program = "examples/navigate.py"
