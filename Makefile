@@ -10,6 +10,7 @@
 #   make docs      the documentation as pages, in site/
 #   make fuzz      damaged input for every parser: by property tests, and guided by coverage
 #   make faults    processes that freeze, lag and die, FAULTS_TIMES times: writes docs/reliability.md
+#   make motion    robots whose movers go in every way, MOTION_TIMES times: writes docs/motion.md
 #   make ros-test  aionode over DDS, beside rclpy of PyPI; Linux x86-64
 #   make live      aionode beside a real ROS 2 on rmw_zenoh, where one is sourced
 #   make crowd     300 nodes come and go beside a router, which has to answer all the while
@@ -25,14 +26,15 @@ BIN := .venv/bin
 SOAK_SECONDS ?= 600
 FUZZ_SECONDS ?= 60
 FAULTS_TIMES ?= 3
+MOTION_TIMES ?= 20
 WORKERS ?= auto
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test stress check coverage bench profile docs fuzz faults live ros-test crowd \
+.PHONY: help demo test stress check coverage bench profile docs fuzz faults motion live ros-test crowd \
 	soak quotes clean
 
 help:
-	@sed -n '3,18s/^# *//p' Makefile
+	@sed -n '3,19s/^# *//p' Makefile
 
 demo: .venv/installed
 	$(BIN)/python -m aionode.examples.pubsub
@@ -78,6 +80,9 @@ fuzz: .venv/installed-dev
 
 faults: .venv/installed-dev
 	$(BIN)/python -m tests.faults --times $(FAULTS_TIMES) --write docs/reliability.md
+
+motion: .venv/installed-dev
+	$(BIN)/python -m tests.faults --only '^motion' --times $(MOTION_TIMES) --write-motion docs/motion.md
 
 ros-test: .venv/installed-dev
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[ros]'

@@ -1,20 +1,22 @@
 """Runs the fault cases: ``python -m tests.faults --times 3 --write docs/reliability.md``.
 
-It prints the table, writes it, and ends with status 1 if a promise was broken.
+It prints the tables, writes them, and ends with status 1 if a promise was broken.
+``--only '^motion' --times 20 --write-motion docs/motion.md`` runs those in which a robot moves.
 """
 
 from __future__ import annotations
 
 import argparse
 import asyncio
-import itertools
 import os
 import platform
 import re
 import signal
 import sys
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any, TypeVar
 
 from tests.faults.cases import all_cases
 from tests.faults.harness import (
@@ -22,10 +24,15 @@ from tests.faults.harness import (
     GAP_LIMIT_S,
     RECOVERY_LIMIT_S,
     Case,
+    Job,
     Outcome,
     Skipped,
     run_together,
 )
+from tests.faults.motion.case import Motion
+from tests.faults.motion.cases import motions
+from tests.faults.motion.scene import scenes
+from tests.faults.motion.table import line_of, motion_page, problems
 
 JOBS = 12
 """How many cases run at once: they mostly wait."""
@@ -33,6 +40,7 @@ JOBS = 12
 PAGE = Path(__file__).with_name("page.md")
 
 Result = Outcome | BaseException
+CaseT = TypeVar("CaseT", Case, Motion)
 
 
 def row(case: Case, results: list[Result]) -> tuple[str, bool]:
@@ -71,46 +79,79 @@ def main() -> None:
     parser.add_argument("--times", type=int, default=1, help="how often each case runs (1)")
     parser.add_argument("--only", default="", help="a regular expression for names of cases")
     parser.add_argument("--write", type=Path, help="the page to write")
+    parser.add_argument("--write-motion", type=Path, help="the page of motion to write")
     parser.add_argument(
         "--jobs", type=int, default=JOBS, help=f"how many run at once, of any round ({JOBS})"
     )
     options = parser.parse_args()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))  # cleans up
+
+    def chosen(found: list[CaseT]) -> list[CaseT]:
+        return [each for each in found if re.search(options.only, each.name)]
+
     # Each run has cases of its own, and so network namespaces of its own.
-    rounds = [
-        [case for case in all_cases() if re.search(options.only, case.name)]
-        for _ in range(options.times)
-    ]
-    cases = rounds[0]
-    results: dict[str, list[Result]] = {case.name: [] for case in cases}
+    rounds = [(chosen(all_cases()), chosen(motions())) for _ in range(options.times)]
+    cases, moving = rounds[0]
+    names = [*(each.name for each in cases), *(each.name for each in moving)]
+    results: dict[str, list[Any]] = {name: [] for name in names}
 
-    def take(case: Case, result: Result) -> None:
+    def take(case: Case | Motion, result: Any) -> None:
         results[case.name].append(result)
-        print(row(case, [result])[0], flush=True)  # noqa: T201 - a program
+        line = line_of(case, result) if isinstance(case, Motion) else row(case, [result])[0]
+        print(line, flush=True)  # noqa: T201 - a program
 
-    longest_first = sorted(itertools.chain(*rounds), key=lambda case: -case.lasts_s)
+    jobs: list[Job] = []
+    for one, two in rounds:
+        jobs += [*one, *scenes(two)]
+    longest_first = sorted(jobs, key=lambda job: -job.lasts_s)
     try:
         asyncio.run(run_together(longest_first, options.jobs, take))
     finally:  # report the cases that have run, even if interrupted
-        rows = [row(case, results[case.name]) for case in cases if results[case.name]]
-        tell(rows, options.jobs, options.write)
-    broken = sum(is_broken for _, is_broken in rows)
-    sys.exit(f"{broken} of {len(rows)} cases broke a promise" if broken else 0)
+        broken = tell([each for each in cases if results[each.name]], results, options)
+        broken += tell_motion([each for each in moving if results[each.name]], results, options)
+    sys.exit(f"{broken} of {len(results)} cases broke a promise" if broken else 0)
 
 
-def tell(rows: list[tuple[str, bool]], jobs: int, path: Path | None) -> None:
-    """Print the page, and write it where it is wanted."""
+def tell(
+    cases: Sequence[Case], results: Mapping[str, list[Result]], options: argparse.Namespace
+) -> int:
+    """Print the page, write it where it is wanted, and return how many promises are broken."""
+    rows = [row(case, results[case.name]) for case in cases]
     page = PAGE.read_text(encoding="utf-8").format(
-        together=jobs,
-        cores=os.cpu_count(),
-        system=platform.system(),
-        python=platform.python_version(),
-        version=version("aionode"),
+        **circumstances(options.jobs),
         limit=RECOVERY_LIMIT_S,
         gap=1000 * GAP_LIMIT_S,
         end=END_S,
         rows="\n".join(line for line, _ in rows),
     )
+    if rows:
+        publish(page, options.write)
+    return sum(is_broken for _, is_broken in rows)
+
+
+def tell_motion(
+    cases: Sequence[Motion], results: Mapping[str, list[Any]], options: argparse.Namespace
+) -> int:
+    """Do the same for the cases in which a robot moves."""
+    if cases:
+        found = {each.name: (each, results[each.name]) for each in cases}
+        publish(motion_page(found, **circumstances(options.jobs)), options.write_motion)
+    return sum(any(problems(each, result) for result in results[each.name]) for each in cases)
+
+
+def circumstances(jobs: int) -> dict[str, object]:
+    """Return what both pages say of this run."""
+    return {
+        "together": jobs,
+        "cores": os.cpu_count(),
+        "system": platform.system(),
+        "python": platform.python_version(),
+        "version": version("aionode"),
+    }
+
+
+def publish(page: str, path: Path | None) -> None:
+    """Print a page, and write it where it is wanted."""
     print(page)  # noqa: T201 - a program
     if path is not None:
         path.write_text(page, encoding="utf-8")

@@ -8,22 +8,24 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import fcntl
 import os
 import signal
 import sys
 import tempfile
+import termios
 import time
 from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal, Protocol
 
 import msgspec
 
+from tests.faults.motion.words import Handed
 from tests.faults.roles import (
     REPORTS_VARIABLE,
     Report,
     Role,
-    Word,
     hear_mark,
     missing,
     stream_key,
@@ -35,6 +37,7 @@ __all__ = [
     "GAP_LIMIT_S",
     "RECOVERY_LIMIT_S",
     "Case",
+    "Job",
     "Outcome",
     "Skipped",
     "Stage",
@@ -43,6 +46,7 @@ __all__ = [
 ]
 
 ROOT = Path(__file__).parent.parent.parent
+RCLPY_PROGRAM = Path(__file__).with_name("motion") / "rclpy_program.py"
 
 READY_LIMIT_S = 30.0
 """How long all processes may take to hear each other at first, on a busy machine."""
@@ -146,6 +150,13 @@ class Case(msgspec.Struct, frozen=True):
     short: bool = False
     around: contextlib.AbstractContextManager[None] = contextlib.nullcontext()
 
+    async def run(self, busy: asyncio.Semaphore) -> Sequence[tuple[Case, Outcome | Exception]]:
+        """Run once; see `run_case`."""
+        try:
+            return [(self, await run_case(self, busy))]
+        except Exception as error:  # noqa: BLE001 - it is told
+            return [(self, error)]
+
     def broken(
         self, outcome: Outcome, gap_limit_s: float = GAP_LIMIT_S, end_limit_s: float = END_S
     ) -> list[str]:
@@ -188,36 +199,35 @@ class Child:
     def __init__(self, role: Role, env: dict[str, str], folder: Path) -> None:
         self.role = role
         self.reports: list[Report] = []
+        self.handed: dict[str, list[Handed]] = {}
         self.end_s = 0.0
         self._env = {**os.environ, "PYTHONPATH": str(ROOT), **env, **role.env}
         self._output = folder / f"{role.name}.txt"
         self._process: asyncio.subprocess.Process | None = None
         self._closing = contextlib.ExitStack()
+        self._terminal = contextlib.ExitStack()
 
     async def start(self) -> None:
         """Start it."""
-        module = "standin" if self.role.ros else "process"
         reading, writing = os.pipe()
-        unread, output = os.pipe()
-        self._closing.callback(os.close, unread)
-        if self.role.output != "unread":
-            os.close(output)
-            path = "/dev/full" if self.role.output == "full" else self._output
-            output = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+        output = self._open_output()
+        terminal = self.role.output == "terminal"
         try:
             self._process = await asyncio.create_subprocess_exec(
                 *self.role.wrapper,
-                sys.executable,
-                "-m",
-                f"tests.faults.{module}",
-                msgspec.json.encode(self.role).decode(),
+                self.role.python or sys.executable,
+                *command_of(self.role),
                 stdin=asyncio.subprocess.PIPE,
                 stdout=output,
                 stderr=output,
                 pass_fds=[writing],
                 env={**self._env, REPORTS_VARIABLE: str(writing)},
                 cwd=ROOT,
-                start_new_session=True,
+                # A group of the harness's session can be suspended, one of a session of its own
+                # cannot; but only the head of a session can have a terminal.
+                start_new_session=terminal,
+                process_group=None if terminal else 0,
+                preexec_fn=take_terminal if terminal else None,
             )
         finally:
             os.close(writing)
@@ -229,10 +239,57 @@ class Child:
         self._closing.callback(transport.close)
         self._reports = reader
 
+    def _open_output(self) -> int:
+        """Return a descriptor for what it writes."""
+        match self.role.output:
+            case "unread":
+                unread, output = os.pipe()
+                self._closing.callback(os.close, unread)
+            case "terminal":
+                terminal, output = os.openpty()
+                self._terminal.callback(os.close, terminal)
+                loop = asyncio.get_running_loop()
+                loop.add_reader(terminal, self._keep_output, terminal)
+                self._terminal.callback(loop.remove_reader, terminal)
+            case "full":
+                output = os.open("/dev/full", os.O_WRONLY)
+            case "file":
+                output = os.open(self._output, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+        return output
+
+    def _keep_output(self, terminal: int) -> None:
+        """Write to its file what it has written to its terminal."""
+        with contextlib.suppress(OSError), self._output.open("ab") as file:
+            file.write(os.read(terminal, 1 << 16))
+
+    def hang_up(self) -> None:
+        """Close its terminal, as the end of a connection does: it gets SIGHUP."""
+        self._terminal.close()
+
+    def core_waits(self) -> dict[str, float]:
+        """Return for how long each of its threads was ready to run, but had no core, in seconds."""
+        waits: dict[str, float] = {}
+        for stat in Path(f"/proc/{self.pid}/task").glob("*/schedstat"):
+            with contextlib.suppress(OSError):  # the thread has just ended
+                waits[stat.parent.name] = int(stat.read_bytes().split()[1]) / 1e9
+        return waits
+
+    def core_wait_s(self, before: dict[str, float]) -> float:
+        """Return for how long it has waited for a core since then.
+
+        That is the time of its main thread, and the longest of the others, on which the main thread
+        may have waited.
+        """
+        waited = {name: s - before.get(name, 0.0) for name, s in self.core_waits().items()}
+        return waited.pop(str(self.pid), 0.0) + max(waited.values(), default=0.0)
+
     async def read(self) -> None:
         """Take its reports until it has ended."""
         while line := await self._reports.readline():
-            self.reports.append(msgspec.json.decode(line, type=Report))
+            report = msgspec.json.decode(line, type=Report)
+            self.reports.append(report)
+            for each in report.handed:
+                self.handed.setdefault(each.topic, []).append(each)
 
     @property
     def last(self) -> Report:
@@ -254,7 +311,13 @@ class Child:
         if self._process is not None and self.runs:
             os.killpg(self._process.pid, number)
 
-    def tell(self, word: Word) -> None:
+    @property
+    def pid(self) -> int:
+        """Its process id."""
+        assert self._process is not None
+        return self._process.pid
+
+    def tell(self, word: str) -> None:
         """Say something to it."""
         if self._process is not None and self._process.stdin is not None and self.runs:
             with contextlib.suppress(ConnectionError):
@@ -292,11 +355,31 @@ class Child:
 
     def close(self) -> None:
         """Close what belongs to it here."""
+        self._terminal.close()
         self._closing.close()
 
     def output(self) -> str:
         """Return the end of what it wrote."""
         return self._output.read_text(errors="replace")[-2000:] if self._output.exists() else ""
+
+
+def command_of(role: Role) -> Sequence[str]:
+    """Return the program of a role, and its arguments."""
+    if role.command:
+        return role.command
+    text = msgspec.json.encode(role).decode()
+    if role.rclpy:
+        runner = () if role.python else ("-m", "aionode", "run")
+        return (*runner, str(RCLPY_PROGRAM), text)
+    module = "standin" if role.ros else "process"
+    if role.mover is not None and not role.ros:
+        module = "motion.mover"
+    return ("-m", f"tests.faults.{module}", text)
+
+
+def take_terminal() -> None:
+    """Make its standard output the terminal that controls this process; called in it."""
+    fcntl.ioctl(1, termios.TIOCSCTTY, 0)
 
 
 class Stage:
@@ -527,9 +610,18 @@ async def run_case(case: Case, busy: asyncio.Semaphore) -> Outcome:
     raise AssertionError("not reached")
 
 
-async def run_together(
-    cases: Sequence[Case], jobs: int, tell: Callable[[Case, Outcome | BaseException], None]
-) -> None:
+class Job(Protocol):
+    """What runs as one: a `Case`, or a scene of several."""
+
+    @property
+    def lasts_s(self) -> float:
+        """About how long its fault takes."""
+
+    async def run(self, busy: asyncio.Semaphore) -> Sequence[tuple[Any, Any]]:
+        """Run, and return what came of each case of it."""
+
+
+async def run_together(cases: Sequence[Job], jobs: int, tell: Callable[[Any, Any], None]) -> None:
     """Run several cases side by side, once each, and tell what came of each as soon as it is over.
 
     Args:
@@ -539,13 +631,11 @@ async def run_together(
     """
     turns, busy = asyncio.Semaphore(jobs), asyncio.Semaphore(BUSY)
 
-    async def run(case: Case) -> None:
+    async def run(job: Job) -> None:
         async with turns:
-            try:
-                outcome: Outcome | BaseException = await run_case(case, busy)
-            except Exception as error:  # noqa: BLE001 - it is told
-                outcome = error
-        tell(case, outcome)
+            outcomes = await job.run(busy)
+        for case, outcome in outcomes:
+            tell(case, outcome)
 
     async with asyncio.TaskGroup() as tasks:
         for case in cases:

@@ -26,6 +26,7 @@ from aionode.interfaces.rcl_interfaces.srv import GetParameters
 from aionode.interfaces.std_msgs.msg import String
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from aionode.transport.zenoh._session import close_session, open_router
+from tests.faults.motion.wheels import Wheels, move
 from tests.faults.roles import (
     REPORTS_VARIABLE,
     Hear,
@@ -163,12 +164,13 @@ class Reporter:
         loop.call_later(TICK_S, tick)
 
     def tell(self) -> None:
-        """Print a report; its gap begins anew."""
+        """Print a report; its gap and what wheels were handed begin anew."""
         self.report.time_s = time.monotonic()
         self.report.nodes = sorted(self.nodes())
         self.report.told = sum(map(told_by, self.endpoints)) + self.given_up.count
         os.write(int(os.environ[REPORTS_VARIABLE]), msgspec.json.encode(self.report) + b"\n")
         self.report.gap_s = self.report.own_gap_s = 0.0
+        self.report.handed = []
 
     async def go_on(self) -> None:
         """Print reports until cancelled."""
@@ -235,16 +237,12 @@ class Process:
                 role.name, context=context, enable_rosout=False, start_parameter_services=False
             ) as node,
         ):
-            for each in role.hear:
-                self.hear(node, each)
-            if role.serve:
-                node.create_service(GetParameters, role.serve, answer)
-            if role.act:
-                node.create_action_server(Fibonacci, role.act, count)
+            self.offer(node)
             self.reporter.nodes = node.get_node_names
             self.report.ready = True
             work: list[Coroutine[Any, Any, None]] = [
-                self.publish(node, each) for each in role.publish
+                *(self.publish(node, each) for each in role.publish),
+                *(move(node, wheel) for wheel in role.moves),
             ]
             if role.call:
                 work += [self.call(node) for _ in range(role.callers)]
@@ -261,6 +259,19 @@ class Process:
                     await asyncio.Event().wait()
         # Only who sends a number of messages and ends comes here.
         asyncio.get_running_loop().call_soon(os.kill, os.getpid(), 15)
+
+    def offer(self, node: Node) -> None:
+        """Subscribe and serve, and be wheels."""
+        role = self.role
+        for each in role.hear:
+            self.hear(node, each)
+        if role.serve:
+            node.create_service(GetParameters, role.serve, answer)
+        if role.act:
+            node.create_action_server(Fibonacci, role.act, count)
+        wheels = Wheels(node, self.report, self.reporter.tell)
+        for wheel in role.wheels:
+            wheels.attach(wheel)
 
     def hear(self, node: Node, hear: Hear) -> None:
         """Subscribe."""

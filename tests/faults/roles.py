@@ -12,6 +12,8 @@ from typing import Literal
 
 import msgspec
 
+from tests.faults.motion.words import Handed, Mover, Wheel
+
 __all__ = [
     "REPORTS_VARIABLE",
     "Hear",
@@ -28,7 +30,7 @@ __all__ = [
 
 REPORTS_VARIABLE = "AIONODE_FAULTS_REPORTS"
 
-Output = Literal["file", "full", "unread"]
+Output = Literal["file", "full", "unread", "terminal"]
 
 Word = Literal["pause", "go on", "quiet"]
 """What a process is told in a line on its stdin: to publish nothing until it is to go on, or to
@@ -99,10 +101,16 @@ class Role(msgspec.Struct, frozen=True):
         noisy: Whether it writes to stdout and stderr without end.
         fork: Whether it makes a node in a forked child of its own.
         control: Whether it has no node, and does nothing but watch its event loop.
+        mover: What it asks to move, in a program of its own.
+        wheels: The wheels that it has.
+        moves: The wheels that it moves, as long as it runs.
+        rclpy: Whether it is a program of plain rclpy: of aionode's, or of what `python` has.
+        python: The interpreter that runs it; empty for that of the harness.
+        command: What runs instead of a program of these tests, after the interpreter.
         env: Variables of its environment.
         wrapper: A command that runs it, such as ``ip netns exec NAME``.
-        output: Where its stdout and stderr go: to a ``file``, to ``/dev/full``, or into a pipe that
-            is never read.
+        output: Where its stdout and stderr go: to a ``file``, to ``/dev/full``, into a pipe that is
+            never read, or to a ``terminal``, which is also the one that controls it.
     """
 
     name: str
@@ -120,6 +128,12 @@ class Role(msgspec.Struct, frozen=True):
     noisy: bool = False
     fork: bool = False
     control: bool = False
+    mover: Mover | None = None
+    wheels: tuple[Wheel, ...] = ()
+    moves: tuple[Wheel, ...] = ()
+    rclpy: bool = False
+    python: str = ""
+    command: tuple[str, ...] = ()
     env: dict[str, str] = {}
     wrapper: tuple[str, ...] = ()
     output: Output = "file"
@@ -143,6 +157,7 @@ class Report(msgspec.Struct):
         calls: How many calls and goals it has begun.
         failed: How many of them ended with an error.
         hung: How many of them took longer than their time limit allows.
+        handed: What its wheels were handed since the last report.
         last: Whether this is the last report.
     """
 
@@ -159,6 +174,7 @@ class Report(msgspec.Struct):
     calls: int = 0
     failed: int = 0
     hung: int = 0
+    handed: list[Handed] = []
     last: bool = False
 
 

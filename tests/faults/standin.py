@@ -11,7 +11,9 @@ import signal
 import sys
 import threading
 import time
+from collections.abc import Callable
 from contextlib import ExitStack, closing
+from typing import Any
 
 import msgspec
 import zenoh  # plays another participant, without aionode
@@ -25,6 +27,7 @@ from aionode.wire import cdr
 from aionode.wire._key_expression import data_key
 from aionode.wire._liveliness import endpoint_token, gid_of, node_token
 from aionode.wire.typehash import type_hash
+from tests.faults.motion.ros_session import commander, obey, send_goal
 from tests.faults.process import REPORT_S, Reporter, text
 from tests.faults.roles import Publish, Role, stream_key
 from tests.support.peers import ros_session
@@ -44,21 +47,28 @@ class StandIn:
         for hear in role.hear:
             self.hear(hear.topic, hear.depth)
         self.publishers = [(each, *self.publisher(each)) for each in role.publish]
+        self.command: Callable[[], None] | None = None
+        for wheel in role.wheels:
+            obey(self, wheel)
         self.reporter.report.ready = True
+        if role.mover is not None and role.mover.asks == "publisher":
+            self.command = commander(self, role.mover)
+        elif role.mover is not None:
+            send_goal(self, role.mover)
 
     def hold(self, token: str) -> None:
         """Announce something."""
         self.kept.append(self.session.liveliness().declare_token(token))
 
-    def endpoint(self, kind: EndpointKind, topic: str, depth: int) -> str:
+    def endpoint(self, kind: EndpointKind, topic: str, depth: int, interface: Any = String) -> str:
         """Announce an endpoint, and return its token."""
         info = EndpointInfo(
             kind,
             self.node,
             len(self.kept),
             topic,
-            type_name(String),
-            type_hash(String),
+            type_name(interface),
+            type_hash(interface),
             QoSProfile(depth=depth),
             b"",
         )
@@ -66,9 +76,9 @@ class StandIn:
         self.hold(token)
         return token
 
-    def key(self, topic: str) -> str:
-        """Return the key of a topic."""
-        return data_key(self.domain, topic, type_name(String), type_hash(String))
+    def key(self, topic: str, interface: Any = String) -> str:
+        """Return the key of a topic or service."""
+        return data_key(self.domain, topic, type_name(interface), type_hash(interface))
 
     def hear(self, topic: str, depth: int) -> None:
         """Subscribe."""
@@ -86,6 +96,8 @@ class StandIn:
 
     def publish(self) -> None:
         """Publish one message on each topic."""
+        if self.command is not None:
+            self.command()
         for setting, publisher, gid in self.publishers:
             key = stream_key(setting.topic, self.role.name, os.getpid())
             number = self.reporter.report.sent.get(key, 0) + 1
@@ -110,7 +122,10 @@ def main() -> None:
     threading.Thread(target=hush, args=(quiet,), daemon=True).start()
     with ExitStack() as stack:
         stand_in = StandIn(role, stack.enter_context(closing(ros_session())))
-        period_s = min((each.period_s for each in role.publish), default=REPORT_S)
+        periods_s = [each.period_s for each in role.publish]
+        if role.mover is not None:
+            periods_s.append(role.mover.period_s)
+        period_s = min(periods_s, default=REPORT_S)
         told_s = 0.0
         while not ended.wait(period_s):
             if not quiet.is_set():

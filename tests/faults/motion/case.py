@@ -1,0 +1,186 @@
+"""A case of motion: who moves the wheels, in which way it goes, and what is promised then."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+from collections.abc import Awaitable, Callable, Sequence
+from typing import TYPE_CHECKING, Literal
+
+import msgspec
+
+from tests.faults.motion.words import Handed, Wheel
+from tests.faults.roles import Role
+
+if TYPE_CHECKING:
+    from tests.faults.motion.scene import Play
+
+__all__ = ["ALLOWED_S", "Motion", "Place", "Stopped", "Switch", "stopped"]
+
+ALLOWED_S = 0.2
+"""How much longer than promised a stop may take: for messages, callbacks and threads."""
+
+Strike = Callable[["Play"], Awaitable[None]]
+
+Switch = Literal["lease", "silence", "lost", "end", "signals"]
+"""A mechanism that stops the wheels: the lease of the mover, ``on_silence`` of the wheels,
+``on_client_lost`` of the server, what a node does at its end, aionode's handling of signals."""
+
+
+class Stopped(msgspec.Struct):
+    """What came of one run of a case.
+
+    Attributes:
+        raw_s: From the fault until the wheels were told to stop; infinite if they went on.
+        own_s: The same without the time for which the mover or the wheels waited for a core.
+        late: How many commands moved them after they had stopped, while they were watched.
+        wrong: What else was wrong.
+    """
+
+    raw_s: float = math.inf
+    own_s: float = math.inf
+    late: int = 0
+    wrong: list[str] = []
+
+
+class Place(msgspec.Struct, frozen=True):
+    """Where the cases of a scene are.
+
+    Attributes:
+        name: Of the place; no two have the same.
+        table: The title of the table that has its cases.
+        column: The title of its column there.
+        within: Returns a role as one that is there.
+        roles: Processes that are there besides.
+        around: What has to be there before its processes start, such as two hosts.
+        together: Whether a fault strikes all movers of the place at once.
+        wheels: What the wheels run: aionode, plain rclpy, or the stand-in for a ROS 2 node.
+    """
+
+    name: str
+    table: str
+    column: str
+    within: Callable[[Role], Role] = lambda role: role
+    roles: tuple[Role, ...] = ()
+    around: contextlib.AbstractContextManager[None] = contextlib.nullcontext()
+    together: bool = False
+    wheels: Literal["aionode", "rclpy", "ros"] = "aionode"
+
+
+class Motion(msgspec.Struct, frozen=True):
+    """A mover that goes, and its wheels.
+
+    Attributes:
+        place: Where the processes are; cases of one place have the process of wheels in common.
+        who: Who moves the wheels, for the table.
+        goes: In which way it goes, for the table.
+        stops: What stops the wheels, for the table.
+        mover: The process that moves them.
+        wheel: The wheels.
+        strike: What happens to the mover.
+        switches: Without any of these the promise breaks.
+        limit_s: After how long they stand still; None if nothing of aionode can stop them.
+        allowed_s: How much longer that may take.
+        returns: Whether the mover may move them again after the fault, with new commands.
+        beside: Another mover of the same wheels, which goes on.
+        joins_late: Whether other wheels join after the stop, which are to stand still too.
+        ends: Whether the fault ends the process of the mover.
+        lasts_s: About how long the fault takes.
+        short: Whether it is part of the ordinary tests.
+    """
+
+    place: Place
+    who: str
+    goes: str
+    stops: str
+    mover: Role
+    wheel: Wheel
+    strike: Strike
+    switches: tuple[Switch, ...] = ()
+    limit_s: float | None = None
+    allowed_s: float = ALLOWED_S
+    returns: bool = False
+    beside: Role | None = None
+    joins_late: bool = False
+    ends: bool = False
+    lasts_s: float = 0.0
+    short: bool = False
+
+    @property
+    def name(self) -> str:
+        """What happens, in one line."""
+        return f"motion, {self.place.name}: {self.who} {self.goes}, {self.stops}"
+
+    def broken(self, outcome: Stopped, spare_s: float = 0.0) -> list[str]:
+        """Return which promises an outcome breaks.
+
+        Args:
+            outcome: The outcome.
+            spare_s: How much longer a stop may take beside other tests.
+        """
+        found = list(outcome.wrong)
+        if self.limit_s is None:
+            if math.isfinite(outcome.raw_s):
+                found.append(f"stopped after {outcome.raw_s:.2f} s, though nothing can stop it")
+            return found
+        limit_s = self.limit_s + self.allowed_s + spare_s
+        if math.isinf(outcome.own_s):
+            found.append("did not stop")
+        elif outcome.own_s > limit_s:
+            found.append(f"stopped after {outcome.own_s:.2f} s, not {limit_s:.1f} s")
+        if outcome.late:
+            found.append(f"{outcome.late} commands after the stop")
+        return found
+
+    def without(self, switch: Switch) -> Motion:
+        """Return the same case with one of its mechanisms switched off."""
+        mover, wheel = self.mover.mover, self.wheel
+        assert mover is not None
+        match switch:
+            case "lease":
+                mover = msgspec.structs.replace(mover, asks="publisher")
+            case "silence":
+                wheel = msgspec.structs.replace(wheel, silence_sec=0.0)
+            case "lost":
+                wheel = msgspec.structs.replace(wheel, lost_sec=0.0)
+            case "end":
+                mover = msgspec.structs.replace(
+                    mover, asks="goal left" if wheel.action else "publisher"
+                )
+            case "signals":
+                mover = msgspec.structs.replace(mover, old_signals=True)
+        role = msgspec.structs.replace(self.mover, mover=mover)
+        return msgspec.structs.replace(self, mover=role, wheel=wheel)
+
+
+def stopped(
+    motion: Motion, handed: Sequence[Handed], by: int, times_s: tuple[float, float, float]
+) -> Stopped:
+    """Return how soon wheels stood still after a fault, and how much moved them later.
+
+    Args:
+        motion: The case.
+        handed: What the wheels were handed.
+        by: The process that moved them.
+        times_s: Since when they moved steadily, when the fault struck, and until when they were
+            watched.
+    """
+    since_s, struck_s, until_s = times_s
+    moves = [each for each in handed if each.what == "move" and each.by == by]
+    stops = [each.time_s for each in handed if each.what != "move"]
+    if not any(since_s < each.time_s < struck_s for each in moves):
+        return Stopped(wrong=["did not move before the fault"])
+    if any(since_s < each < struck_s for each in stops):
+        return Stopped(wrong=["stopped before the fault"])
+    stop_s = min((each for each in stops if each > struck_s), default=math.inf)
+    if motion.beside is None:
+        moves = [each for each in handed if each.what == "move"]
+    elif not motion.beside.command:  # the wheels go on: no command of this mover may come
+        limit_s = struck_s + (motion.limit_s or 0.0) + motion.allowed_s
+        stop_s = max(struck_s, *(each.time_s for each in moves if each.time_s < limit_s))
+    late = [
+        each
+        for each in moves
+        if stop_s < each.time_s < until_s and not (motion.returns and each.sent_s > stop_s)
+    ]
+    return Stopped(raw_s=stop_s - struck_s, own_s=stop_s - struck_s, late=len(late))

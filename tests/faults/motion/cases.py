@@ -1,0 +1,435 @@
+"""The cases of motion: who moves wheels, in which way it goes, and what stops them."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Iterator
+from functools import partial
+from typing import Any
+
+import msgspec
+
+from tests.faults.hosts import NAMING, TwoHosts
+from tests.faults.hosts import ROUTER as HOST_ROUTER
+from tests.faults.motion.case import Motion, Place, Switch
+from tests.faults.motion.goings import (
+    Strike,
+    at_once,
+    browser_leaves,
+    frozen,
+    hung_up,
+    interrupted_twice,
+    killed,
+    run_into,
+    signalled,
+)
+from tests.faults.motion.ros_cases import ros_motions
+from tests.faults.motion.words import Mover, Wheel
+from tests.faults.roles import Role
+
+__all__ = ["motions"]
+
+TTL_S = 0.3
+SILENCE_S = 0.3
+LOST_S = 3.0
+LONG_TTL_S = 5.0
+"""The time to live of a lease that is to be stopped by something else."""
+
+ROUTER = Role("router", router="tcp/127.0.0.1:{AIONODE_ROUTER_PORT}")
+
+
+def linked(way: str) -> Place:
+    """Return a place where messages travel in one way."""
+
+    def within(role: Role) -> Role:
+        env = {"AIONODE_LINK": "on" if way == "link" else "off", **role.env}
+        return msgspec.structs.replace(role, env=env)
+
+    return Place(way, "On one host", way, within, roles=(ROUTER,) * (way == "router"))
+
+
+def mover(**options: Any) -> Role:
+    """Return a process that moves wheels; see `Mover`."""
+    return Role("", mover=Mover("", **options))
+
+
+TOPIC = Wheel("")
+WATCHFUL = Wheel("", silence_sec=SILENCE_S)
+SERVER = Wheel("", action=True, lost_sec=LOST_S)
+
+TERM, INT, QUIT = signal.SIGTERM, signal.SIGINT, signal.SIGQUIT
+
+ENDINGS: tuple[tuple[str, Strike], ...] = (
+    ("gets SIGTERM", signalled(TERM)),
+    ("gets two signals within 2 ms", signalled(INT, TERM, apart_s=0.002)),
+    ("gets two signals within 20 ms", signalled(TERM, TERM, apart_s=0.02)),
+    ("loses its terminal", hung_up),
+)
+"""Ends of a process that has time to clean up."""
+
+DEATHS: tuple[tuple[str, Strike], ...] = (
+    ("is killed", killed),
+    ("calls os._exit", run_into("exit")),
+    ("gets SIGQUIT", signalled(QUIT)),
+)
+"""Ends of a process that has none."""
+
+BLOCKS: tuple[tuple[str, Strike], ...] = (
+    ("blocks its loop in time.sleep for 5 s", run_into("sleep", 5.0)),
+    ("blocks its loop with a computation for 5 s", run_into("compute", 5.0)),
+)
+
+
+def case(place: Place, who: str, goes: str, stops: str, **options: Any) -> Motion:
+    """Return a case whose fault may need a terminal, and may end the process of its mover."""
+    strike = options["strike"]
+    if strike is hung_up:
+        role = msgspec.structs.replace(options["mover"], output="terminal")
+        options["mover"] = role
+    return Motion(place, who, goes, stops, **options)
+
+
+def leases(place: Place) -> Iterator[Motion]:
+    """Yield what happens to the wheels of who holds a lease."""
+    promised: dict[str, Any] = {"wheel": TOPIC, "switches": ("lease",), "limit_s": TTL_S}
+    lease = "a lease at the mover"
+    for goes, strike in (("fails", run_into("fail")), *ENDINGS):
+        yield case(
+            place,
+            "a holder of a lease",
+            goes,
+            lease,
+            mover=mover(ttl_sec=LONG_TTL_S),
+            strike=strike,
+            ends=True,
+            short="20 ms" in goes and place.name == "link",
+            **promised,
+        )
+    for goes, strike in BLOCKS:
+        yield case(
+            place,
+            "a holder of a lease",
+            goes,
+            lease,
+            mover=mover(),
+            strike=strike,
+            lasts_s=5.0,
+            short="sleep" in goes and place.name == "link",
+            **promised,
+        )
+    yield case(
+        place,
+        "a holder of a lease",
+        "is suspended by Ctrl-Z for 5 s",
+        lease,
+        mover=mover(ttl_sec=LONG_TTL_S),
+        strike=frozen(5.0, signal.SIGTSTP),
+        lasts_s=5.0,
+        **promised,
+    )
+    for program, text in (("run", ""), ("asyncio", " of asyncio.run"), ("uvicorn", " of uvicorn")):
+        yield case(
+            place,
+            f"a holder of a lease{text}",
+            "gets a second Ctrl-C while it cleans up",
+            lease,
+            mover=mover(program=program, ttl_sec=LONG_TTL_S, cleans_up_s=30.0, graceful_s=None),
+            strike=interrupted_twice(judged=0 if program == "run" else 1),
+            ends=True,
+            **promised,
+        )
+    yield case(
+        place,
+        "a holder of a lease",
+        "gets a second Ctrl-C while its loop is blocked",
+        lease,
+        mover=mover(ttl_sec=60.0),
+        strike=interrupted_twice("sleep 30"),
+        ends=True,
+        **promised,
+    )
+    for route in ("awaited", "streamed"):
+        yield case(
+            place,
+            f"a route of FastAPI that holds a lease, {route},",
+            "loses its browser",
+            lease,
+            mover=mover(program="uvicorn", route=route, ttl_sec=LONG_TTL_S),
+            strike=browser_leaves,
+            **promised,
+        )
+    yield case(
+        place,
+        "a holder of a lease",
+        "is frozen 5 s while another goes on",
+        lease,
+        mover=mover(),
+        beside=mover(),
+        strike=frozen(5.0),
+        lasts_s=5.0,
+        **{**promised, "limit_s": 0.0},
+    )
+    transient = {"mover": mover(transient=True), "joins_late": True, "lasts_s": 5.0}
+    yield case(
+        place,
+        "a holder of a lease, transient local,",
+        "blocks its loop for 5 s, and other wheels join late",
+        lease,
+        strike=run_into("sleep", 5.0),
+        **{**promised, **transient, "wheel": Wheel("", transient=True)},
+    )
+
+
+def leases_and_silence(place: Place) -> Iterator[Motion]:
+    """Yield what happens where both sides are asked for a stop: nothing moves afterwards."""
+    transient = {
+        "mover": mover(transient=True),
+        "wheel": Wheel("", silence_sec=SILENCE_S, transient=True),
+        "joins_late": True,
+    }
+    both = "a lease at the mover, on_silence at the wheels"
+    frozen_cases: tuple[tuple[str, dict[str, Any]], ...] = (
+        ("is killed", {"strike": killed, "ends": True, "short": place.name == "link"}),
+        *(
+            (f"is frozen {each} s", {"strike": frozen(each), "lasts_s": each})
+            for each in (5, 14, *((70,) if place.name == "router" else ()))
+        ),
+        (
+            "is frozen 5 s, and other wheels join late",
+            {"strike": frozen(5), "lasts_s": 5, **transient},
+        ),
+    )
+    for goes, options in frozen_cases:
+        # One that is killed has no commands left that its lease could hold back.
+        switches = ("silence",) if options["strike"] is killed else ("silence", "lease")
+        yield case(
+            place,
+            "a holder of a lease",
+            goes,
+            both,
+            **{
+                "mover": mover(),
+                "wheel": WATCHFUL,
+                "switches": switches,
+                "limit_s": SILENCE_S,
+                **options,
+            },
+        )
+
+
+def limits(place: Place) -> Iterator[Motion]:
+    """Yield what a lease alone cannot stop: a process that does nothing any more."""
+    for goes, strike in DEATHS:
+        yield case(
+            place,
+            "a holder of a lease",
+            goes,
+            "a lease at the mover alone",
+            mover=mover(),
+            wheel=TOPIC,
+            strike=strike,
+            ends=True,
+        )
+
+
+def publishers(place: Place) -> Iterator[Motion]:
+    """Yield what happens to the wheels of a plain publisher."""
+    cases: tuple[tuple[str, dict[str, Any]], ...] = (
+        *((goes, {"strike": strike, "ends": True}) for goes, strike in DEATHS),
+        ("fails", {"strike": run_into("fail"), "ends": True}),
+        *((goes, {"strike": strike, "lasts_s": 5.0}) for goes, strike in BLOCKS),
+        ("is suspended by Ctrl-Z for 5 s", {"strike": frozen(5, signal.SIGTSTP), "lasts_s": 5}),
+        *(
+            (f"is frozen {each} s", {"strike": frozen(each), "lasts_s": each})
+            for each in (5, 14, *((70,) if place.name == "router" else ()))
+        ),
+        (
+            "is killed beside aionode topic pub -r 1",
+            {"strike": killed, "ends": True, "beside": PUB},
+        ),
+    )
+    for goes, options in cases:
+        yield case(
+            place,
+            "a publisher",
+            goes,
+            "on_silence at the wheels",
+            mover=mover(asks="publisher"),
+            wheel=WATCHFUL,
+            switches=("silence",),
+            returns=True,
+            **{"limit_s": SILENCE_S, **options},
+        )
+
+
+def last_messages(place: Place) -> Iterator[Motion]:
+    """Yield what happens to the wheels of a publisher whose ``finally`` stops them."""
+    endings: tuple[tuple[str, Strike, Switch], ...] = (
+        ("fails", run_into("fail"), "end"),
+        ("gets SIGTERM", ENDINGS[0][1], "end"),
+        *((goes, strike, "signals") for goes, strike in ENDINGS[1:]),
+    )
+    for goes, strike, switch in endings:
+        yield case(
+            place,
+            "a publisher",
+            goes,
+            "finally at the mover",
+            mover=mover(asks="finally"),
+            wheel=TOPIC,
+            strike=strike,
+            switches=(switch,),
+            limit_s=TTL_S,
+            ends=True,
+        )
+
+
+def goals(place: Place) -> Iterator[Motion]:
+    """Yield what happens to the goal of a client."""
+    lost: tuple[tuple[str, dict[str, Any]], ...] = (
+        *((goes, {"strike": strike, "ends": True}) for goes, strike in DEATHS),
+        *((goes, {"strike": strike, "lasts_s": 5.0}) for goes, strike in BLOCKS),
+        ("is suspended by Ctrl-Z for 5 s", {"strike": frozen(5, signal.SIGTSTP), "lasts_s": 5}),
+        *(
+            (f"is frozen {each} s", {"strike": frozen(each), "lasts_s": each})
+            for each in (5, 14, *((70,) if place.name == "router" else ()))
+        ),
+    )
+    for goes, options in lost:
+        yield case(
+            place,
+            "a client of a goal",
+            goes,
+            "on_client_lost at the server",
+            mover=mover(asks="goal"),
+            wheel=SERVER,
+            switches=("lost",),
+            limit_s=LOST_S,
+            allowed_s=0.5,
+            **{**options, "short": options["strike"] is killed and place.name == "link"},
+        )
+    ends: tuple[tuple[str, str, Role, Strike, bool], ...] = (
+        *(
+            ("a client of a goal", goes, mover(asks="goal"), strike, True)
+            for goes, strike in (("fails", run_into("fail")), *ENDINGS)
+        ),
+        (
+            "a route of FastAPI that awaits a goal",
+            "loses its browser",
+            mover(asks="goal", program="uvicorn"),
+            browser_leaves,
+            False,
+        ),
+        (
+            "a route of FastAPI that awaits a goal",
+            "has a node that fails",
+            mover(asks="goal", program="uvicorn"),
+            run_into("fail"),
+            False,
+        ),
+    )
+    for who, goes, role, strike, ending in ends:
+        yield case(
+            place,
+            who,
+            goes,
+            "the end of the client",
+            mover=role,
+            # Nothing but the client itself may end it in time.
+            wheel=Wheel("", action=True),
+            strike=strike,
+            switches=("end",),
+            limit_s=TTL_S,
+            ends=ending,
+        )
+
+
+def cables() -> Iterator[Motion]:
+    """Yield what happens to the wheels of a robot when its operator is out of reach."""
+    for seconds in (5, 14, 70):
+        for verb, text in (("cut", "is cut off for"), ("swallow", "is out of reach for")):
+            hosts = TwoHosts()
+            place = Place(
+                f"{verb} {seconds}",
+                "Two hosts",
+                "longest",
+                partial(beyond, hosts),
+                hosts.placed((HOST_ROUTER,)),
+                hosts,
+                together=True,
+            )
+            strike = at_once(getattr(hosts, verb)(seconds))
+            asking: tuple[tuple[str, str, dict[str, Any]], ...] = (
+                (
+                    "a holder of a lease",
+                    "a lease at the mover, on_silence at the wheels",
+                    {"mover": mover(), "wheel": WATCHFUL, "switches": ("silence", "lease")},
+                ),
+                (
+                    "a publisher",
+                    "on_silence at the wheels",
+                    {
+                        "mover": mover(asks="publisher"),
+                        "wheel": WATCHFUL,
+                        "switches": ("silence",),
+                        "returns": True,
+                    },
+                ),
+                (
+                    "a client of a goal",
+                    "on_client_lost at the server",
+                    {
+                        "mover": mover(asks="goal"),
+                        "wheel": SERVER,
+                        "switches": ("lost",),
+                        "limit_s": LOST_S,
+                        "allowed_s": 0.5,
+                    },
+                ),
+            )
+            for who, stops, options in asking:
+                yield case(
+                    place,
+                    who,
+                    f"{text} {seconds} s",
+                    stops,
+                    strike=strike,
+                    lasts_s=seconds,
+                    **{"limit_s": SILENCE_S, **options},
+                )
+
+
+def beyond(hosts: TwoHosts, role: Role) -> Role:
+    """Return a role on the robot if it is wheels, else on the other host, which names the robot."""
+    if role.wheels:
+        return hosts.within(0, role)
+    return hosts.within(1, msgspec.structs.replace(role, env={**NAMING, **role.env}))
+
+
+PUB = Role(
+    "",
+    command=(
+        "-m",
+        "aionode",
+        "topic",
+        "pub",
+        "-r",
+        "1",
+        "TOPIC",
+        "geometry_msgs/msg/Twist",
+        "{linear: {x: 0.5}}",
+    ),
+)
+"""A command from a shell, which is one message a second, and no sender in it."""
+
+
+def motions() -> list[Motion]:
+    """Return every case."""
+    kinds = (leases, leases_and_silence, publishers, last_messages, goals)
+    places = [linked(way) for way in ("link", "Zenoh", "router")]
+    return [
+        *(motion for place in places for kind in kinds for motion in kind(place)),
+        *limits(places[0]),
+        *cables(),
+        *ros_motions(),
+    ]

@@ -1,0 +1,121 @@
+"""In which ways a mover goes. Each function strikes, and returns when the fault is over."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+from collections.abc import Awaitable, Callable
+
+from tests.faults.faults import Fault
+from tests.faults.harness import Stage
+from tests.faults.motion.scene import Play
+
+__all__ = [
+    "Strike",
+    "at_once",
+    "browser_leaves",
+    "frozen",
+    "hung_up",
+    "interrupted_twice",
+    "killed",
+    "run_into",
+    "signalled",
+]
+
+AGAIN_AFTER_S = 1.2
+"""After so long a second Ctrl-C is one of a person who wants the end, not one more of the first."""
+
+Strike = Callable[[Play], Awaitable[None]]
+
+
+async def killed(play: Play) -> None:
+    """Kill it."""
+    play.struck()
+    play.child.send(signal.SIGKILL)
+
+
+def frozen(seconds: float, number: int = signal.SIGSTOP) -> Strike:
+    """Stop it for some time: as a debugger does, or as Ctrl-Z does with SIGTSTP."""
+
+    async def strike(play: Play) -> None:
+        play.struck()
+        play.child.send(number)
+        await asyncio.sleep(seconds)
+        play.child.send(signal.SIGCONT)
+
+    return strike
+
+
+def signalled(*numbers: int, apart_s: float = 0.0) -> Strike:
+    """Send it signals, some time apart."""
+
+    async def strike(play: Play) -> None:
+        play.struck()
+        for each, number in enumerate(numbers):
+            if each:
+                await asyncio.sleep(apart_s)
+            play.child.send(number)
+
+    return strike
+
+
+def interrupted_twice(trouble: str = "", *, judged: int = 1) -> Strike:
+    """Let a person press Ctrl-C, and again when it does not end.
+
+    Args:
+        trouble: What it has run into before.
+        judged: Which of both is the fault: 0 or 1.
+    """
+
+    async def strike(play: Play) -> None:
+        if trouble:
+            play.child.tell(trouble)
+            await asyncio.sleep(0.2)
+        for each in range(2):
+            if each == judged:
+                play.struck()
+            play.child.send(signal.SIGINT)
+            await asyncio.sleep((1 - each) * AGAIN_AFTER_S)
+
+    return strike
+
+
+def run_into(trouble: str, seconds: float = 0.0) -> Strike:
+    """Let it run into trouble; see `tests.faults.motion.mover`."""
+
+    async def strike(play: Play) -> None:
+        play.struck()
+        play.child.tell(f"{trouble} {seconds:g}")
+        await asyncio.sleep(seconds)
+
+    return strike
+
+
+async def hung_up(play: Play) -> None:
+    """Close its terminal."""
+    play.struck()
+    play.child.hang_up()
+
+
+def at_once(fault: Fault) -> Strike:
+    """Let a fault strike all movers of a place at once, such as one of the cable between hosts."""
+    begun: list[Stage] = []
+    over = asyncio.Event()
+
+    async def strike(play: Play) -> None:
+        play.struck()
+        if begun:
+            await over.wait()
+            return
+        begun.append(play.stage)
+        await fault(play.stage)
+        over.set()
+
+    return strike
+
+
+async def browser_leaves(play: Play) -> None:
+    """Let its browser go, without a word."""
+    assert play.browser is not None
+    play.struck()
+    play.browser.transport.abort()

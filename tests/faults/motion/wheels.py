@@ -1,0 +1,106 @@
+"""What a process of a fault case does that is the wheels of robots."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import time
+from collections.abc import Callable
+from typing import Any
+
+from aionode import CancelResponse, Node
+from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
+from aionode.interfaces.test_msgs.action import Fibonacci
+from aionode.qos import DurabilityPolicy, QoSProfile
+from tests.faults.motion.words import Handed, Mover, What, Wheel
+from tests.faults.roles import Report
+
+__all__ = ["Wheels", "command", "move", "profile"]
+
+STEP_S = 0.05
+"""How often a goal moves the wheels."""
+
+
+def profile(each: Mover | Wheel) -> QoSProfile:
+    """Return the profile of commands; of those that are kept, only the last one counts."""
+    if each.transient:
+        return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    return QoSProfile(depth=10)
+
+
+def command() -> Twist:
+    """Return a command to move, which says who sent it, and when."""
+    return Twist(linear=Vector3(x=1.0, y=time.monotonic()), angular=Vector3(x=float(os.getpid())))
+
+
+async def move(node: Node, wheel: Wheel) -> None:
+    """Move wheels until cancelled."""
+    if wheel.action:
+        client = node.create_action_client(Fibonacci, wheel.topic)
+        await client.wait_for_server()
+        await client.call(Fibonacci.Goal(order=os.getpid()))
+    publisher = node.create_publisher(Twist, wheel.topic, profile(wheel))
+    while True:
+        publisher.publish(command())
+        await asyncio.sleep(STEP_S)
+
+
+class Wheels:
+    """The wheels of a process.
+
+    Args:
+        node: Its node.
+        report: Where what they are handed is noted.
+        tell: Called when they are to stop, so that the harness learns at once.
+    """
+
+    def __init__(self, node: Node, report: Report, tell: Callable[[], None]) -> None:
+        self._node = node
+        self._report = report
+        self._tell = tell
+
+    def attach(self, wheel: Wheel) -> None:
+        """Let a wheel obey."""
+        (self._serve if wheel.action else self._subscribe)(wheel)
+
+    def _note(self, topic: str, what: What, by: int = 0, sent_s: float = 0.0) -> None:
+        self._report.handed.append(Handed(topic, what, time.monotonic(), by, sent_s))
+        if what != "move":
+            asyncio.get_running_loop().call_soon(self._tell)
+
+    def _subscribe(self, wheel: Wheel) -> None:
+        options: dict[str, Any] = {}
+        if wheel.silence_sec:
+            options = {
+                "on_silence": lambda: self._note(wheel.topic, "silence"),
+                "silence_sec": wheel.silence_sec,
+            }
+
+        def take(msg: Twist) -> None:
+            what: What = "stop" if msg.linear.x == 0.0 else "move"
+            self._note(wheel.topic, what, int(msg.angular.x), msg.linear.y)
+
+        self._node.create_subscription(Twist, wheel.topic, take, profile(wheel), **options)
+
+    def _serve(self, wheel: Wheel) -> None:
+        options: dict[str, Any] = {}
+        if wheel.lost_sec:
+            options = {"on_client_lost": "cancel", "client_lost_sec": wheel.lost_sec}
+
+        async def drive(goal: Any) -> Fibonacci.Result:
+            by = int(goal.request.order)
+            try:
+                while True:
+                    self._note(wheel.topic, "move", by, time.monotonic())
+                    goal.publish_feedback(Fibonacci.Feedback(sequence=[1]))
+                    await asyncio.sleep(STEP_S)
+            finally:
+                self._note(wheel.topic, "stop", by)
+
+        self._node.create_action_server(
+            Fibonacci,
+            wheel.topic,
+            drive,
+            cancel_callback=lambda _: CancelResponse.ACCEPT,
+            **options,
+        )

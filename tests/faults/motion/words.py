@@ -1,0 +1,91 @@
+"""What moves a robot in a fault case, what its wheels do, and what they are handed.
+
+A `Mover` asks for motion, a `Wheel` obeys; both are part of a `Role`. Each command says when it was
+sent and by which process, and what a wheel is handed goes to the harness as `Handed`, with the time
+of the monotonic clock, which all processes of a host have in common.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import msgspec
+
+__all__ = ["Asks", "Handed", "Mover", "Program", "What", "Wheel"]
+
+Asks = Literal["lease", "publisher", "finally", "goal", "goal left"]
+"""By what it asks for motion: a lease of a publisher, a plain publisher, one whose ``finally``
+publishes a last message, a goal that it awaits, or one that it does not await."""
+
+Program = Literal["run", "asyncio", "uvicorn"]
+"""How it runs: by `aionode.run`, `asyncio.run`, or in a route of FastAPI."""
+
+What = Literal["move", "stop", "silence"]
+"""A command to move; a command to stop, or the end of a goal; a call of ``on_silence``."""
+
+
+class Mover(msgspec.Struct, frozen=True):
+    """What asks for motion, 20 times a second if it is by messages.
+
+    Attributes:
+        topic: The topic or the action.
+        asks: By what.
+        program: How it runs.
+        ttl_sec: The time to live of its lease.
+        period_s: Time between two commands.
+        transient: Whether its publisher keeps its last messages for late subscriptions.
+        port: On which its web server listens; 0 without one.
+        route: The route of it that moves.
+        graceful_s: How long its web server waits for connections at its end; None without limit.
+        cleans_up_s: How long it goes on within its lease after it was cancelled.
+        old_signals: Whether SIGHUP ends it without cleanup, and so does a second signal, however
+            soon it comes: what aionode's handling of signals is compared with.
+    """
+
+    topic: str
+    asks: Asks = "lease"
+    program: Program = "run"
+    ttl_sec: float = 0.3
+    period_s: float = 0.05
+    transient: bool = False
+    port: int = 0
+    route: Literal["awaited", "streamed"] = "awaited"
+    graceful_s: int | None = 1
+    cleans_up_s: float = 0.0
+    old_signals: bool = False
+
+
+class Wheel(msgspec.Struct, frozen=True):
+    """What obeys.
+
+    Attributes:
+        topic: The topic or the action.
+        action: Whether it obeys goals; else messages.
+        silence_sec: After which it is told of silence; 0 if it does not ask.
+        lost_sec: After which it takes the client of a goal for lost; 0 if goals go on without.
+        transient: Whether it asks for what its publishers have kept.
+    """
+
+    topic: str
+    action: bool = False
+    silence_sec: float = 0.0
+    lost_sec: float = 0.0
+    transient: bool = False
+
+
+class Handed(msgspec.Struct, frozen=True, array_like=True):
+    """What a wheel was handed.
+
+    Attributes:
+        topic: The topic or the action.
+        what: What it was.
+        time_s: When.
+        by: The process that asked for it; 0 if nobody says.
+        sent_s: When it was sent; 0 if nobody says.
+    """
+
+    topic: str
+    what: What
+    time_s: float
+    by: int = 0
+    sent_s: float = 0.0
