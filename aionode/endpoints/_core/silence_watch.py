@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from aionode._concurrency import SLICE_NS, checkpoint
 from aionode.clock import S_TO_NS, Clock, SilenceAlarm, perf_ns
 from aionode.endpoints._core.callback_runner import accepts
+from aionode.endpoints._core.node_tasks import create_own_task
 from aionode.endpoints._core.publication_times import PublicationTimes
 from aionode.errors import brief
 
@@ -378,7 +379,7 @@ class SilenceWatch:
                 continue
             rest = handle(*reader.pop())
             if rest is not None:
-                task = tasks.create_task(rest)
+                task = create_own_task(tasks, rest)
                 running.add(task)
                 task.add_done_callback(running.discard)
             self._note_handed()
