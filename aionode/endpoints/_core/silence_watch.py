@@ -379,18 +379,23 @@ class SilenceWatch:
                 continue
             rest = handle(*reader.pop())
             if rest is not None:
-                task = create_own_task(tasks, rest)
-                running.add(task)
-                task.add_done_callback(running.discard)
+                self._go_on(tasks, rest)
             self._note_handed()
             if perf_ns() >= turn_ends_ns:
                 await checkpoint()
                 turn_ends_ns = perf_ns() + SLICE_NS
 
-    def _note_handed(self) -> None:
+    def _go_on(self, tasks: asyncio.TaskGroup, rest: Coroutine[Any, Any, None]) -> None:
+        """Have the rest of a callback run, unless the callback has ended the last publisher."""
         if self._due:
-            self._stop_callbacks()  # the callback itself has ended the last publisher
-        elif self._enabled and not self._handed:
+            rest.close()
+            return
+        task = create_own_task(tasks, rest)
+        self._running.add(task)
+        task.add_done_callback(self._running.discard)
+
+    def _note_handed(self) -> None:
+        if self._enabled and not (self._handed or self._due):
             self._handed = True
             self._fire_if_deserted()
 

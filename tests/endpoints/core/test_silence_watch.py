@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import threading
 import time  # noqa: TID251  # the loop is blocked in real time
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
 from typing import Any
 
 import pytest
@@ -19,7 +19,7 @@ from aionode.interfaces.std_msgs.msg import Int32
 from aionode.lifecycle import LifecycleNode
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
-from aionode.testing import ManualClock, settle
+from aionode.testing import ManualClock, local_context, settle
 
 MACHINE = SteadyClock()
 
@@ -246,19 +246,30 @@ async def test_a_publisher_that_is_made_for_one_message_is_heard(
     assert driven.log == [1, "stop"]
 
 
+@pytest.mark.parametrize("is_async", [True, False])
 async def test_a_callback_may_end_the_last_publisher(
-    wheels: Node, teleop: Node, driven: Driven
+    wheels: Node, teleop: Node, driven: Driven, is_async: bool
 ) -> None:
     """What it would await after that is cancelled, as it is no command any more."""
     publisher = teleop.create_publisher(Int32, "n", 10)
 
-    async def drive(msg: Int32) -> None:
-        driven.drive(msg)
-        if msg.data == 2:
-            publisher.destroy()
-            await checkpoint()
-            driven.log.append("moved")
+    async def move() -> None:
+        await checkpoint()
+        driven.log.append("moved")
 
+    def begin(msg: Int32) -> Awaitable[None] | None:
+        driven.drive(msg)
+        if msg.data == 1:
+            return None
+        publisher.destroy()
+        return move()
+
+    async def begin_async(msg: Int32) -> None:
+        rest = begin(msg)
+        if rest is not None:
+            await rest
+
+    drive = begin_async if is_async else begin
     wheels.create_subscription(Int32, "n", drive, on_silence=driven.stop, silence_sec=60)
     send(publisher, 1, 2)
     await settle()
@@ -302,6 +313,8 @@ async def test_all_that_run_at_once_are_cancelled(
         try:
             await asyncio.Event().wait()
         finally:
+            for _ in range(5):
+                await checkpoint()
             driven.drive(msg)
 
     wheels.create_subscription(Int32, "n", drive, on_silence=driven.stop, concurrent=concurrent)
@@ -553,8 +566,9 @@ async def machine_node(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Node]:
         yield node
 
 
+@pytest.mark.parametrize("another_comes", [True, False])
 async def test_a_loop_that_stood_still_stops_before_it_handles_what_is_queued(
-    machine_node: Node, driven: Driven
+    machine_node: Node, driven: Driven, another_comes: bool
 ) -> None:
     """The messages are older than `silence_sec`, and were no commands for now."""
     subscription = machine_node.create_subscription(
@@ -565,7 +579,8 @@ async def test_a_loop_that_stood_still_stops_before_it_handles_what_is_queued(
     await settle()
     send(publisher, 2, 3)
     time.sleep(0.06)  # noqa: ASYNC251  # as a callback that blocks
-    send(publisher, 4)
+    if another_comes:
+        send(publisher, 4)
     await settle()
     assert driven.log[:2] == [1, "stop"]
     assert 2 not in driven.log
@@ -574,19 +589,63 @@ async def test_a_loop_that_stood_still_stops_before_it_handles_what_is_queued(
 
 
 async def test_a_loop_that_was_busy_for_less_has_missed_nothing(
-    machine_node: Node, driven: Driven
+    wheels: Node, clock: ManualClock, driven: Driven
 ) -> None:
-    """What it reads late counts from when it came."""
-    machine_node.create_subscription(
-        Int32, "n", driven.drive, on_silence=driven.stop, silence_sec=0.3
-    )
-    publisher = machine_node.create_publisher(Int32, "n", 10)
-    for number in range(3):
-        send(publisher, number)
-        await settle()
-        time.sleep(0.1)  # noqa: ASYNC251  # as a callback that blocks
-    await settle()
-    assert driven.log == [0, 1, 2]
+    """What it reads late counts from when it was published."""
+    subscription = wheels.create_subscription(Int32, "n", driven.drive, on_silence=driven.stop)
+    began_ns = clock.now().nanoseconds
+
+    def come(number: int, after_s: float) -> None:
+        stamp = began_ns + round(after_s * 1e9)
+        subscription._reader.deliver(Int32(data=number), b"g" * 16, number, stamp)
+
+    come(1, 0)
+
+    def read_soon() -> None:
+        asyncio.get_running_loop().call_soon(come, 2, 0.2)
+
+    clock.call_at(began_ns + 3 * 10**8, read_soon)
+    await clock.jump(0.4)
+    assert driven.log == [1, 2]
+    await clock.advance(0.099)
+    assert driven.log == [1, 2]
+    await clock.advance(0.001)
+    assert driven.log == [1, 2, "stop"]
+
+
+async def test_a_message_that_a_transport_has_held_counts_from_its_arrival(
+    wheels: Node, clock: ManualClock, driven: Driven
+) -> None:
+    """For example until others before it have come."""
+    subscription = wheels.create_subscription(Int32, "n", driven.drive, on_silence=driven.stop)
+    arrived_ns = clock.now().nanoseconds - 2 * 10**8
+    subscription._reader.deliver(Int32(), b"g" * 16, 1, arrived_ns, 0, arrived_ns)
+    await clock.advance(0.099)
+    assert driven.log == [0]
+    await clock.advance(0.001)
+    assert driven.log == [0, "stop"]
+
+
+class Suspending(ManualClock):
+    """A machine whose steady clock stands still while it is suspended."""
+
+    def __init__(self) -> None:
+        super().__init__(Time(seconds=1000))
+        self.lasting = ManualClock(Time(seconds=1000))
+
+    def through_suspend(self) -> ManualClock:
+        """Return the time that goes on."""
+        return self.lasting
+
+
+async def test_a_host_that_was_suspended_has_been_silent(driven: Driven) -> None:
+    """Its steady clock has stood still, and the world has not."""
+    clock = Suspending()
+    async with local_context(clock=clock) as context, Node("wheels", context=context) as node:
+        node.create_subscription(Int32, "n", driven.drive, on_silence=driven.stop)
+        send(node.create_publisher(Int32, "n", 10), 1)
+        await clock.lasting.advance(0.3)
+        assert driven.log == [1, "stop"]
 
 
 # By another clock
@@ -613,6 +672,22 @@ async def test_simulated_time_measures_the_silence(
     send(publisher, 2)
     await clock.advance(0.3)
     assert driven.log == [1, "stop", 2, "stop"]
+
+
+async def test_a_message_comes_too_late_after_a_jump_of_simulated_time(
+    wheels: Node, teleop: Node, clock: ManualClock, driven: Driven
+) -> None:
+    """No time has passed but that of the simulation, and that is what counts."""
+    simulated = ROSClock(time_base=clock)
+    simulated.set_ros_time_active(True)
+    wheels.create_subscription(Int32, "n", driven.drive, on_silence=driven.stop, clock=simulated)
+    publisher = teleop.create_publisher(Int32, "n", 10)
+    send(publisher, 1)
+    await settle()
+    simulated.set_ros_time_override(Time(seconds=1))
+    send(publisher, 2)
+    await settle()
+    assert driven.log == [1, "stop"]
 
 
 async def test_a_clock_of_the_machine_is_the_steady_one(
