@@ -164,6 +164,6 @@ class AsyncParameterClient:
         return results
 
     def destroy(self) -> None:
-        """Destroy the six clients; pending calls are cancelled."""
+        """Destroy the six clients; pending calls end as `Client.call` says."""
         for client in self._clients:
             client.destroy()

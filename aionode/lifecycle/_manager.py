@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING, Self
 
-from aionode.errors import AionodeError, TransitionError
+from aionode.errors import AionodeError, ServiceUnavailableError, TransitionError
 from aionode.interfaces.lifecycle_msgs.msg import Transition
 from aionode.interfaces.lifecycle_msgs.srv import ChangeState, GetState
 from aionode.lifecycle._events import EventSource
@@ -200,19 +200,25 @@ class LifecycleManager:
         """Bring all nodes down that are there; return the failures."""
         errors: list[Exception] = []
         for name in reversed(self.node_names):
-            last_state = self._last_states.get(name, "")
             try:
                 if self._states[name].service_is_ready():
                     await self._lead(name, "unconfigured")
-                elif last_state in LEVELS[1:]:
-                    self._node.get_logger().warning(
-                        f"lifecycle manager: {name} was {last_state} when it was last seen, and "
-                        "has gone or cannot be reached: it could not be brought down; check that "
-                        "it has stopped"
-                    )
+                else:
+                    self._warn_of_gone(name)
+            except ServiceUnavailableError:  # it ends just now
+                self._warn_of_gone(name)
             except (AionodeError, TimeoutError) as error:
                 errors.append(error)
         return errors
+
+    def _warn_of_gone(self, name: str) -> None:
+        """Name a node that has gone, if it may still be active somewhere."""
+        last_state = self._last_states.get(name, "")
+        if last_state in LEVELS[1:]:
+            self._node.get_logger().warning(
+                f"lifecycle manager: {name} was {last_state} when it was last seen, and has gone "
+                "or cannot be reached: it could not be brought down; check that it has stopped"
+            )
 
     async def _lead(self, name: str, goal: str) -> None:
         """Have a node make the transitions from its state to `goal`, one of `LEVELS`.

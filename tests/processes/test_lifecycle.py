@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import signal
 import sys
 from pathlib import Path
 from typing import Any
@@ -12,8 +13,13 @@ import pytest
 from aionode import Context, Node
 from aionode.interfaces.lifecycle_msgs.srv import ChangeState
 from aionode.interfaces.std_msgs.msg import Int32
-from aionode.lifecycle import LifecycleNode, State, TransitionCallbackReturn
-from tests.processes.process import ROOT
+from aionode.lifecycle import (
+    LifecycleManager,
+    LifecycleNode,
+    State,
+    TransitionCallbackReturn,
+)
+from tests.processes.process import ROOT, Process
 
 PEER = str(Path(__file__).with_name("lifecycle_peer.py"))
 
@@ -182,3 +188,51 @@ async def test_no_transition_is_lost_or_stuck_while_topics_flow() -> None:
         assert managed.lifecycle_state.label == "unconfigured"
         assert heard > 0
         assert publisher.stats.published > heard
+
+
+CAMERA = """
+import aionode
+from aionode.lifecycle import LifecycleNode
+
+class Camera(LifecycleNode):
+    def __init__(self):
+        super().__init__("camera")
+
+    def on_activate(self, state):
+        print("active", flush=True)
+        return super().on_activate(state)
+
+aionode.run(Camera)
+"""
+
+
+@pytest.mark.one_loop
+@pytest.mark.timeout(120)
+@pytest.mark.parametrize("link", ["on", "off"])
+async def test_a_managed_node_that_is_killed_and_started_again_gets_its_state_back(
+    link: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By another program, such as systemd: the manager sees only that it has gone and is back."""
+    monkeypatch.setenv("AIONODE_LINK", link)
+    kinds: asyncio.Queue[str] = asyncio.Queue()
+
+    async def read(manager: LifecycleManager) -> None:
+        async for event in manager.events():
+            await kinds.put(event.kind)
+
+    async with (
+        Context() as context,
+        Node("manager", context=context) as node,
+        asyncio.TaskGroup() as group,
+    ):
+        manager = LifecycleManager(node, ["/camera"], timeout_sec=30.0, restore=True)
+        group.create_task(read(manager))
+        with Process("-c", CAMERA) as camera:
+            async with manager, asyncio.timeout(60):
+                camera.send(signal.SIGKILL)
+                assert await kinds.get() == "lost"
+                with Process("-c", CAMERA) as other:
+                    assert [await kinds.get(), await kinds.get()] == ["returned", "restored"]
+                    assert await manager.get_state("/camera") == "active"
+                    other.stop()
+                    assert await kinds.get() == "lost"
