@@ -97,7 +97,8 @@ class Publisher(Endpoint, Generic[MsgT]):
         self._stop_senders: tuple[StopSender, ...] = ()
         writers = self._all_writers = tuple(make_writers())  # one for each transport
         self.stats = PublisherStats(writers, self._matched)
-        self._drains: set[asyncio.Timeout] = set()  # the waits of `drain`, ended by `_close`
+        # The tasks in `drain`, and whether `_close` has cancelled them.
+        self._draining: dict[asyncio.Task[Any], bool] = {}
         self._signs: tuple[Writer, ...] = ()
         if self._monitor is not None and self._monitor.needs_signs:
             self._signs = (SignOfLife(writers, self._check, self._monitor.note_message),)
@@ -319,19 +320,21 @@ class Publisher(Endpoint, Generic[MsgT]):
             CancelledError: the publisher was destroyed during the wait of one of the node's own
                 tasks: a callback, or the body of ``async with node``.
         """
-        wait = asyncio.timeout(None)
-        self._drains.add(wait)
+        task = asyncio.current_task()
+        assert task is not None  # noqa: S101  # a coroutine runs in one
+        cancelling = task.cancelling()
+        self._draining[task] = False
         try:
-            async with wait:
-                for writer in self._awake_writers:
-                    await writer.drain()
-        except TimeoutError:
-            if not wait.expired():
+            for writer in self._awake_writers:
+                await writer.drain()
+        except asyncio.CancelledError:
+            # As in asyncio.timeout: a cancellation of others passes.
+            if not self._draining[task] or task.uncancel() > cancelling:
                 raise
             end = self._end_of_wait()
             raise end from end.__cause__
         finally:
-            self._drains.discard(wait)
+            del self._draining[task]
 
     def get_subscription_count(self) -> int:
         """Return how many subscriptions are matched, in this process and in others."""
@@ -356,7 +359,8 @@ class Publisher(Endpoint, Generic[MsgT]):
         if self._monitor is not None:
             self._monitor.close()
         self._leave_graph()
-        for wait in self._drains:
-            wait.reschedule(0.0)  # in the past: at the next turn of the loop
+        for task in self._draining:
+            self._draining[task] = True
+            task.cancel()
         for writer in self._all_writers:
             writer.close()
