@@ -36,8 +36,8 @@ CLIENT_CLOSED_REQUEST = 499
 async def until_disconnected(request: Request) -> AsyncIterator[None]:
     """Cancel the block when the client of `request` disconnects.
 
-    A web server goes on with a route whose browser has left. Within the block, what the route
-    awaits is cancelled instead, as by `asyncio.timeout`: a call is forgotten on both sides, and a
+    A web server goes on with a route whose browser has left. Within the block, the wait of the
+    route is cancelled instead, as by `asyncio.timeout`: a call is forgotten on both sides, and a
     goal is canceled.
 
     The body of the request is read first and kept for ``request.body()``, unless the route has
