@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, Generic, Protocol, Self, TypeVar
 
 from aionode.clock import S_TO_NS, Clock, MachineTime, SilenceAlarm
 from aionode.endpoints._core.lease_watch import REPEAT_S, watch
+from aionode.endpoints._core.loop_affinity import LoopAffinity
 from aionode.errors import ForkedProcessError, LeaseExpiredError, brief
 from aionode.logging import get_logger
 
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from types import TracebackType
 
     from aionode.clock import TimeBase
-    from aionode.endpoints._core.loop_affinity import LoopAffinity
     from aionode.transport.base import StopSender
 
 __all__ = ["CommandLease", "send_stops"]
@@ -150,7 +150,9 @@ class CommandLease(Generic[MsgT]):
         self._is_publishing = False
         self._numbers = (0, 0)  # of the stop
         self._refusal: Callable[[], Exception] | None = None  # what `publish` raises after the end
-        self._loop: asyncio.AbstractEventLoop | None = None  # that of the publisher's node
+        # The loop of the publisher's node, or that of the block if the node does not run.
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._affinity = LoopAffinity()
         # The block: its task and loop, and whether the time to live has cancelled it.
         self._task: asyncio.Task[Any] | None = None
         self._block_loop: asyncio.AbstractEventLoop | None = None
@@ -194,11 +196,13 @@ class CommandLease(Generic[MsgT]):
         return self
 
     def _open(self) -> None:
+        """Open the lease, on the loop of the publisher's node, which ends it as well."""
         if self._state is not State.NEW:
             raise RuntimeError(f"{self!r}: a lease is entered once; call publisher.lease() again")
         if self._refuse is not None:
             self._refuse()
         self._publisher._hold(self, self._stop)
+        self._affinity.attach()
         self._loop = asyncio.get_running_loop()
         self._state = State.OPEN
         self._silence = SilenceAlarm(
@@ -220,9 +224,8 @@ class CommandLease(Generic[MsgT]):
         """
         # Nothing is awaited here: the block may end because its coroutine is thrown away.
         self._left = True
-        affinity = self._publisher._affinity
-        if self._state in (State.OPEN, State.SENT) and affinity.is_other_thread():
-            affinity.wait_for(self._end_block)
+        if self._state in (State.OPEN, State.SENT) and self._affinity.is_other_thread():
+            self._affinity.wait_for(self._end_block)
         else:
             self._end_block()
         if not self._has_expired:
@@ -263,9 +266,8 @@ class CommandLease(Generic[MsgT]):
             RuntimeError: the lease was not entered.
             Exception: the exceptions of `Publisher.publish`; the time to live goes on.
         """
-        affinity = self._publisher._affinity
-        if affinity.is_other_thread():
-            affinity.wait_for(self.publish, msg)
+        if self._affinity.is_other_thread():
+            self._affinity.wait_for(self.publish, msg)
             return
         with self._lock:
             self._look()
@@ -296,7 +298,10 @@ class CommandLease(Generic[MsgT]):
         return left_ns is not None and left_ns <= 0
 
     def _on_silence(self, periods: int) -> bool:  # noqa: ARG002  # the first one ends it
-        self._look()
+        """End the lease; the alarm counts the next period by now, so `_is_silent` would not do."""
+        with self._lock:
+            if self._state is State.OPEN:
+                self._expire(self._of_silence())
         return False
 
     def _look(self) -> None:

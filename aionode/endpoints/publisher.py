@@ -91,7 +91,7 @@ class Publisher(Endpoint, Generic[MsgT]):
             # Before anything is announced to others: it refuses callbacks that do not fit.
             self._monitor = PublisherMonitor(self, time_base, event_callbacks)
         self._lease: CommandLease[MsgT] | None = None  # while it is held
-        self._held_writers: tuple[Writer, ...] = (HeldWriter(setup.endpoint.name),)
+        self._held_writers: tuple[Writer, ...] = ()  # in place of the others, while it is held
         self._stop: Any = None  # that of the last lease, its number, and what sends it
         self._stop_number = 0
         self._stop_senders: tuple[StopSender, ...] = ()
@@ -245,7 +245,7 @@ class Publisher(Endpoint, Generic[MsgT]):
         self._stop = snapshot(stop if type(stop) is self.msg_type else self._fitting(stop))
         self._prepare_stop(self._stop)
         self._lease = lease
-        self._writers = self._held_writers
+        self._writers = self._held_writers = (HeldWriter(self.topic_name),)
 
     def _prepare_stop(self, stop: Any) -> None:
         stats = self.stats

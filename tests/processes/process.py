@@ -112,6 +112,12 @@ class Process:
             self.lines.append(self._queue.get())
         return [line for _, line in self.lines]
 
+    def rest_after(self, wait_s: float) -> list[tuple[float, str]]:
+        """Wait, and return everything that it has written until then, with the times."""
+        time.sleep(wait_s)
+        self.rest_so_far()
+        return self.lines
+
     def ask(self, line: str, answer: str) -> str:
         """Send it a line, and return what follows `answer` in the next line that begins so.
 
