@@ -111,7 +111,6 @@ class LeaseWatch:
         if self._leases.pop(lease, None) is not None and not self._leases:
             suspension.remove()
             self.wake()  # to its end
-            suspension.remove()
 
     def wake(self) -> None:
         """Have the thread look now: a time to live has begun."""
