@@ -16,23 +16,33 @@ if TYPE_CHECKING:
     from typing import TextIO
 
 __all__ = [
-    "STANDARD",
     "UnreadWatch",
     "accepts",
     "discard",
     "discard_lost",
     "interrupt_main",
     "open_missing",
+    "standard",
 ]
-
-STANDARD = (1, 2)
-"""The descriptors of standard output and error."""
 
 CHECK_S = 0.01
 """How often the descriptors are checked, in seconds."""
 
 FULL_CHECKS = 20
 """How many checks in a row must find a descriptor full before it is discarded."""
+
+
+def standard() -> set[int]:
+    """Return the descriptors of standard output and error.
+
+    One that was closed when the process started may have become a file or socket of the program.
+    """
+    found = set()
+    for stream in (sys.__stdout__, sys.__stderr__):
+        if stream is not None:
+            with suppress(OSError, ValueError):  # it was closed meanwhile, or replaced
+                found.add(stream.fileno())
+    return found
 
 
 def accepts(descriptor: int) -> bool:
@@ -62,7 +72,7 @@ def discard_lost() -> None:
     Otherwise a line that a program prints before its last message would raise an error, and the
     message would never be sent.
     """
-    for descriptor in STANDARD:
+    for descriptor in standard():
         if is_lost(descriptor):
             discard(descriptor)
 
@@ -127,10 +137,10 @@ class UnreadWatch:
             self._ended.set()
 
     def _check(self) -> None:
-        full = dict.fromkeys(STANDARD, 0)
+        full = dict.fromkeys(standard(), 0)
         while not self._ended.wait(CHECK_S):
             discard_lost()
-            for descriptor in STANDARD:
+            for descriptor in full:
                 full[descriptor] = 0 if accepts(descriptor) else full[descriptor] + 1
                 if full[descriptor] == FULL_CHECKS:
                     self._discard(descriptor)

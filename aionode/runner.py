@@ -9,16 +9,16 @@ import inspect
 import os
 import sys
 import traceback
-from collections.abc import Callable, Coroutine, Iterator, Sequence
+from collections.abc import Callable, Coroutine, Sequence
 from pathlib import Path
 from types import FrameType
-from typing import Any
+from typing import Any, Self
 
 from aionode._signals import signals_to
 from aionode.arguments import Arguments, parse_arguments
 from aionode.context import Context
 from aionode.errors import AionodeError, InvalidROSArgsError
-from aionode.logging import configure, get_logger
+from aionode.logging import configure, get_logger, release_root
 from aionode.node import Node
 
 __all__ = ["Runnable", "freeze_objects", "run"]
@@ -66,7 +66,9 @@ def run(
     function: the stop goes out, and 0.2 s later the process is suspended.
 
     A second after the start it calls `freeze_objects`, unless the program has called ``gc.freeze``
-    or ``gc.disable``, and undoes that when it returns.
+    or ``gc.disable``, and undoes that when it returns; what the program freezes meanwhile stays so.
+    The messages of other loggers are shown until it returns, unless the program has configured
+    `logging` itself.
 
     Args:
         nodes: Nodes, or functions that return one, such as a class, which are called in the
@@ -99,14 +101,16 @@ def run(
         with (
             Context._obeying(arguments),
             signals_to(stop),
-            unfrozen_at_the_end(),
+            Freeze() as freeze,
             asyncio.Runner(loop_factory=loop_factory or best_loop_factory()) as runner,
         ):
-            runner.run(_until_stopped(nodes, stop))
+            runner.run(_until_stopped(nodes, stop, freeze))
     except Exception as error:  # printed for the user; the shell gets the exit status
         with contextlib.suppress(OSError):  # the terminal is lost; the shell gets the status
             sys.stderr.write(failure_text(error))
         raise SystemExit(1) from error
+    finally:
+        release_root()
 
 
 def set_up(args: Sequence[str]) -> Arguments:
@@ -199,7 +203,7 @@ class Stop:
             self._task.cancel()
 
 
-async def _until_stopped(nodes: Sequence[Runnable], stop: Stop) -> None:
+async def _until_stopped(nodes: Sequence[Runnable], stop: Stop, freeze: Freeze) -> None:
     """Run everything, and return normally if a signal stops it."""
     stop.begin()
     asyncio.get_running_loop().call_later(STARTED_SEC, freeze)
@@ -236,20 +240,26 @@ def freeze_objects() -> None:
     gc.freeze()
 
 
-def freeze() -> None:
-    """Call `freeze_objects`, unless the program has frozen some or collects no garbage."""
-    if gc.isenabled() and gc.get_freeze_count() < FROZEN_BY_PYTHON:
-        freeze_objects()
+class Freeze:
+    """Calls `freeze_objects` within a block, and undoes that at its end.
 
+    The process may go on afterwards. What the program itself has frozen stays so.
+    """
 
-@contextlib.contextmanager
-def unfrozen_at_the_end() -> Iterator[None]:
-    """Undo what `freeze` has done within, for a process that goes on afterwards."""
-    was_frozen = gc.get_freeze_count() >= FROZEN_BY_PYTHON
-    try:
-        yield
-    finally:
-        if not was_frozen:
+    def __init__(self) -> None:
+        self._count = 0  # how many objects were frozen when this had frozen them
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __call__(self) -> None:
+        """Freeze all objects, unless the program has frozen some or collects no garbage."""
+        if gc.isenabled() and gc.get_freeze_count() < FROZEN_BY_PYTHON:
+            freeze_objects()
+            self._count = gc.get_freeze_count()
+
+    def __exit__(self, *_: object) -> None:
+        if self._count and gc.get_freeze_count() <= self._count:
             gc.unfreeze()
 
 

@@ -224,6 +224,31 @@ def test_the_search_for_garbage_leaves_out_what_a_running_program_keeps(
     assert before is after is is_frozen_before
 
 
+@pytest.mark.parametrize("when", ["first", "afterwards"])
+def test_what_the_program_freezes_while_it_runs_stays_frozen(
+    monkeypatch: pytest.MonkeyPatch, when: str
+) -> None:
+    """The process may go on after `run`, and the program has its reasons."""
+    monkeypatch.setattr("aionode.runner.STARTED_SEC", 0.0)
+
+    async def main() -> None:
+        if when == "first":
+            gc.freeze()
+        while not is_frozen():
+            await checkpoint()
+        for _ in range(3):
+            await checkpoint()
+        kept.extend([] for _ in range(5000))
+        gc.freeze()
+
+    kept: list[list[int]] = []
+    try:
+        run_in_this_process(main)
+        assert is_frozen()
+    finally:
+        gc.unfreeze()
+
+
 def is_frozen() -> bool:
     """Whether more is frozen than Python 3.12 freezes itself."""
     return gc.get_freeze_count() > FROZEN_BY_PYTHON

@@ -10,6 +10,7 @@ from aionode.logging._loggers import (
     get_logger_effective_level,
     get_logger_level,
     initialize,
+    release_root,
     set_logger_level,
     shutdown,
 )
@@ -28,6 +29,7 @@ __all__ = [
     "get_logging_directory",
     "get_logging_severity_from_string",
     "initialize",
+    "release_root",
     "set_logger_level",
     "shutdown",
 ]

@@ -231,7 +231,7 @@ class SetUp:
     def __init__(self) -> None:
         self.ready = False
         self._installed: list[tuple[logging.Logger, logging.Handler]] = []
-        self._root_level: int | None = None
+        self._root_levels: tuple[int, int] | None = None  # before, and as it was set
 
     def install(self, handler: logging.Handler, *names: str) -> None:
         """Add a handler to these loggers."""
@@ -243,18 +243,28 @@ class SetUp:
     def take_root(self, level: int) -> None:
         """Set the level of the root logger, as basicConfig would, for all other loggers."""
         root = logging.getLogger()
-        self._root_level = root.level
+        self._root_levels = root.level, level
         root.setLevel(level)
+
+    def release_root(self) -> None:
+        """Take back what was set for all other loggers, unless the program has changed it."""
+        root = logging.getLogger()
+        for logger, handler in self._installed:
+            if logger is root:
+                root.removeHandler(handler)
+        if self._root_levels is not None:
+            before, level = self._root_levels
+            self._root_levels = None
+            if root.level == level:
+                root.setLevel(before)
 
     def remove(self) -> None:
         """Remove everything."""
+        self.release_root()
         for logger, handler in self._installed:
             logger.removeHandler(handler)
             handler.close()
         self._installed.clear()
-        if self._root_level is not None:
-            logging.getLogger().setLevel(self._root_level)
-            self._root_level = None
         self.ready = False
 
 
@@ -322,6 +332,14 @@ def log_file(prefix: str, line_format: str) -> logging.Handler:
     )
     handler.setFormatter(LineFormatter(line_format))
     return handler
+
+
+def release_root() -> None:
+    """Take back what `configure` has set for all loggers of the process (``whole_process=True``).
+
+    aionode's own loggers stay configured. `aionode.run` calls this when it returns.
+    """
+    set_up.release_root()
 
 
 def shutdown() -> None:
