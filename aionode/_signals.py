@@ -41,14 +41,11 @@ def signals_to(stop: Callable[[], object]) -> Iterator[None]:
         yield
         return
     handler = EndHandler(stop)
-    before = {number: signal.signal(number, handler) for number in ending_signals()}
+    handler.install()
     try:
         yield
     finally:
         handler.close()
-        for number, earlier in before.items():
-            if signal.getsignal(number) is handler:  # or the program has set its own meanwhile
-                restore(number, earlier)
 
 
 def ending_signals() -> list[signal.Signals]:
@@ -57,11 +54,6 @@ def ending_signals() -> list[signal.Signals]:
     if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_DFL:
         found.append(signal.SIGHUP)
     return found
-
-
-def restore(number: signal.Signals, handler: Any) -> None:
-    """Set the handler that was there before; what was not set by Python cannot be set again."""
-    signal.signal(number, signal.SIG_DFL if handler is None else handler)
 
 
 class EndHandler:
@@ -73,15 +65,24 @@ class EndHandler:
 
     def __init__(self, stop: Callable[[], object]) -> None:
         self._stop = stop
+        self._pid = os.getpid()
+        self._before: dict[int, Any] = {}
         self._first: int | None = None
         self._first_ns = 0
         self._woken: list[int] = []
         # The loop may be blocked by a write to a full pipe whose reader is gone.
         self._unread = UnreadWatch(self._wake)
 
+    def install(self) -> None:
+        """Handle the signals from now on."""
+        self._before = {number: signal.signal(number, self) for number in ending_signals()}
+
     def __call__(self, number: int, frame: FrameType | None) -> None:
         """Handle a signal."""
-        if number in self._woken:
+        if os.getpid() != self._pid:  # a forked child, which `aionode.run` does not run
+            self._restore(number)
+            signal.raise_signal(number)
+        elif number in self._woken:
             self._woken.remove(number)
         elif self._first is None:
             self._first, self._first_ns = number, perf_ns()
@@ -95,9 +96,19 @@ class EndHandler:
             self._woken.append(self._first)
             interrupt_main(signal.Signals(self._first))
 
+    def _restore(self, number: int) -> None:
+        """Set the handler that was there before, unless the program has set its own meanwhile."""
+        current: object = signal.getsignal(number)
+        if current is self:
+            before = self._before[number]
+            # None stands for one that was not set by Python, which cannot set it again.
+            signal.signal(number, signal.SIG_DFL if before is None else before)
+
     def close(self) -> None:
-        """Stop watching the standard streams."""
+        """Restore the handlers, and stop watching the standard streams."""
         self._unread.stop()
+        for number in self._before:
+            self._restore(number)
 
 
 class SuddenEnd:

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time  # noqa: TID251  # how long a process takes to end is what is tested
+from pathlib import Path
 from types import ModuleType
 
 import pytest
@@ -325,6 +326,33 @@ def test_a_handler_of_the_program_for_sighup_is_left_alone() -> None:
         program.send(SIGTERM)
         status, out, _ = program.end()
     assert (status, out) == (0, "cancelled\nafter run\n")
+
+
+FORKS = """
+import os, signal
+
+async def main():
+    child = os.fork()
+    if not child:
+        print("ready", flush=True)
+        time.sleep(30)
+        os._exit(0)
+    _, status = await asyncio.to_thread(os.waitpid, child, 0)
+    print(os.waitstatus_to_exitcode(status), flush=True)
+
+aionode.run(main, args=[])
+"""
+
+
+@pytest.mark.parametrize("number", [SIGTERM, SIGHUP])
+def test_a_signal_ends_a_forked_child_as_without_aionode(number: signal.Signals) -> None:
+    """`multiprocessing` ends its workers by SIGTERM; nothing of aionode runs in them."""
+    with Program(FORKS) as program:
+        program.wait_until_ready()
+        children = Path(f"/proc/{program.process.pid}/task/{program.process.pid}/children")
+        os.kill(int(children.read_text()), number)
+        status, out, _ = program.end()
+    assert (status, out) == (0, f"{-number}\n")
 
 
 PRINTS_BEFORE_ITS_LAST_MESSAGE = """
