@@ -82,19 +82,18 @@ class PlainClient:
         """Ask for a result; return the response."""
         return await self._results.call(Impl.GetResultService.Request(goal_id=uuid_of(number)))
 
-    async def ask(self, goal_id: bytes) -> int:
-        """Ask for the result of a goal that does not exist; return the status of the answer."""
-        uuid = UUID(uuid=list(goal_id))
-        status: int = (await self._results.call(Impl.GetResultService.Request(goal_id=uuid))).status
-        return status
-
     async def sign(self, number: int = 1) -> None:
         """Give a sign of life, as a client of aionode does three times in a while."""
-        await self.ask(alive_id(bytes(uuid_of(number).uuid)))
+        await self._tell(alive_id(bytes(uuid_of(number).uuid)))
 
     async def leave(self, number: int = 1) -> None:
         """Say that the goal goes on without its client."""
-        await self.ask(left_id(bytes(uuid_of(number).uuid)))
+        await self._tell(left_id(bytes(uuid_of(number).uuid)))
+
+    async def _tell(self, asked_id: bytes) -> None:
+        uuid = UUID(uuid=list(asked_id))
+        answer = await self._results.call(Impl.GetResultService.Request(goal_id=uuid))
+        assert answer.status == 0  # as for any goal that does not exist
 
     async def cancel(self, number: int = 1, stamp: Time | None = None) -> tuple[int, list[int]]:
         """Ask to cancel; return the code and the numbers of the goals."""

@@ -497,6 +497,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         # A task that is cancelled here leaves the goal to `_run`, or to `_close`.
         try:
             await self._until_askable()
+            self._signs.add(goal._key)  # now, if the service was found later than the goal accepted
             response = await self._ask(goal.goal_id)
             status = GoalStatus(response.status)
             text = await self._reason(goal, status)

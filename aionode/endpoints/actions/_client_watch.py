@@ -6,8 +6,10 @@ import asyncio
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from aionode.endpoints.actions.goal import LIVELINESS_ID, alive_id, left_id
+from aionode.clock import Duration
+from aionode.endpoints.actions.goal import alive_id, left_id
 from aionode.graph import EndpointKind
+from aionode.qos import as_profile
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -15,18 +17,24 @@ if TYPE_CHECKING:
     from aionode.clock import TimeBase
     from aionode.clock._time_base import Alarm
     from aionode.graph import EndpointInfo, Graph
+    from aionode.qos import QoSProfile
 
-__all__ = ["SIGN_UNIT_NS", "ClientWatch"]
+__all__ = ["SIGNS_IN_TIME", "ClientWatch", "announcing"]
 
 SIGNS_IN_TIME = 3
 """How often a client gives a sign within the time after which it is lost: two may be late."""
 
-SIGN_UNIT_NS = 10_000_000
-LONGEST_SIGN_UNITS = 127
-"""Clients are told the time between two signs in these units, in the int8 of a status."""
-
 STALLS_IN_TIME = 6
 """A look that is late by this part of that time, or more, shows that the server stood still."""
+
+
+def announcing(profile: QoSProfile | int, lost_ns: int) -> QoSProfile:
+    """Return the profile of a service that gives results, which tells clients to give signs.
+
+    Its lifespan is the time after which they are lost: no response is of use to them then.
+    """
+    chosen = as_profile(profile)
+    return chosen.replace(lifespan=Duration(nanoseconds=lost_ns)) if lost_ns else chosen
 
 
 @dataclass(slots=True)
@@ -39,18 +47,18 @@ class WatchedGoal:
         candidates: The gids of the clients of which one has sent the goal, where the middleware
             does not tell which.
         heard_ns: The steady time of its last sign; None if it has given none.
-        is_gone: Whether it is no longer in the graph.
+        gone_ns: From which steady time on it is lost, as it is not in the graph; None if it is.
     """
 
     gid: bytes
     client: str = ""
     candidates: set[bytes] = field(default_factory=set)
     heard_ns: int | None = None
-    is_gone: bool = False
+    gone_ns: int | None = None
 
 
 class ClientWatch:
-    """Watches the clients of the goals of one server, as long as these have not ended.
+    """Watches the clients of the goals of one server, until these end or are being cancelled.
 
     A client that has given a sign is lost when it has been silent for a certain time. One that has
     never given any, such as rclpy's, is lost when it leaves the graph.
@@ -64,7 +72,7 @@ class ClientWatch:
         service: Full name of the service that takes goals.
         graph: The graph.
         time_base: Whose steady clock counts.
-        lost_ns: After how long a silence a client is lost.
+        lost_ns: After how long a silence a client is lost; with 0, none ever is.
         on_lost: Called with ids of goals, and who their client was and why it is lost.
     """
 
@@ -85,28 +93,34 @@ class ClientWatch:
         self._alarm: Alarm | None = None
         self._due_ns = 0
         self._awake_ns = time_base.steady_ns() - SIGNS_IN_TIME * lost_ns
-        units = lost_ns // SIGNS_IN_TIME // SIGN_UNIT_NS
-        self._sign_units = max(1, min(units, LONGEST_SIGN_UNITS))
-        self._unwatch = graph.watch(EndpointKind.CLIENT, service, self._note_client)
+        self._unwatch: Callable[[], None] | None = None
+        if lost_ns:
+            self._unwatch = graph.watch(EndpointKind.CLIENT, service, self._note_client)
 
     def stop(self) -> None:
         """Watch nothing more."""
-        self._unwatch()
+        if self._unwatch is not None:
+            self._unwatch()
         self._goals.clear()
         self._set_alarm()
 
     # Goals
 
     def add(self, goal_id: bytes, gid: bytes) -> None:
-        """Watch the client of a goal, from which the request to execute it has come."""
+        """Watch the client from which a goal has come; the server is about to decide on it."""
+        if not self._lost_ns:
+            return
         goal = WatchedGoal(gid)
         for client in self._graph.endpoints(EndpointKind.CLIENT, name=self._service):
             if client.gid == gid:
                 goal.client = client.node.fully_qualified_name
-            elif client.node.over_rcl:
+            elif client.node.over_rcl or client.node.bridged:
                 goal.candidates.add(client.gid)
         if goal.client:
             goal.candidates.clear()
+        elif not goal.candidates and any(gid):
+            # It is found a little later than its goal, or has gone while that was queued.
+            goal.gone_ns = self._time_base.steady_ns() + self._lost_ns
         self._goals[goal_id] = goal
         if self._alarm is None:
             self._set_alarm()
@@ -116,30 +130,24 @@ class ClientWatch:
         if self._goals.pop(goal_id, None) is not None and not self._goals:
             self._set_alarm()
 
-    def take(self, asked_id: bytes) -> int:
-        """Take what a client says by asking for the result of a goal that does not exist.
-
-        Returns:
-            What the status of the answer is to be.
-        """
-        if asked_id == LIVELINESS_ID:
-            return self._sign_units
+    def take(self, asked_id: bytes) -> None:
+        """Take what a client says by asking for the result of a goal that does not exist."""
         goal = self._goals.get(alive_id(asked_id))
         if goal is not None:
             goal.heard_ns = self._time_base.steady_ns()
         self.remove(left_id(asked_id))
-        return 0
 
     # Clients
 
     def _note_client(self, client: EndpointInfo, present: bool) -> None:
+        now_ns = self._time_base.steady_ns()
         for goal in self._goals.values():
             if goal.gid == client.gid:
                 goal.client = client.node.fully_qualified_name
-                goal.is_gone = not present
+                goal.gone_ns = None if present else now_ns
             elif client.gid in goal.candidates and not present:
                 goal.candidates.discard(client.gid)
-                goal.is_gone = not goal.candidates
+                goal.gone_ns = None if goal.candidates else now_ns
         if self._goals and not present:
             # Later, as an endpoint whose gid changes goes and returns at once.
             asyncio.get_running_loop().call_soon(self._look)
@@ -154,8 +162,8 @@ class ClientWatch:
         now_ns = self._time_base.steady_ns()
         self._due_ns = now_ns + self._lost_ns // SIGNS_IN_TIME
         for goal in self._goals.values():
-            if goal.heard_ns is not None:
-                lost_ns = max(goal.heard_ns, self._awake_ns) + self._lost_ns
+            lost_ns = self._lost_at_ns(goal)
+            if lost_ns is not None:
                 self._due_ns = max(now_ns, min(self._due_ns, lost_ns))
         self._alarm = self._time_base.call_at(self._due_ns, self._ring)
 
@@ -175,24 +183,22 @@ class ClientWatch:
             self._awake_ns = now_ns
         lost: dict[str, list[bytes]] = {}
         for goal_id, goal in list(self._goals.items()):
-            why = self._why_lost(goal, now_ns)
-            if why:
+            lost_ns = self._lost_at_ns(goal)
+            if lost_ns is not None and now_ns >= lost_ns:
                 del self._goals[goal_id]
                 client = goal.client or f"with gid {goal.gid.hex()}"
+                why = f"no sign of it for {self._lost_ns / 1e9:g} s"
+                if goal.heard_ns is None:
+                    why = "it is not in the graph"
                 lost.setdefault(f"its client {client} is lost: {why}", []).append(goal_id)
         self._set_alarm()
         for text, goal_ids in lost.items():
             self._on_lost(goal_ids, text)
 
-    def _why_lost(self, goal: WatchedGoal, now_ns: int) -> str:
-        """Return why the client of `goal` is lost; empty if it is not."""
-        since_ns = self._awake_ns
+    def _lost_at_ns(self, goal: WatchedGoal) -> int | None:
+        """Return from when on the client of `goal` is lost if nothing changes; None if never."""
         if goal.heard_ns is not None:
-            since_ns = max(since_ns, goal.heard_ns)
-        elif not goal.is_gone:
-            return ""
-        if now_ns - since_ns < self._lost_ns:
-            return ""
-        if goal.heard_ns is None:
-            return "it has left the graph"
-        return f"no sign of it for {self._lost_ns / 1e9:g} s"
+            return max(goal.heard_ns, self._awake_ns) + self._lost_ns
+        if goal.gone_ns is not None:
+            return max(goal.gone_ns, self._awake_ns + self._lost_ns)
+        return None

@@ -124,7 +124,7 @@ def seconds_to_ns(seconds: float, subject: str) -> int:
 
 
 def checked_client_lost(on_client_lost: str, client_lost_sec: float, subject: str) -> int:
-    """Return after how many nanoseconds without a sign a client is lost.
+    """Return after how many nanoseconds without a sign a client is lost; 0 if it never is.
 
     Raises:
         TypeError: `client_lost_sec` is not a number.
@@ -141,7 +141,7 @@ def checked_client_lost(on_client_lost: str, client_lost_sec: float, subject: st
             f"{subject}: client_lost_sec={client_lost_sec}; it must be at least "
             f"{SHORTEST_LOSS_NS / 1e9:g} s, as clients give three signs in that time"
         )
-    return lost_ns
+    return lost_ns if on_client_lost == "cancel" else 0
 
 
 def uuid_message(goal_id: bytes) -> Any:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from aionode.endpoints.actions._client_watch import SIGN_UNIT_NS
+from aionode.endpoints.actions._client_watch import SIGNS_IN_TIME
 from aionode.endpoints.actions._common import uuid_message
-from aionode.endpoints.actions.goal import LIVELINESS_ID, alive_id, left_id
+from aionode.endpoints.actions.goal import alive_id, left_id
 from aionode.graph import EndpointKind
+from aionode.qos import is_unlimited
 
 if TYPE_CHECKING:
     import asyncio
@@ -21,15 +21,12 @@ if TYPE_CHECKING:
 
 __all__ = ["LifeSigns"]
 
-FIRST_INTERVAL_NS = 100_000_000
-"""The time between two signs until the server has told how often it wants them."""
-
 
 class LifeSigns:
     """Gives signs for the goals of one client, as long as its event loop runs.
 
-    They are sent by an alarm of the loop, so that a blocked loop shows as well. Servers that want
-    none are asked once, and cost nothing more.
+    They are sent by an alarm of the loop, so that a blocked loop shows as well. Servers that have
+    not announced that they want signs get none.
 
     Args:
         get_result: The client of the service that gives results.
@@ -42,10 +39,7 @@ class LifeSigns:
         self._graph = graph
         self._time_base = time_base
         self._goals: dict[bytes, Exchange | None] = {}  # with the last sign of each
-        self._question: Exchange | None = None
-        # The servers that have said how often they want signs, and their answer; 0 means never.
-        self._answered_by: frozenset[bytes] = frozenset()
-        self._interval_ns = FIRST_INTERVAL_NS
+        self._interval_ns = 0
         self._alarm: Alarm | None = None
         self._farewells: set[asyncio.Future[Any]] = set()
 
@@ -55,33 +49,28 @@ class LifeSigns:
         return bool(self._farewells)
 
     def add(self, goal_id: bytes) -> None:
-        """Give signs for a goal that was accepted, beginning now."""
-        if self._is_answered() and self._interval_ns == 0:
-            return
-        self._goals[goal_id] = None
-        if self._alarm is None:
-            self._beat()
-        else:
+        """Give signs for a goal that was accepted, beginning now, if a server wants them."""
+        announced_ns = self._announced_ns()
+        if announced_ns and goal_id not in self._goals:
+            self._goals[goal_id] = None
             self._sign(goal_id)
+            if self._alarm is None:
+                self._interval_ns = announced_ns
+                self._set_alarm()
 
     def remove(self, goal_id: bytes) -> None:
         """Give no more signs for a goal."""
         sign = self._goals.pop(goal_id, None)
         if sign is not None:
             sign.cancel()
-        if not self._goals:
-            self.stop()
+        if not self._goals and self._alarm is not None:
+            self._alarm.cancel()
+            self._alarm = None
 
     def stop(self) -> None:
         """Give no more signs."""
-        for sign in (*self._goals.values(), self._question):
-            if sign is not None:
-                sign.cancel()
-        self._goals.clear()
-        self._question = None
-        if self._alarm is not None:
-            self._alarm.cancel()
-            self._alarm = None
+        for goal_id in list(self._goals):
+            self.remove(goal_id)
 
     def leave(self, on_answered: Callable[[], None]) -> list[asyncio.Future[Any]]:
         """Give no more signs, and tell the servers that this is no loss: the goals go on.
@@ -106,21 +95,24 @@ class LifeSigns:
                 farewell.answer.add_done_callback(answered)
         return list(self._farewells)
 
-    # Signs
+    def _announced_ns(self) -> int:
+        """Return the time between two signs that the servers want, in nanoseconds; 0 for none."""
+        servers = self._graph.endpoints(EndpointKind.SERVER, name=self._get_result.srv_name)
+        lifespans = [server.qos.lifespan for server in servers]
+        limits_ns = [each.nanoseconds for each in lifespans if not is_unlimited(each)]
+        return min(limits_ns) // SIGNS_IN_TIME if limits_ns else 0
 
     def _beat(self) -> None:
         """Give a sign for each goal, and set when to do so next."""
-        if not self._is_answered():
-            self._ask()
         for goal_id in self._goals:
             self._sign(goal_id)
+        # A server that has left the graph may come back, with its goals.
+        self._interval_ns = self._announced_ns() or self._interval_ns
         self._set_alarm()
 
     def _set_alarm(self) -> None:
-        if self._alarm is not None:
-            self._alarm.cancel()
-        interval_ns = self._interval_ns or FIRST_INTERVAL_NS
-        self._alarm = self._time_base.call_at(self._time_base.steady_ns() + interval_ns, self._beat)
+        due_ns = self._time_base.steady_ns() + self._interval_ns
+        self._alarm = self._time_base.call_at(due_ns, self._beat)
 
     def _sign(self, goal_id: bytes) -> None:
         last = self._goals[goal_id]
@@ -137,31 +129,3 @@ class LifeSigns:
         # Retrieves the exception, so that asyncio does not report it.
         sent.answer.add_done_callback(lambda done: done.cancelled() or done.exception())
         return sent
-
-    # How often
-
-    def _servers(self) -> frozenset[bytes]:
-        servers = self._graph.endpoints(EndpointKind.SERVER, name=self._get_result.srv_name)
-        return frozenset(server.gid for server in servers)
-
-    def _is_answered(self) -> bool:
-        """Return whether the servers that are there now have said how often they want signs."""
-        return bool(self._answered_by) and self._answered_by == self._servers()
-
-    def _ask(self) -> None:
-        if self._question is not None:
-            self._question.cancel()
-        self._interval_ns = FIRST_INTERVAL_NS
-        self._question = self._send(LIVELINESS_ID)
-        if self._question is not None:
-            self._question.answer.add_done_callback(partial(self._take, self._servers()))
-
-    def _take(self, servers: frozenset[bytes], answer: asyncio.Future[Any]) -> None:
-        if answer.cancelled() or answer.exception() is not None:
-            return  # the next beat asks again
-        self._answered_by = servers
-        self._interval_ns = max(0, answer.result().status) * SIGN_UNIT_NS
-        if self._interval_ns == 0:
-            self.stop()
-        elif self._alarm is not None:
-            self._set_alarm()

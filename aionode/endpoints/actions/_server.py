@@ -14,7 +14,7 @@ from aionode.endpoints._core.callback_runner import accepts, checked_concurrency
 from aionode.endpoints._core.loop_affinity import in_thread_of_node
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints._core.node_tasks import create_own_task
-from aionode.endpoints.actions._client_watch import ClientWatch
+from aionode.endpoints.actions._client_watch import ClientWatch, announcing
 from aionode.endpoints.actions._common import (
     AbortReason,
     ActionEntity,
@@ -234,7 +234,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
                 impl.GetResultService,
                 "get_result",
                 self._on_result,
-                result_service_qos_profile,
+                announcing(result_service_qos_profile, lost_ns),
                 on_error=pass_reason,
                 concurrent=True,
             )
@@ -242,15 +242,9 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             self._close_parts()
             raise
         get_result._is_internal = self._is_sign
-        self._client_watch: ClientWatch | None = None
-        if on_client_lost == "cancel":
-            self._client_watch = ClientWatch(
-                self._send_goal.srv_name,
-                node.graph,
-                node.context.time_base,
-                lost_ns,
-                self._on_client_lost,
-            )
+        self._client_watch = ClientWatch(
+            self._send_goal.srv_name, node.graph, self._time_base, lost_ns, self._on_client_lost
+        )
         node._add_entity(self)
 
     def __repr__(self) -> str:
@@ -311,13 +305,19 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     async def _on_goal(self, request: Any) -> Any:
         response = self.action_type.Impl.SendGoalService.Response()
         goal_id = request.goal_id.uuid.tobytes()
-        if self._is_refused(goal_id) or not await self._welcomes(request.goal):
+        if self._is_refused(goal_id):
             return response
-        if self._is_refused(goal_id):  # meanwhile, during the callback
-            return response
-        response.accepted = True
-        response.stamp = self._clock.now().to_msg()
-        goal = self._accept(goal_id, request, response.stamp)
+        self._client_watch.add(goal_id, self._send_goal._client_gid)
+        try:
+            # It may be refused now because of a request that came during the callback.
+            if not await self._welcomes(request.goal) or self._is_refused(goal_id):
+                return response
+            response.accepted = True
+            response.stamp = self._clock.now().to_msg()
+            goal = self._accept(goal_id, request, response.stamp)
+        finally:
+            if not response.accepted:
+                self._client_watch.remove(goal_id)
         # Either way the goal is queued first, so that the client is told before it starts.
         if self._handle_accepted_callback is None:
             goal.execute()
@@ -352,8 +352,6 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             GoalKey(goal_id, stamp_ns(stamp)),
         )
         self._goals[goal_id] = goal
-        if self._client_watch is not None:
-            self._client_watch.add(goal_id, self._send_goal._client_gid)
         self._publish_status()
         return goal
 
@@ -462,6 +460,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             if not await self._yields(goal):
                 refused = True
             elif is_cancelable(goal.status):
+                self._client_watch.remove(goal_id)
                 goal._cancel()
                 response.goals_canceling.append(goal.info)
         if meant and not response.goals_canceling:
@@ -482,13 +481,14 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
 
     def _on_client_lost(self, goal_ids: list[bytes], text: str) -> None:
         """Cancel the goals of a lost client, as an accepted request does."""
-        goals = [goal for goal_id in goal_ids if (goal := self._goals.get(goal_id))]
-        goals = [goal for goal in goals if is_cancelable(goal.status)]
-        if goals:
-            ids = ", ".join(goal.text for goal in goals)
-            self._warn(f"{text}; cancelling its goal{'s'[: len(goals) > 1]} {ids}")
-        for goal in goals:
-            goal._cancel(text)
+        ids = ", ".join(goal_id.hex() for goal_id in goal_ids)
+        self._warn(f"{text}; cancelling its goal{'s'[: len(goal_ids) > 1]} {ids}")
+        for goal_id in goal_ids:
+            goal = self._goals.get(goal_id)
+            if goal is None:  # not decided on yet
+                self._early_cancels.note(goal_id)
+            elif is_cancelable(goal.status):
+                goal._cancel(text)
 
     # Results
 
@@ -500,8 +500,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             ended = self._goals.get(reason_id(goal_id))
             if ended is not None and ended._end_text:
                 raise AbortReason(ended._end_text)
-            if self._client_watch is not None:
-                response.status = self._client_watch.take(goal_id)
+            self._client_watch.take(goal_id)
             return response
         status, result = await goal._outcome()
         await self._send_feedback_first()
@@ -519,8 +518,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     def _keep(self, goal: ServerGoalHandle[GoalT, ResultT, FeedbackT]) -> None:
         """Keep the result of `goal`, which has ended, for `result_timeout`. For its handle."""
         goal_id = goal._key.goal_id
-        if self._client_watch is not None:
-            self._client_watch.remove(goal_id)
+        self._client_watch.remove(goal_id)
         if self.destroyed or goal_id not in self._goals:
             return
         if self._timeout_ns == 0:  # after the status, which is sent in the next iteration
@@ -583,8 +581,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     def _close(self) -> None:
         """Withdraw the server; clients learn at once that their goals are lost."""
         self._close_parts()
-        if self._client_watch is not None:
-            self._client_watch.stop()
+        self._client_watch.stop()
         for alarm in self._alarms.values():
             alarm.cancel()
         self._alarms.clear()

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ALL_GOALS",
-    "LIVELINESS_ID",
     "TRANSITIONS",
     "CancelCode",
     "CancelResponse",
@@ -209,12 +208,6 @@ def reason_id(goal_id: bytes) -> bytes:
 
 # Whether the client of a goal is alive
 
-LIVELINESS_ID = b"aionode:liveness"
-"""The id by which a client asks ``get_result`` how often the server wants a sign of life.
-
-The answer is in the status: 0, as of any unknown goal, if it wants none, else in units of 10 ms.
-"""
-
 
 def alive_id(goal_id: bytes) -> bytes:
     """Return the id with which a client calls ``get_result`` as a sign that it is alive.
@@ -235,4 +228,4 @@ def left_id(goal_id: bytes) -> bytes:
 
 def is_sign(asked_id: bytes, goals: Container[bytes]) -> bool:
     """Return whether a call of ``get_result`` with this id only tells that a client is alive."""
-    return asked_id == LIVELINESS_ID or alive_id(asked_id) in goals or left_id(asked_id) in goals
+    return alive_id(asked_id) in goals or left_id(asked_id) in goals

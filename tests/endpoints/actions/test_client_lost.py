@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import threading
 from collections.abc import Callable
-from contextlib import AsyncExitStack
+from contextlib import AsyncExitStack, suppress
 from typing import Any
 
 import pytest
@@ -13,12 +13,13 @@ import pytest
 from aionode.action import (
     ActionClient,
     ActionServer,
+    GoalResponse,
     GoalStatus,
     ServerGoalHandle,
 )
 from aionode.context import Context
-from aionode.endpoints.actions.goal import LIVELINESS_ID
-from aionode.errors import GoalCanceledError
+from aionode.errors import GoalCanceledError, ServiceError
+from aionode.graph import EndpointKind
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.node import Node
 from aionode.testing import ManualClock, local_context, settle
@@ -117,27 +118,27 @@ async def test_each_sign_gives_a_client_more_time(
 async def test_the_time_can_be_chosen(
     serve: Serve, client: PlainClient, worker: Worker, manual_clock: ManualClock
 ) -> None:
-    """The client learns how often the server wants its sign, in units of 10 ms."""
+    """For an arm, half a second may be long."""
     serve(client_lost_sec=0.6)
     await client.send()
     await client.sign()
     goal = await worker.begun.get()
 
-    assert await client.ask(LIVELINESS_ID) == 20
-    await manual_clock.advance(0.6)
+    await manual_clock.advance(0.599)
+    expect(goal, GoalStatus.EXECUTING)
+    await manual_clock.advance(0.001)
     expect(goal, GoalStatus.CANCELED)
 
 
 async def test_goals_go_on_by_default(
     serve: Serve, client: PlainClient, owner: Node, worker: Worker, manual_clock: ManualClock
 ) -> None:
-    """As in rclpy; and the server wants no signs."""
+    """As in rclpy."""
     serve(on_client_lost="continue")
     await client.send()
     await client.sign()
     goal = await worker.begun.get()
 
-    assert await client.ask(LIVELINESS_ID) == 0
     await manual_clock.advance(3600)
     owner.destroy_node()
     await settle()
@@ -267,7 +268,7 @@ async def test_a_client_without_signs_is_lost_when_it_leaves_the_graph(
     await settle()
 
     expect(goal, GoalStatus.CANCELED)
-    assert "its client /owner is lost: it has left the graph; cancelling" in caplog.text
+    assert "its client /owner is lost: it is not in the graph; cancelling" in caplog.text
 
 
 async def test_another_client_may_leave(
@@ -284,6 +285,81 @@ async def test_another_client_may_leave(
     await settle()
 
     expect(goal, GoalStatus.EXECUTING)
+
+
+async def test_a_client_that_goes_before_its_goal_is_decided_on_loses_it(
+    serve: Serve, client: PlainClient, owner: Node, worker: Worker
+) -> None:
+    """It must not begin to drive for nobody."""
+    may_decide = asyncio.Event()
+
+    async def decide(_goal: object) -> GoalResponse:
+        await may_decide.wait()
+        return GoalResponse.ACCEPT
+
+    server = serve(goal_callback=decide)
+    request = asyncio.ensure_future(client.send())  # noqa: TID251  # owned by the test
+    await settle()
+
+    owner.destroy_node()
+    await settle()
+    may_decide.set()
+    await settle()
+
+    assert worker.begun.empty()
+    assert (server._goals, server._client_watch._goals) == ({}, {})
+    request.cancel()
+
+
+@pytest.mark.parametrize("answer", [GoalResponse.REJECT, ValueError("no")])
+async def test_nothing_is_kept_of_goals_that_are_not_accepted(
+    serve: Serve, client: PlainClient, answer: GoalResponse | ValueError
+) -> None:
+    """Whether they are rejected, or their callback fails."""
+
+    def decide(_goal: object) -> GoalResponse:
+        if isinstance(answer, ValueError):
+            raise answer
+        return answer
+
+    server = serve(goal_callback=decide)
+    with suppress(ServiceError):
+        await client.send()
+
+    assert (server._client_watch._goals, server._client_watch._alarm) == ({}, None)
+
+
+async def test_a_client_that_is_found_later_than_its_goal_is_not_lost(
+    serve: Serve, client: PlainClient, worker: Worker, manual_clock: ManualClock
+) -> None:
+    """Its place in the graph may come by another way than its request."""
+    watch = serve()._client_watch
+    await client.send()
+    goal = await worker.begun.get()
+    (info,) = watch._graph.endpoints(EndpointKind.CLIENT, name=watch._service)
+    watch._graph.remove_endpoint(info)
+    watch.add(goal._key.goal_id, info.gid)  # as if it came now
+
+    await manual_clock.advance(LOST_SEC - 0.001)
+    watch._graph.add_endpoint(info)
+    await manual_clock.advance(3600)
+
+    expect(goal, GoalStatus.EXECUTING)
+
+
+async def test_a_client_that_is_never_found_is_lost(
+    serve: Serve, client: PlainClient, worker: Worker, manual_clock: ManualClock
+) -> None:
+    """It has gone while its goal was queued."""
+    watch = serve()._client_watch
+    await client.send()
+    goal = await worker.begun.get()
+    watch.add(goal._key.goal_id, bytes(range(16)))  # as if it came from another one
+
+    await manual_clock.advance(LOST_SEC - 0.001)
+    expect(goal, GoalStatus.EXECUTING)
+    await manual_clock.advance(0.001)
+    expect(goal, GoalStatus.CANCELED)
 
 
 # A server that stood still
@@ -371,7 +447,6 @@ async def test_nothing_is_kept_of_goals_that_have_ended_or_never_were(
     await manual_clock.advance(0.001)
 
     watch = server._client_watch
-    assert watch is not None
     assert (watch._goals, watch._alarm) == ({}, None)
     assert len(manual_clock._timer_heap) == waiting
 
@@ -410,7 +485,7 @@ async def test_a_client_gives_three_signs_in_the_time(
     await settle()
     calls = asking._get_result.stats.calls
 
-    await manual_clock.advance(30.0)
+    await manual_clock.advance(30.5)
     assert asking._get_result.stats.calls - calls == 30
     assert (await worker.begun.get()).status is GoalStatus.EXECUTING
 
@@ -420,44 +495,34 @@ async def test_a_client_gives_three_signs_in_the_time(
     assert (asking._signs._goals, asking._signs._alarm) == ({}, None)
 
 
-async def test_a_server_that_wants_no_signs_is_asked_once(
-    serve: Serve, owner: Node, worker: Worker, manual_clock: ManualClock
+async def test_a_server_that_wants_no_signs_gets_none(
+    serve: Serve, owner: Node, manual_clock: ManualClock
 ) -> None:
-    """Each further goal costs nothing more: a call for its result."""
+    """A goal costs one call for its result, as in ROS."""
     serve(on_client_lost="continue")
     client: Client = owner.create_action_client(Fibonacci, "fibonacci")
     await client.wait_for_server()
     await client.send_goal(Fibonacci.Goal())
-    await manual_clock.advance(1.0)
-    calls = client._get_result.stats.calls
-
-    await client.send_goal(Fibonacci.Goal())
     await manual_clock.advance(60.0)
 
-    assert client._get_result.stats.calls - calls == 1
+    assert client._get_result.stats.calls == 1
     assert (client._signs._goals, client._signs._alarm) == ({}, None)
 
 
-async def test_a_new_server_is_asked_again(
-    serve: Serve, owner: Node, worker: Worker, manual_clock: ManualClock
+async def test_a_service_that_is_found_later_than_its_goal_gets_signs(
+    asking: Client, worker: Worker, monkeypatch: pytest.MonkeyPatch, manual_clock: ManualClock
 ) -> None:
-    """The one before wanted no signs."""
-    server = serve(on_client_lost="continue")
-    client: Client = owner.create_action_client(Fibonacci, "fibonacci")
-    await client.wait_for_server()
-    await client.send_goal(Fibonacci.Goal())
-    await settle()
-    server.destroy()
-    await settle()
-    await worker.begun.get()
-
-    serve()
-    await client.send_goal(Fibonacci.Goal())
+    """Its place in the graph may come later than the answer of the other service."""
+    not_found = iter([0])
+    announced_ns = asking._signs._announced_ns
+    monkeypatch.setattr(asking._signs, "_announced_ns", lambda: next(not_found, announced_ns()))
+    await asking.send_goal(Fibonacci.Goal())
     goal = await worker.begun.get()
+
     await manual_clock.advance(60.0)
 
     expect(goal, GoalStatus.EXECUTING)
-    assert client._signs._alarm is not None
+    assert asking._signs._alarm is not None
 
 
 async def test_a_client_that_was_taken_for_lost_learns_why(
