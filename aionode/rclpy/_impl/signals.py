@@ -45,10 +45,10 @@ is a second SIGTERM, unless the program or ``nohup`` has made something else of 
 """
 
 AGAIN_S = 1.0
-"""For how long after a SIGINT another one is the same Ctrl-C.
+"""For how long after a signal a SIGINT belongs to it, and becomes no KeyboardInterrupt.
 
-A terminal sends it to all processes of a group, and those that have started others forward it. A
-second KeyboardInterrupt would end the cleanup that the first one began.
+A terminal sends its signals to all processes of a group, and those that have started others forward
+them. A KeyboardInterrupt would end the cleanup that the first signal began.
 """
 
 steady_ns = MachineTime().steady_ns
@@ -106,6 +106,7 @@ def handle(number: int, frame: FrameType | None) -> None:
     """
     if postpone(partial(handle, number, None)):
         return
+    again = is_again()
     contexts = living_contexts()
     for context in contexts:
         context.interrupt()
@@ -114,7 +115,7 @@ def handle(number: int, frame: FrameType | None) -> None:
         if guard is not None:
             guard.trigger_guard_condition()
     before = replaced.get(number)
-    if not callable(before) or (before is signal.default_int_handler and is_again()):
+    if not callable(before) or (before is signal.default_int_handler and again):
         return
     try:
         before(number, frame)
@@ -124,18 +125,18 @@ def handle(number: int, frame: FrameType | None) -> None:
         raise
 
 
-class Interrupt:
-    """The last Ctrl-C that became a KeyboardInterrupt."""
+class First:
+    """The last signal that did not belong to one before."""
 
     at_ns: float = float("-inf")
 
 
 def is_again() -> bool:
-    """Whether a SIGINT belongs to the last Ctrl-C; if not, it is the last one from now on."""
+    """Return whether a signal belongs to one before; if not, others belong to it from now on."""
     now_ns = steady_ns()
-    if now_ns - Interrupt.at_ns < AGAIN_S * 1e9:
+    if now_ns - First.at_ns < AGAIN_S * 1e9:
         return True
-    Interrupt.at_ns = now_ns
+    First.at_ns = now_ns
     return False
 
 
