@@ -44,8 +44,6 @@ nanoseconds."""
 AGAIN_SEC: Final = 0.001
 """After how long the signal is sent once more that has interrupted such a step."""
 
-STDERR: Final = 2
-
 STOPS: list[Callable[[], bool]] = []
 """Send the stop of each open lease, and return whether there was one.
 
@@ -148,9 +146,12 @@ def start_thread(work: Callable[[], object]) -> None:
 
 def print_error(text: str) -> None:
     """Write to stderr, unless nobody reads it: the process must go on to its end."""
+    if sys.__stderr__ is None:  # it was closed at the start, and descriptor 2 is something else now
+        return
     with contextlib.suppress(OSError, ValueError):
-        if text and select.select([], [STDERR], [], 0)[1]:
-            os.write(STDERR, text.encode())
+        descriptor = sys.__stderr__.fileno()
+        if text and select.select([], [descriptor], [], 0)[1]:
+            os.write(descriptor, text.encode())
 
 
 @atexit.register

@@ -268,6 +268,18 @@ def test_the_second_signal_does_not_wait_for_a_reader_of_stderr() -> None:
         assert program.process.wait(20) == 143
 
 
+def test_the_last_line_goes_into_no_file_of_the_program(tmp_path: Path) -> None:
+    """Without stderr, its descriptor belongs to the first file that the program opens."""
+    file = tmp_path / "file"
+    opens = f"file = open({str(file)!r}, 'w'); assert file.fileno() == 2"
+    without_stderr = ("sh", "-c", 'exec "$@" 2>&-', "sh")
+    with Program(opens, SOON, STUBBORN, before=without_stderr) as program:
+        program.wait_until_ready()
+        program.send(SIGINT, SIGINT, pause_sec=0.1)
+        status, _, _ = program.end()
+    assert (status, file.read_text()) == (130, "")
+
+
 THREAD_AT_WORK = """
 import threading
 done = threading.Event()
