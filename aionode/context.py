@@ -117,6 +117,10 @@ class Context:
         ros_distro: The distribution of the ROS 2 nodes that it talks to, such as ``"humble"``; by
             default ``ROS_DISTRO``, or ``"jazzy"``. Nodes of Humble and of newer distributions never
             hear each other, so a context talks to one or the other.
+        queue_bytes: How many bytes of messages may wait in each queue from and to other processes:
+            of a subscription whose loop is busy, and of a publisher whose readers are slow. What
+            is more is dropped and counted, or refused by KEEP_ALL. By default
+            ``AIONODE_QUEUE_BYTES``, or 32 MiB; a single message is never too large.
 
     Attributes:
         ros_distro: The distribution of ROS 2 that it belongs to.
@@ -152,6 +156,7 @@ class Context:
         link: bool | None = None,
         spin_us: float = 0,
         ros_distro: str | None = None,
+        queue_bytes: int | None = None,
     ) -> None:
         if isinstance(spin_us, bool) or not isinstance(spin_us, int | float):
             raise TypeError(f"Context: spin_us={brief(spin_us)} is not a number of microseconds")
@@ -171,6 +176,7 @@ class Context:
             discovery_range=discovery_range,
             static_peers=static_peers,
             config=config,
+            queue_bytes=queue_bytes,
         )
         if transport is None:
             transport = transport_of(os.environ)

@@ -25,13 +25,16 @@ if TYPE_CHECKING:
     import asyncio
     from collections.abc import Callable
 
-__all__ = ["LoopWaker", "ThreadsafeQueue"]
+__all__ = ["LoopWaker", "MessageArrivals", "ThreadsafeQueue"]
 
 T = TypeVar("T")
 
 
 SLICE_ITEMS = 32
 """How many items of one queue are handled before it is the next queue's turn."""
+
+UNMEASURED: Final = 8
+"""How many messages wait at least, whatever their size."""
 
 KEPT_LIMIT: Final = 64
 """In how many of Zenoh's threads the thread state is kept. Those that receive are few, and last as
@@ -201,3 +204,115 @@ class ThreadsafeQueue(Generic[T]):
     def clear(self) -> None:
         """Drop all items."""
         self._items.clear()
+
+
+ARRIVALS: Final = threading.Lock()
+"""Held for moments by threads that add to the measured part of any `MessageArrivals`, and by the
+loop that takes from it. One for all: it is used only where messages wait."""
+
+
+class MessageArrivals(ThreadsafeQueue[T]):
+    """Such a queue of messages, bounded in bytes as well: a message may have any size.
+
+    Asking Zenoh for the size of a message costs as much as handing it over. So the first few are
+    not measured, and as long as the loop keeps up no others wait.
+
+    Args:
+        waker: Wakes the loop.
+        handle: Called on the loop with each item, in order. Must not raise.
+        limit: How many items wait at most; one more pushes out the oldest.
+        limit_bytes: How many bytes those that are measured have at most; the newest stays even if
+            it has more.
+        size_of: Returns the size of an item in bytes; called in any thread.
+        on_dropped: Called on the loop with the number of items that were pushed out for their size.
+    """
+
+    __slots__ = (
+        "_bytes",
+        "_dropped",
+        "_late",
+        "_limit",
+        "_limit_bytes",
+        "_on_dropped",
+        "_size_of",
+    )
+
+    def __init__(
+        self,
+        waker: LoopWaker,
+        handle: Callable[[T], None],
+        limit: int,
+        limit_bytes: int,
+        size_of: Callable[[T], int],
+        on_dropped: Callable[[int], None],
+    ) -> None:
+        super().__init__(waker, handle, limit)
+        self._limit = limit
+        self._limit_bytes = limit_bytes
+        self._size_of = size_of
+        self._on_dropped = on_dropped
+        # Items after the first few, with their sizes. The threads of senders add to it and the loop
+        # takes from it, both with the lock. While it holds something, no sender passes it by, so
+        # the items of one sender, which all come in one thread, stay in order. Most never need it.
+        self._late: deque[tuple[int, T]] | tuple[()] = ()
+        self._bytes = 0
+        self._dropped = 0
+
+    def __len__(self) -> int:
+        return len(self._items) + len(self._late)
+
+    def put(self, item: T) -> None:
+        """Add `item`. May be called from any thread; never waits."""
+        if len(self._items) < UNMEASURED and not self._late:
+            self._items.append(item)
+        else:
+            self._put_late(item)
+        if not self._queued:
+            self._queued = True
+            self._waker.ready(self)  # type: ignore[arg-type]  # it only calls take()
+
+    def _put_late(self, item: T) -> None:
+        size = self._size_of(item)
+        with ARRIVALS:
+            late = self._late = self._late or deque()
+            late.append((size, item))
+            self._bytes += size
+            while len(late) > 1 and (self._bytes > self._limit_bytes or len(late) > self._limit):
+                self._dropped += self._bytes > self._limit_bytes
+                self._bytes -= late.popleft()[0]
+
+    def take(self) -> None:
+        """Handle some of the items; on the loop."""
+        if self._late and not self._items:
+            self._measure_no_more()
+        super().take()
+        if self._late and not self._queued:
+            self._queued = True
+            self._waker.again(self)  # type: ignore[arg-type]  # it only calls take()
+        if self._dropped:
+            with ARRIVALS:
+                dropped, self._dropped = self._dropped, 0
+            self._on_dropped(dropped)
+
+    def _measure_no_more(self) -> None:
+        """Move some items to where they are handled."""
+        with ARRIVALS:
+            late = self._late
+            for _ in range(min(len(late), SLICE_ITEMS)):
+                size, item = late.popleft()  # type: ignore[union-attr]  # it has some
+                self._bytes -= size
+                self._items.append(item)
+
+    def take_all(self) -> None:
+        """Handle all items that wait now; on the loop."""
+        for _ in range(1 + len(self._late) // SLICE_ITEMS):
+            super().take_all()
+            self._measure_no_more()
+        super().take_all()
+
+    def clear(self) -> None:
+        """Drop all items."""
+        super().clear()
+        with ARRIVALS:
+            self._late = ()
+            self._bytes = 0

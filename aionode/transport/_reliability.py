@@ -31,6 +31,8 @@ __all__ = [
     "OVERHEAD_BYTES",
     "QUIET_NS",
     "RETURN_NS",
+    "WINDOW_BYTES",
+    "WINDOW_MESSAGES",
     "Entry",
     "ReaderProxy",
     "WriterHistory",
@@ -120,6 +122,7 @@ class ReaderProxy:
         participant: Its context.
         acked: It has acknowledged everything up to this sequence number.
         end: The `Entry.end` of the last acknowledged message.
+        answered: Whether it has ever sent an ACKNACK.
         heard_ns: When it last sent an ACKNACK.
         heartbeat_ns: When the last heartbeat was sent to it.
         interval_ns: The time from one heartbeat to the next while it does not answer.
@@ -130,6 +133,7 @@ class ReaderProxy:
 
     __slots__ = (
         "acked",
+        "answered",
         "away_until_ns",
         "end",
         "gid",
@@ -149,6 +153,7 @@ class ReaderProxy:
         self.heard_ns = now_ns
         self.heartbeat_ns = now_ns
         self.interval_ns = QUIET_NS
+        self.answered = False
         self.away_until_ns = 0
         self.returned_ns = 0
         self.resent: dict[int, int] = {}
@@ -159,6 +164,7 @@ class WriterHistory:
 
     Args:
         depth: How many messages are kept at most.
+        limit_bytes: How many bytes of messages are kept at most; the newest is, whatever its size.
         keep_all: Whether nothing may be dropped.
         side: The output.
         now_ns: A monotonic clock with an arbitrary zero.
@@ -171,7 +177,13 @@ class WriterHistory:
     """
 
     def __init__(
-        self, depth: int, *, keep_all: bool, side: WriterSide, now_ns: Callable[[], int]
+        self,
+        depth: int,
+        limit_bytes: int = NEVER,
+        *,
+        keep_all: bool,
+        side: WriterSide,
+        now_ns: Callable[[], int],
     ) -> None:
         # A message costs one append and one popleft, so these are tuples: a NamedTuple costs more.
         self.entries: deque[tuple[int, bytes, bytes, int]] = deque()
@@ -181,6 +193,7 @@ class WriterHistory:
         self._depth = depth
         self._keep_all = keep_all
         self._limit = NEVER if keep_all else depth  # of `entries`
+        self._limit_bytes = limit_bytes
         self._side = side
         self._put = side.put
         self._now_ns = now_ns
@@ -227,7 +240,8 @@ class WriterHistory:
         if reader is None or reader.away_until_ns:
             return
         now_ns = self._now_ns()
-        asked = self._keep_all or reader.acked < self.sent
+        # One that has never answered is no reader of aionode, and nothing is kept for it.
+        asked = reader.answered and (self._keep_all or reader.acked < self.sent)
         if asked and now_ns - reader.heard_ns >= SILENT_NS:
             reader.away_until_ns = now_ns + RETURN_NS
         elif reader.returned_ns and now_ns - reader.returned_ns < FLAPPING_NS:
@@ -258,8 +272,8 @@ class WriterHistory:
             self._sent_ns = self._now_ns()
             entries = self.entries
             entries.append((sequence, payload, extra, end))
-            if len(entries) > self._limit:
-                entries.popleft()
+            if len(entries) > self._limit or end - entries[0][3] > self._limit_bytes:
+                self._drop_oldest()
             self._put(payload, extra)
         elif self.readers or self._unsent:
             self._write_slowly((sequence, payload, extra, end))
@@ -285,8 +299,13 @@ class WriterHistory:
         # Behind a message that waits, only an acknowledgement opens the window, and that pumps too.
         if len(self._unsent) == 1 or readers_changed or self.has_other_readers:
             self.pump()
-        while len(self.entries) > self._limit:
-            oldest = self.entries.popleft()[0]
+        self._drop_oldest()
+
+    def _drop_oldest(self) -> None:
+        """Drop messages beyond the limits; a KEEP_ALL writer asks `has_room` instead."""
+        entries, limit_bytes = self.entries, NEVER if self._keep_all else self._limit_bytes
+        while len(entries) > self._limit or self._end - entries[0][3] > limit_bytes:
+            oldest = entries.popleft()[0]
             if oldest > self.sent:  # no reader gets it
                 self._unsent.popleft()
                 self._lose(oldest, oldest)
@@ -318,8 +337,7 @@ class WriterHistory:
         if self.readers:
             self._end = self._sent_end = end
             self.entries.append((sequence, payload, extra, end))
-            if len(self.entries) > self._limit:
-                self.entries.popleft()
+            self._drop_oldest()
         else:
             self._jumped_to = sequence + 1
         put(payload, extra)
@@ -380,7 +398,10 @@ class WriterHistory:
 
     def has_room(self) -> bool:
         """Return whether another message can be kept without dropping one."""
-        return len(self.entries) < self._depth
+        entries = self.entries
+        return not entries or (
+            len(entries) < self._depth and self._end - entries[0][3] < self._limit_bytes
+        )
 
     @property
     def done(self) -> bool:
@@ -405,6 +426,7 @@ class WriterHistory:
         reader = self.readers.get(gid)
         if reader is None:
             return
+        reader.answered = True
         now_ns = reader.heard_ns = self._now_ns()
         if self.sent >= first - 1 > reader.acked:
             reader.acked = first - 1

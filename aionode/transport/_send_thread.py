@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 from aionode.clock import perf_ns
 from aionode.transport._loop_waker import ThreadsafeQueue
+from aionode.transport._zenoh_config import QUEUE_BYTES
 
 if TYPE_CHECKING:
     from aionode.transport._loop_waker import LoopWaker
@@ -133,10 +134,15 @@ class SendThread:
         self._worker.submit(job)
 
     def send_queue(
-        self, limit: int, *, keep_all: bool, lost: Callable[[int], None] | None = None
+        self,
+        limit: int,
+        limit_bytes: int = QUEUE_BYTES,
+        *,
+        keep_all: bool,
+        lost: Callable[[int], None] | None = None,
     ) -> SendQueue:
         """Return a bounded queue that this thread empties."""
-        return SendQueue(self, self._waker, limit, keep_all=keep_all, lost=lost)
+        return SendQueue(self, self._waker, limit, limit_bytes, keep_all=keep_all, lost=lost)
 
     def close(self) -> None:
         """Let the thread end after the jobs that it has; returns at once."""
@@ -172,6 +178,7 @@ class SendQueue:
         send_thread: The thread that sends.
         waker: Wakes the loop when everything was sent.
         limit: How many sends wait at most.
+        limit_bytes: How many bytes those that wait have at most; the newest waits whatever it has.
         keep_all: Whether a full queue has no room, or else drops its oldest.
         lost: Called with how many were dropped.
 
@@ -185,6 +192,7 @@ class SendQueue:
         send_thread: SendThread,
         waker: LoopWaker,
         limit: int,
+        limit_bytes: int,
         *,
         keep_all: bool,
         lost: Callable[[int], None] | None = None,
@@ -194,30 +202,41 @@ class SendQueue:
         self._limit = limit
         self._keep_all = keep_all
         self._lost = lost
-        self._waiting: deque[Callable[[], None]] = deque()
+        self._limit_bytes = limit_bytes
+        self._waiting: deque[tuple[int, Callable[[], None]]] = deque()
         # Written by the loop only and by the thread only; the loop compares them.
-        self._put = 0
-        self.sent = 0
+        self._put = self._put_bytes = 0
+        self.sent = self._sent_bytes = 0
         self._drained: list[asyncio.Future[None]] = []
         self._queue: ThreadsafeQueue[None] = ThreadsafeQueue(waker, self._wake, limit=1)
 
     def __len__(self) -> int:
         return self._put - self.sent
 
-    def put(self, send: Callable[[], None]) -> None:
+    @property
+    def _waiting_bytes(self) -> int:
+        return self._put_bytes - self._sent_bytes
+
+    def put(self, send: Callable[[], None], size_bytes: int = 0) -> None:
         """Have `send` called in the thread; a full queue drops its oldest unless it keeps all."""
-        if not self._keep_all and len(self._waiting) >= self._limit:
+        waiting = self._waiting
+        dropped = 0
+        while not self._keep_all and (
+            len(waiting) >= self._limit or self._waiting_bytes + size_bytes > self._limit_bytes
+        ):
             try:
-                self._waiting.popleft()
-            except IndexError:  # the thread was faster
-                pass
-            else:
-                self._waiting.append(send)  # and takes the place, and the job, of the oldest
-                self._note_dropped(1)
-                return
-        self._put += 1
-        self._waiting.append(send)
-        self._send_thread.submit(self._send)
+                oldest_bytes, _ = waiting.popleft()
+            except IndexError:  # the thread was faster, or sends the only one
+                break
+            self._put_bytes -= oldest_bytes
+            dropped += 1
+        self._put_bytes += size_bytes
+        waiting.append((size_bytes, send))
+        if dropped:  # it takes the job of one of those; the jobs of the others find less to do
+            self._note_dropped(dropped)
+        else:
+            self._put += 1
+            self._send_thread.submit(self._send)
 
     def _note_dropped(self, count: int) -> None:
         self.dropped += count
@@ -226,7 +245,9 @@ class SendQueue:
 
     def has_room(self) -> bool:
         """Whether one more can be put without dropping any."""
-        return len(self) < self._limit
+        return len(self) < self._limit and (
+            not self._waiting or self._waiting_bytes < self._limit_bytes
+        )
 
     async def drain(self) -> None:
         """Wait until everything was sent. Cancelling is safe."""
@@ -242,18 +263,20 @@ class SendQueue:
         """Drop waiting sends, and count them."""
         count = len(self._waiting)
         self._waiting.clear()
+        self._put_bytes = self._sent_bytes
         if count:
             self._note_dropped(count)
 
     def _send(self) -> None:
         try:
-            send = self._waiting.popleft()
-        except IndexError:  # it was abandoned
-            send = None
+            size_bytes, send = self._waiting.popleft()
+        except IndexError:  # it was dropped or abandoned
+            size_bytes, send = 0, None
         try:
             if send is not None:
                 send()
         finally:
+            self._sent_bytes += size_bytes
             self.sent += 1
             if self._drained and not len(self):
                 self._queue.put(None)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections import deque
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
-from aionode.transport._reliability import NEVER, QUIET_NS
+from aionode.transport._reliability import NEVER, QUIET_NS, WINDOW_BYTES, WINDOW_MESSAGES
 from aionode.wire._acknack import MAX_RANGES
 
 if TYPE_CHECKING:
@@ -28,6 +28,9 @@ NACK_NS: Final = 5_000_000
 
 MAX_HELD: Final = 10_000
 """How many messages a reader holds while earlier ones are missing; more will be sent again."""
+
+HELD_BYTES: Final = 2 * WINDOW_BYTES
+"""How many bytes it holds: a writer sends a window ahead, and may send it again."""
 
 MAX_GAPS: Final = 1_000
 """How many gaps a reader notes ahead of the next message; it asks again for more."""
@@ -69,6 +72,7 @@ class WriterProxy:
     __slots__ = (
         "_gaps",
         "_held",
+        "_held_bytes",
         "_nacked_ns",
         "_now_ns",
         "_side",
@@ -104,6 +108,7 @@ class WriterProxy:
         self._now_ns = now_ns
         # Messages that came before an earlier one: item and size by sequence number.
         self._held: dict[int, tuple[Any, int]] = {}
+        self._held_bytes = 0
         # Ranges from `next` on that will not be sent.
         self._gaps: list[tuple[int, int]] = []
         # Sequence numbers of messages that were accepted, but wait for room.
@@ -131,14 +136,29 @@ class WriterProxy:
             if self._held or self._gaps:
                 self._release()
         elif sequence > self.next:
-            if len(self._held) < MAX_HELD:
-                self._held.setdefault(sequence, (item, size))
+            if sequence not in self._held and self._may_hold(size):
+                self._held[sequence] = item, size
+                self._held_bytes += size
             self.last = max(self.last, sequence)
             if sequence - self.next >= self._span:
                 self._skip(sequence - self._span + 1)
             if self.lacks:
                 self._nack_soon()
         self._update_expected()
+
+    def _may_hold(self, size: int) -> bool:
+        """Return whether one more message can be held; what is not will be sent again."""
+        count = len(self._held)
+        return count < WINDOW_MESSAGES or (
+            count < MAX_HELD and self._held_bytes + size <= HELD_BYTES
+        )
+
+    def _unhold(self, sequence: int) -> tuple[Any, int] | None:
+        """Return a message that was held, and no longer is; None if it is not here."""
+        message = self._held.pop(sequence, None)
+        if message is not None:
+            self._held_bytes -= message[1]
+        return message
 
     def _update_expected(self) -> None:
         is_steady = not (self._held or self._gaps or self._waiting)
@@ -157,9 +177,8 @@ class WriterProxy:
 
     def _release(self) -> None:
         """Accept the held messages that are next now."""
-        held = self._held
         while True:
-            message = held.pop(self.next, None)
+            message = self._unhold(self.next)
             if message is not None:
                 self.next += 1
                 self._accept(self.next - 1, *message)
@@ -211,7 +230,9 @@ class WriterProxy:
         if number > self.next:
             for held in sorted(n for n in self._held if n < number):
                 self.next = held + 1
-                self._accept(held, *self._held.pop(held))
+                message = self._unhold(held)
+                if message is not None:
+                    self._accept(held, *message)
             self.next = number
             self._release()
 

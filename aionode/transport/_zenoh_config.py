@@ -120,6 +120,16 @@ class DiscoveryRange(enum.Enum):
     """As a ROS 2 node on rmw_zenoh does: only through a router on this machine."""
 
 
+QUEUE_BYTES: Final = 32 << 20
+"""How many bytes of messages wait in one queue, unless the context says otherwise."""
+
+QUEUE_BYTES_VARIABLE: Final = "AIONODE_QUEUE_BYTES"
+"""The environment variable that says otherwise."""
+
+LEAST_QUEUE_BYTES: Final = 65_536
+"""Less than this would be less than a message that is sent at once."""
+
+
 @dataclass(frozen=True, slots=True)
 class Network:
     """The network settings of a context.
@@ -135,6 +145,7 @@ class Network:
         meeting_ports: Ports on which processes of one machine meet.
         spare_ports: Further ones, for when other programs have taken all of those.
         router_port: Port of a router on this machine.
+        queue_bytes: How many bytes of messages may wait in each queue from and to other processes.
     """
 
     domain_id: int = 0
@@ -147,6 +158,7 @@ class Network:
     meeting_ports: tuple[int, ...] = MEETING_PORTS
     spare_ports: tuple[int, ...] = SPARE_PORTS
     router_port: int = ROUTER_PORT
+    queue_bytes: int = QUEUE_BYTES
 
     @property
     def may_reach_far(self) -> bool:
@@ -189,6 +201,7 @@ def network_from(
     discovery_range: DiscoveryRange | str | None = None,
     static_peers: Iterable[str] | None = None,
     config: str | Path | Mapping[str, Any] | None = None,
+    queue_bytes: int | None = None,
 ) -> Network:
     """Return what the arguments say and, where they are None, the environment.
 
@@ -201,6 +214,7 @@ def network_from(
         static_peers: Instead of ``ROS_STATIC_PEERS``: hosts, ``host:port`` or Zenoh endpoints.
         config: A path to a Zenoh configuration file, instead of ``ZENOH_SESSION_CONFIG_URI``, or
             single settings by their key path, which win over ``ZENOH_CONFIG_OVERRIDE``.
+        queue_bytes: Instead of ``AIONODE_QUEUE_BYTES``.
 
     Raises:
         ConfigurationError: one of them does not fit; the text names it.
@@ -246,7 +260,24 @@ def network_from(
         meeting_ports=ports,
         spare_ports=spare_ports,
         router_port=router_port,
+        queue_bytes=choose_queue_bytes(environ, queue_bytes),
     )
+
+
+def choose_queue_bytes(environ: Mapping[str, str], queue_bytes: int | None) -> int:
+    """Return how many bytes may wait in a queue, as the argument or the environment says."""
+    fits = "a whole number of bytes from 65536 on fits"
+    if queue_bytes is None:
+        text = environ.get(QUEUE_BYTES_VARIABLE, "").strip() or str(QUEUE_BYTES)
+        source, known = QUEUE_BYTES_VARIABLE, text.isascii() and text.isdigit() and len(text) <= 18
+        queue_bytes = int(text) if known else 0
+    elif isinstance(queue_bytes, bool) or not isinstance(queue_bytes, int):
+        raise TypeError(f"queue_bytes: {brief(queue_bytes)} given; {fits}")
+    else:
+        source, text = "queue_bytes", str(queue_bytes)
+    if queue_bytes < LEAST_QUEUE_BYTES:
+        raise ConfigurationError(source, text, fits)
+    return queue_bytes
 
 
 def choose_domain_id(environ: Mapping[str, str], domain_id: int | None) -> int:

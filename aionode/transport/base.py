@@ -112,6 +112,10 @@ class Reader(Protocol):
     def has_room(self) -> bool:
         """Whether a message can be taken without losing one that should be kept (KEEP_ALL)."""
 
+    @property
+    def waiting(self) -> int:
+        """How many messages were delivered, and wait for a callback or a reader."""
+
     async def wait_for_room(self) -> None:
         """Wait until `has_room`, or until the reader is destroyed."""
 

@@ -61,6 +61,11 @@ class Kept:
     def reject(self, error: Exception) -> None:
         """Nothing is rejected here."""
 
+    @property
+    def waiting(self) -> int:
+        """None."""
+        return 0
+
     def has_room(self) -> bool:
         """Whether the limit is not reached."""
         return len(self.messages) < self.limit

@@ -13,7 +13,7 @@ import pytest
 from aionode._concurrency import SLICE_NS, checkpoint
 from aionode.clock import perf_ns
 from aionode.transport import _loop_waker as loop_waker
-from aionode.transport._loop_waker import LoopWaker, ThreadsafeQueue
+from aionode.transport._loop_waker import LoopWaker, MessageArrivals, ThreadsafeQueue
 
 
 @pytest.fixture(params=["eventfd", "socketpair"])
@@ -206,3 +206,83 @@ async def test_callbacks_may_run_for_a_slice_of_time(
     assert len(set(seen)) == 1
     assert before_ns + 10**12 <= seen[0] <= perf_ns() + 10**12
     assert woken.inline_deadline_ns == 0
+
+
+# Messages
+
+
+class Arrivals:
+    """Messages from a thread, as byte strings, and what became of them."""
+
+    def __init__(self, waker: LoopWaker, limit: int, limit_bytes: int) -> None:
+        self.taken: list[bytes] = []
+        self.dropped = 0
+        self.queue: MessageArrivals[bytes] = MessageArrivals(
+            waker, self.taken.append, limit, limit_bytes, len, self.drop
+        )
+
+    def drop(self, count: int) -> None:
+        """Count."""
+        self.dropped += count
+
+    async def until_empty(self) -> None:
+        """Let the loop take everything."""
+        while len(self.queue):
+            await checkpoint()
+
+
+async def test_messages_beyond_the_bytes_of_a_queue_are_dropped_and_counted(
+    woken: LoopWaker,
+) -> None:
+    """A loop that is busy for some seconds held gigabytes of them."""
+    arrivals = Arrivals(woken, 10_000, 1_000_000)
+    messages = [bytes([number]) * 100_000 for number in range(200)]
+    in_thread(*(partial(arrivals.queue.put, message) for message in messages))
+
+    assert sum(map(len, messages[: len(arrivals.queue)])) <= 1_000_000 + 8 * 100_000
+    await arrivals.until_empty()
+
+    assert arrivals.taken == messages[:8] + messages[-10:]
+    assert arrivals.dropped == 182
+
+
+async def test_one_message_waits_whatever_its_size(woken: LoopWaker) -> None:
+    """The limit is one for queues, and not for messages."""
+    arrivals = Arrivals(woken, 10_000, 1_000)
+    large = bytes(100_000)
+    in_thread(*(partial(arrivals.queue.put, message) for message in [b""] * 8 + [large]))
+    await arrivals.until_empty()
+
+    assert arrivals.taken == [b""] * 8 + [large]
+    assert arrivals.dropped == 0
+
+
+async def test_messages_of_one_thread_stay_in_order_while_others_are_taken(
+    woken: LoopWaker,
+) -> None:
+    """Some are measured and some are not, and the loop takes from both at the same time."""
+    arrivals = Arrivals(woken, 100_000, 1 << 30)
+    messages = [number.to_bytes(4, "big") for number in range(20_000)]
+
+    def put_all() -> None:
+        for message in messages:
+            arrivals.queue.put(message)
+
+    thread = threading.Thread(target=put_all)
+    thread.start()
+    while len(arrivals.taken) < len(messages):
+        await checkpoint()
+    thread.join()
+
+    assert arrivals.taken == messages
+
+
+async def test_messages_beyond_their_number_push_out_the_oldest(woken: LoopWaker) -> None:
+    """As in any of these queues; the publisher sends them again, or the numbers show the gap."""
+    arrivals = Arrivals(woken, 20, 1 << 30)
+    messages = [number.to_bytes(4, "big") for number in range(100)]
+    in_thread(*(partial(arrivals.queue.put, message) for message in messages))
+    arrivals.queue.take_all()
+
+    assert arrivals.taken == messages[:8] + messages[-20:]
+    assert arrivals.dropped == 0

@@ -36,9 +36,13 @@ class Wire:
         lost: How many the writer says were dropped.
     """
 
-    def __init__(self, readers: int, *, keep_all: bool, depth: int) -> None:
+    def __init__(
+        self, readers: int, *, keep_all: bool, depth: int, limit_bytes: int = 1 << 40
+    ) -> None:
         self.clock = Clock()
-        self.history = WriterHistory(depth, keep_all=keep_all, side=self, now_ns=self.clock)
+        self.history = WriterHistory(
+            depth, limit_bytes, keep_all=keep_all, side=self, now_ns=self.clock
+        )
         self.names = [bytes([n]) * 16 for n in range(readers)]
         self.topic: dict[bytes, list[tuple[int, bytes]]] = {name: [] for name in self.names}
         self.control: list[tuple[str, bytes, Any]] = []
@@ -308,6 +312,7 @@ def test_the_place_of_a_reader_that_vanished_silently_is_kept_for_a_while(*, bac
     wire = Wire(1, keep_all=True, depth=1000)
     (name,) = wire.names
     wire.bring_control()
+    wire.bring_control()  # its answer
     wire.publish()
     wire.clock.ns += 10_000_000_000
     wire.history.remove(name)
@@ -325,6 +330,69 @@ def test_the_place_of_a_reader_that_vanished_silently_is_kept_for_a_while(*, bac
         wire.history.tick()
         assert wire.history.done
         assert wire.lost_count == 51  # type: ignore[unreachable]
+
+
+def test_nothing_is_kept_for_a_reader_that_vanished_without_any_answer() -> None:
+    """Any program may announce a subscription; a reader of aionode answers at once."""
+    wire = Wire(1, keep_all=True, depth=1000)
+    for _ in range(50):
+        wire.publish()
+    wire.clock.ns += 10_000_000_000
+
+    wire.history.remove(wire.names[0])
+
+    assert wire.history.done
+
+
+def test_a_keep_all_writer_has_no_room_beyond_its_bytes() -> None:
+    """Ten thousand messages for a reader that never answers are gigabytes if they are large."""
+    wire = Wire(1, keep_all=True, depth=10_000, limit_bytes=100_000)
+    count = 0
+    while wire.history.has_room():
+        wire.publish(10_000)
+        count += 1
+
+    assert 10 <= count <= 12
+    wire.settle()
+    assert wire.history.has_room()
+
+
+def test_a_keep_last_writer_drops_its_oldest_beyond_its_bytes() -> None:
+    """And counts them, like those beyond its depth."""
+    wire = Wire(1, keep_all=False, depth=10_000, limit_bytes=1_000_000)
+    (name,) = wire.names
+    for _ in range(1_000):
+        wire.publish(10_000)
+
+    size_bytes = sum(len(entry[1]) for entry in wire.history.entries)
+    assert 900_000 < size_bytes <= 1_000_000
+    wire.settle()
+    assert wire.history.done
+    assert len(wire.heard[name]) + wire.lost_count == 1_000
+
+
+def test_one_message_is_kept_whatever_its_size() -> None:
+    """A limit is no limit of the size of a message."""
+    wire = Wire(1, keep_all=False, depth=10, limit_bytes=100)
+    wire.publish(10_000)
+    wire.settle()
+
+    assert wire.heard[wire.names[0]] == [1]
+
+
+def test_a_reader_holds_few_bytes_while_a_message_is_missing() -> None:
+    """A writer that leaves out one number, and goes on, must not fill the memory of its readers."""
+    wire = Wire(1, keep_all=True, depth=10_000)
+    (name,) = wire.names
+    wire.bring_control()
+    proxy = wire.proxies[name]
+
+    for number in range(2, 1_000):
+        proxy.take(number, number, 100_000)
+
+    assert wire.heard[name] == []
+    proxy.take(1, 1, 100_000)
+    assert wire.heard[name] == list(range(1, 12))  # a megabyte was held, the rest comes again
 
 
 def test_a_reader_that_answered_just_now_has_ended_when_it_vanishes() -> None:

@@ -95,6 +95,11 @@ class MessageQueue(InlineCall, Generic[T]):
         """Return whether an item can be added without losing one that should be kept."""
         return not self.keep_all or len(self.items) < self.depth
 
+    @property
+    def waiting(self) -> int:
+        """How many items wait."""
+        return len(self.items)
+
     async def wait(self) -> None:
         """Wait for an item, or for `wake`. Cancelling loses nothing."""
         if not self.items:

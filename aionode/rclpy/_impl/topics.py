@@ -226,6 +226,11 @@ class Inbox:
         """Whether a message can be taken without losing one that should be kept."""
         return not self.keep_all or len(self.items) < self.limit
 
+    @property
+    def waiting(self) -> int:
+        """How many messages wait to be taken."""
+        return len(self.items)
+
     async def wait_for_room(self) -> None:
         """Return at once: publishers of this context drop what does not fit."""
 

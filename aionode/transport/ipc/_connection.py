@@ -50,7 +50,7 @@ does not block the loop.
 BATCH_BYTES: Final = 1 << 16
 """A batch of this size is sent without waiting for the loop's next iteration, in bytes."""
 
-LENT_BYTES: Final = 1 << 29
+LENT_BYTES: Final = 96 << 20
 LENT_PIECES: Final = 256
 """How much shared memory one process may hold, in bytes and in buffers, each of which takes one or
 two descriptors. A frozen process releases none, and its socket may hold hundreds of references;

@@ -488,6 +488,7 @@ class IpcReader(ReaderRegistration):
     """
 
     def __init__(self, registry: LinkRegistry, msg_type: type[Any], reader: Reader) -> None:
+        self._reader = reader
         self.endpoint = reader.endpoint
         self.raw = reader.raw
         self.reject = reader.reject
@@ -528,6 +529,11 @@ class IpcReader(ReaderRegistration):
         else:
             message = Message(msg, sequence, source_ns, arrived_ns)
             remote_publisher.from_zenoh(message, inline_deadline_ns)
+
+    @property
+    def waiting(self) -> int:
+        """How many messages wait in the subscription."""
+        return self._reader.waiting
 
     def has_room(self) -> bool:
         """Whether a message can be taken without losing one that should be kept."""

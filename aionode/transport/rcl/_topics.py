@@ -139,7 +139,8 @@ class RclWriter(RclDeclaration, Writer):
 
     def _put(self, payload: bytes) -> None:
         """Have a thread send a message that may take long, or that comes after such ones."""
-        self._queue.put(partial(self._send_without_gil, self._handle, self._pointer, payload))
+        send = partial(self._send_without_gil, self._handle, self._pointer, payload)
+        self._queue.put(send, len(payload))
         self._queued = True
 
     def _is_queueing(self) -> bool:

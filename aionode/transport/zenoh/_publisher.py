@@ -59,6 +59,10 @@ __all__ = ["ZenohWriter"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 
+MORE_DEPTH = "A greater depth keeps more of them, KEEP_ALL and `await drain()` all"
+DRAIN = "`await drain()` before the end waits for readers that still take them"
+
+
 class ZenohWriter(SubmessageSender, Declaration, Writer):
     """A publisher for the subscriptions of other contexts.
 
@@ -109,7 +113,7 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         self._history: WriterHistory | None = None
         if self._reliable and self.recovers and (self.bounded or not self._transient):
             self._history = WriterHistory(
-                self._depth, keep_all=self.bounded, side=self, now_ns=perf_ns
+                self._depth, state.queue_bytes, keep_all=self.bounded, side=self, now_ns=perf_ns
             )
             state.acknowledgements.writers[self.gid] = self
         # Large messages, and small ones after them to keep the order.
@@ -137,7 +141,8 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
 
     def _send_queue(self, send_thread: SendThread, *, keep_all: bool) -> SendQueue:
         lost = self.lost if self._reliable else self._count_lost
-        return send_thread.send_queue(self._depth, keep_all=keep_all, lost=lost)
+        limits = self._depth, self.state.queue_bytes
+        return send_thread.send_queue(*limits, keep_all=keep_all, lost=lost)
 
     def declare_data(self, session: zenoh.Session) -> None:
         """Declare the publisher, and send what was published before."""
@@ -391,9 +396,8 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
             self._put_patiently(publisher, payload, extra)
         elif size >= BULK_BYTES or self._bulk_only or self._is_large_used:
             self._is_large_used = True
-            self._large.put(
-                self._unless_expired(extra, partial(self._send, publisher, payload, extra))
-            )
+            send = partial(self._send, publisher, payload, extra)
+            self._large.put(self._unless_expired(extra, send), size)
         else:
             try:
                 publisher.put(payload, attachment=extra)
@@ -430,7 +434,7 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
             self._expiry.note()
         patient = self._patient_publisher or publisher
         send = partial(self._send_patiently, patient, payload, extra)
-        self._patient.put(self._unless_expired(extra, send))
+        self._patient.put(self._unless_expired(extra, send), len(payload))
 
     def _unless_expired(self, extra: bytes, send: Callable[[], None]) -> Callable[[], None]:
         return unless_expired(extra, self._lifespan_ns, self.state.now_ns, send)
@@ -555,10 +559,8 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
             logger.warning(
                 "%s: %d of the messages published here were dropped before every reader had them: "
                 "one is too slow, hangs or has gone; more of them are only counted, in the "
-                "publisher's stats.dropped. A greater depth keeps more of them, KEEP_ALL and "
-                "`await drain()` all",
-                self.endpoint.name,
-                count,
+                "publisher's stats.dropped. %s",
+                *(self.endpoint.name, count, DRAIN if self.bounded else MORE_DEPTH),
             )
         self._dropped += count
 

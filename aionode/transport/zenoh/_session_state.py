@@ -16,9 +16,9 @@ from aionode.clock import MachineTime, perf_ns
 from aionode.errors import escaped
 from aionode.graph import EndpointKind
 from aionode.transport._content_filters import ContentFilters
-from aionode.transport._loop_waker import LoopWaker, ThreadsafeQueue
+from aionode.transport._loop_waker import LoopWaker, MessageArrivals, ThreadsafeQueue
 from aionode.transport._send_thread import SendThread
-from aionode.transport._zenoh_config import FLUSH_S
+from aionode.transport._zenoh_config import FLUSH_S, QUEUE_BYTES
 from aionode.transport.base import Registration
 from aionode.transport.zenoh._acknowledgements import Acknowledgements
 from aionode.transport.zenoh._assertions import Assertions
@@ -104,6 +104,7 @@ class SessionState:
         time_base: The time of the context.
         now_ns: Returns the time of the context, in nanoseconds since 1970.
         content_filters: What subscriptions of other contexts want.
+        queue_bytes: How many bytes of messages may wait in one queue.
         has_unannounced_peers: Whether there may be subscriptions that nothing announces.
         on_reader: Called when a remote subscription appears or vanishes, by topic, with it and
             whether it exists, or without arguments when all may have changed; ordered sets.
@@ -115,7 +116,9 @@ class SessionState:
         domain_id: int,
         time_base: TimeBase | None = None,
         waker: LoopWaker | None = None,
+        queue_bytes: int = QUEUE_BYTES,
     ) -> None:
+        self.queue_bytes = queue_bytes
         self.participant = participant
         self.domain_id = domain_id
         self.session: zenoh.Session | None = None
@@ -166,6 +169,17 @@ class SessionState:
     def queue(self, handle: Callable[[T], None], limit: int | None = None) -> ThreadsafeQueue[T]:
         """Return a queue from Zenoh's threads to `handle`, which is called on the event loop."""
         return ThreadsafeQueue(self.waker, handle, limit)
+
+    def arrivals(
+        self,
+        handle: Callable[[zenoh.Sample], None],
+        limit: int,
+        on_dropped: Callable[[int], None],
+    ) -> MessageArrivals[zenoh.Sample]:
+        """Return such a queue for messages, bounded in bytes as well."""
+        return MessageArrivals(
+            self.waker, handle, limit, self.queue_bytes, size_of_sample, on_dropped
+        )
 
     def add(self, declaration: Declaration) -> None:
         """Declare `declaration` now, or as soon as the session is open."""
@@ -293,6 +307,11 @@ class SessionState:
                 key,
                 escaped(problem),
             )
+
+
+def size_of_sample(sample: zenoh.Sample) -> int:
+    """Return how many bytes the payload of a sample has."""
+    return len(sample.payload)
 
 
 class Burst:

@@ -135,7 +135,7 @@ class ZenohStop(StopSender):
                 self.repeat()
             writer._put_patiently(publisher, payload, extra)
         elif writer.used_bulk and publisher is not None:
-            writer._large.put(partial(writer._send, publisher, payload, extra))
+            writer._large.put(partial(writer._send, publisher, payload, extra), len(payload))
         else:
             self.repeat()
 

@@ -50,8 +50,9 @@ BACKLOG = 10_000
 KEEP_ALL_ARRIVING = 100_000
 """How many messages for a KEEP_ALL subscription wait for a loop that is stalled."""
 
-FULL_BYTES = 256 << 20
-"""How much waits for room in a KEEP_ALL subscription from publishers without flow control."""
+WINDOWS = 8
+"""So many times as much as otherwise waits for room in a KEEP_ALL subscription from publishers with
+flow control: 512 of them with a full window."""
 
 SPAN = 1_000
 """At least so many small messages a KEEP_LAST subscription holds while earlier ones are missing."""
@@ -98,7 +99,10 @@ class ZenohReader(Declaration, ReaderRegistration):
         limit = depth if self._buffers else max(depth, BACKLOG)
         # A publisher that gets acknowledgements sends at most a window ahead, and sends again what
         # is dropped here.
-        self._queue = state.queue(self._take, KEEP_ALL_ARRIVING if self._keep_all else limit)
+        self._queue = state.arrivals(
+            self._take, KEEP_ALL_ARRIVING if self._keep_all else limit, self._note_dropped
+        )
+        self._dropped = 0
         self._span = NEVER if self._keep_all else depth if self._buffers else max(depth, SPAN)
         self._proxies: dict[bytes, WriterProxy] = {}
         # The last sequence number of each publisher without a proxy.
@@ -106,6 +110,8 @@ class ZenohReader(Declaration, ReaderRegistration):
         # Messages for which a KEEP_ALL subscription has no room yet.
         self._full: deque[tuple[bytes, SampleInfo, WriterProxy | None]] = deque()
         self._full_bytes = 0
+        # The largest message of those that a KEEP_ALL subscription has not taken.
+        self._largest_bytes = 0
         self._waits_for_room = False
         self._refused = 0
         self._filter_text = ""  # of the content filter, if it is announced
@@ -197,7 +203,9 @@ class ZenohReader(Declaration, ReaderRegistration):
             if self._keep_all:
                 self._accept_or_wait(payload, self._held(gid, sequence, source_ns), None)
                 return
-        elif sequence == proxy.expected and (not self._keep_all or self._has_room()):
+        elif sequence == proxy.expected and (
+            not self._keep_all or (not self._full and self._has_room(len(payload)))
+        ):
             proxy.note_in_order(len(payload))
         else:
             self._take_in_order(proxy, payload, self._held(gid, sequence, source_ns))
@@ -230,8 +238,29 @@ class ZenohReader(Declaration, ReaderRegistration):
             del last[next(iter(last))]
         last[gid] = sequence
 
-    def _has_room(self) -> bool:
-        return not self._full and self._reader.has_room()
+    def _note_dropped(self, count: int) -> None:
+        """Count messages that were dropped as too many bytes of them waited for the loop."""
+        if not self._dropped:
+            logger.warning(
+                "%s: messages were dropped before they reached the event loop, which was busy "
+                "while more than %.3g MiB of them came; more of them are only counted, in "
+                "stats.lost. AIONODE_QUEUE_BYTES, or Context(queue_bytes=…), sets the limit",
+                self.endpoint.name,
+                self.state.queue_bytes / 2**20,
+            )
+        self._dropped += count
+
+    def _has_room(self, size_bytes: int) -> bool:
+        """Return whether a KEEP_ALL subscription can take one more message of this size.
+
+        What it has not taken counts as if all were as large as the largest of it.
+        """
+        waiting = self._reader.waiting
+        if not waiting:
+            self._largest_bytes = 0
+        self._largest_bytes = max(self._largest_bytes, size_bytes + OVERHEAD_BYTES)
+        fits = not waiting or (waiting + 1) * self._largest_bytes <= self.state.queue_bytes
+        return fits and self._reader.has_room()
 
     def _take_in_order(self, proxy: WriterProxy, payload: bytes, sample_info: SampleInfo) -> None:
         proxy.take(sample_info.sequence, (payload, sample_info), len(payload) + OVERHEAD_BYTES)
@@ -249,24 +278,28 @@ class ZenohReader(Declaration, ReaderRegistration):
         self, payload: bytes, sample_info: SampleInfo, proxy: WriterProxy | None
     ) -> bool:
         """Deliver a message to a KEEP_ALL subscription as soon as it has room."""
-        if self._has_room():
+        if not self._full and self._has_room(len(payload)):
             self._hand_over(payload, sample_info)
             return True
-        if proxy is None and self._full_bytes >= FULL_BYTES:
-            self._refuse()  # its publisher has no flow control
+        # Publishers that are acknowledged send a window ahead at most, so only very many of them,
+        # or one that is no publisher of aionode, fill this.
+        limit = self.state.queue_bytes if proxy is None else WINDOWS * self.state.queue_bytes
+        if self._full_bytes >= limit:
+            self._refuse(limit)
             return True
         self._full.append((payload, sample_info, proxy))
         self._full_bytes += len(payload) + OVERHEAD_BYTES
         self._wait_for_room()
         return False
 
-    def _refuse(self) -> None:
+    def _refuse(self, limit_bytes: int) -> None:
         if not self._refused:
             logger.warning(
-                "%s: messages are lost although the subscription keeps all: %d MB wait already, "
-                "and their publisher cannot be held back",
+                "%s: messages are lost although the subscription keeps all: %.3g MiB wait already, "
+                "and their publisher cannot be held back. AIONODE_QUEUE_BYTES, or "
+                "Context(queue_bytes=…), sets the limit",
                 self.endpoint.name,
-                FULL_BYTES >> 20,
+                limit_bytes / 2**20,
             )
         self._refused += 1
 
@@ -278,7 +311,7 @@ class ZenohReader(Declaration, ReaderRegistration):
     def _use_room(self) -> None:
         self._waits_for_room = False
         full = self._full
-        while full and self._reader.has_room():
+        while full and self._has_room(len(full[0][0])):
             payload, sample_info, proxy = full.popleft()
             self._full_bytes -= len(payload) + OVERHEAD_BYTES
             self._hand_over(payload, sample_info)

@@ -79,7 +79,9 @@ class ZenohTransport(Transport):
         self, participant: str, network: Network, time_base: TimeBase | None = None
     ) -> None:
         self.network = network
-        self.session_state = SessionState(participant, network.domain_id, time_base)
+        self.session_state = SessionState(
+            participant, network.domain_id, time_base, queue_bytes=network.queue_bytes
+        )
         self._state = self.session_state
         self._watcher = Watcher(self._state)
         self._router_matching = RouterMatching(self._state, network)

@@ -62,6 +62,11 @@ class Local:
     def note_alive(self, gid: bytes) -> None:
         """Publishers here do not assert that they are alive."""
 
+    @property
+    def waiting(self) -> int:
+        """None."""
+        return 0
+
     def has_room(self) -> bool:
         """Have room always."""
         return True
