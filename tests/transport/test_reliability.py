@@ -9,7 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.transport._reliability import FLAPPING_NS, RETURN_NS, ReaderProxy, WriterHistory
+from aionode.transport._reliability import (
+    FLAPPING_NS,
+    RETURN_NS,
+    WINDOW_BYTES,
+    ReaderProxy,
+    WriterHistory,
+)
 from aionode.transport._writer_proxy import WriterProxy
 
 WRITER = b"w" * 16
@@ -503,3 +509,38 @@ def test_a_reader_that_ends_soon_after_its_return_holds_nothing_up_for_long() ->
     wire.clock.ns += FLAPPING_NS
     wire.history.tick()
     assert wire.history.done
+
+
+def test_the_stop_of_a_lease_waits_for_no_window() -> None:
+    """What waits before it is dropped and counted; the reader gets the rest, and the stop last."""
+    wire = Wire(1, keep_all=False, depth=1000)
+    (name,) = wire.names
+    for _ in range(20):
+        wire.publish(WINDOW_BYTES // 4)
+    assert wire.history.unsent
+    sent = len(wire.topic[name])
+    wire.number += 1
+
+    wire.history.write_stop(wire.number, wire.number.to_bytes(10, "big"), b"", wire.put)
+
+    assert [number for number, _ in wire.topic[name]] == [*range(1, sent + 1), wire.number]
+    assert wire.lost_count == 20 - sent
+    wire.settle()
+    assert wire.heard[name] == [*range(1, sent + 1), wire.number]
+
+
+def test_a_stop_that_was_sent_already_is_sent_again_only_to_those_who_lack_it() -> None:
+    """Another thread has sent it; here it enters the history."""
+    wire = Wire(1, keep_all=False, depth=10)
+    (name,) = wire.names
+    wire.publish()
+
+    wire.history.write_stop(2, (2).to_bytes(10, "big"), b"", lambda _payload, _extra: None)
+
+    assert [number for number, _ in wire.topic[name]] == [1]
+    wire.settle()
+    assert wire.heard[name] == [1, 2]
+    wire.number = 2
+    wire.publish()
+    wire.settle()
+    assert wire.heard[name] == [1, 2, 3]

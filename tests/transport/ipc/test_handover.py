@@ -122,6 +122,10 @@ class HandedOver:
         """Let a retransmitted message come."""
         self.remote.from_other_route(number.to_bytes(8), Frame(Kind.DATA, number, 0, GID))
 
+    def from_other_loop(self, number: int) -> None:
+        """Let the stop of a lease come past the link."""
+        self.remote.from_other_route(number.to_bytes(8), Frame(Kind.STOP, number, 0, GID))
+
     def let_time_pass(self) -> None:
         """Run the timers that are set now."""
         timers, self.registry.timers = self.registry.timers, []
@@ -410,3 +414,72 @@ def test_a_reliable_subscription_holds_what_its_depth_allows_until_zenoh_has_cau
     for number in range(1, 501):
         handover.from_zenoh(number)
     assert got == list(range(1, 3501))
+
+
+# The stop of a lease, past the link
+
+
+def linked(got: list[int]) -> HandedOver:
+    """Return a subscription that takes a link."""
+    handover = HandedOver(got)
+    handover.opened(0)
+    handover.from_link(1)
+    assert handover.route is Route.IPC
+    return handover
+
+
+def test_a_stop_past_the_link_is_taken_at_once() -> None:
+    """The link will not bring it before the publisher's loop goes on."""
+    got: list[int] = []
+    linked(got).from_other_loop(4)
+    assert got == [1, 4]
+
+
+def test_nothing_older_than_a_stop_is_taken_from_the_link() -> None:
+    """Those commands were in the socket; the link brings the stop as well, and what follows."""
+    got: list[int] = []
+    handover = linked(got)
+    handover.from_other_loop(4)
+    for number in (2, 3, 4, 5):
+        handover.from_link(number)
+    assert got == [1, 4, 5]
+
+
+def test_a_copy_of_a_stop_that_zenoh_has_brought_is_forgotten() -> None:
+    """Zenoh carries it on the topic's key too, where others listen."""
+    got: list[int] = []
+    handover = linked(got)
+    handover.from_zenoh(4)
+    assert got == [1]
+    handover.from_other_loop(4)
+    handover.from_other_loop(4)
+    handover.from_link(5)
+    assert got == [1, 4, 5]
+
+
+def test_a_stop_ends_a_hand_over() -> None:
+    """Whatever Zenoh and the link have not brought by then is older."""
+    got: list[int] = []
+    handover = HandedOver(got)
+    handover.from_zenoh(1)
+    handover.opened(3)
+    handover.from_link(4)
+    handover.from_other_loop(5)
+    handover.from_zenoh(2)
+    handover.from_link(6)
+    assert got == [1, 5, 6]
+    assert handover.route is Route.IPC
+
+
+def test_a_stop_that_comes_while_a_broken_link_is_made_good_is_taken() -> None:
+    """What is sent again afterwards is older."""
+    got: list[int] = []
+    handover = linked(got)
+    handover.broken()
+    handover.from_zenoh(3)
+    handover.from_other_loop(4)
+    handover.from_retransmit(2)
+    handover.retransmit_done()
+    handover.from_zenoh(5)
+    assert got == [1, 4, 5]
+    assert handover.route is Route.ZENOH
