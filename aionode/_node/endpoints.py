@@ -225,7 +225,11 @@ class NodeEndpoints(NodeParameters):
             offload=offload,
             event_callbacks=event_callbacks,
             silence=Silence.given(
-                on_silence, silence_sec, clock, f"subscription of {setup.endpoint.name}"
+                on_silence,
+                silence_sec,
+                clock,
+                f"subscription of {setup.endpoint.name}",
+                has_callback=callback is not None,
             ),
         )
         if content_filter_options is not None:  # before messages can arrive

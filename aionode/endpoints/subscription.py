@@ -109,8 +109,8 @@ class Subscription(Endpoint, Generic[ItemT]):
         else:
             self._watch(self._note_publisher)
         self._silence_watch: SilenceWatch | None = None
-        if silence is not None:
-            self._silence_watch = self._make_watch(silence, on_error)
+        if silence is not None and self._runner is not None:
+            self._silence_watch = self._make_watch(silence, self._runner, on_error)
             self._reader.set_watch(self._silence_watch)
 
     def __repr__(self) -> str:
@@ -208,16 +208,13 @@ class Subscription(Endpoint, Generic[ItemT]):
             monitor.close()
         return monitor
 
-    def _make_watch(self, silence: Silence, on_error: OnError) -> SilenceWatch:
-        if self._runner is None:
-            raise TypeError(
-                f"{self._subject}: on_silence stops what the callback drives, and there is no "
-                "callback; give one, or limit the wait: asyncio.timeout around receive()"
-            )
+    def _make_watch(
+        self, silence: Silence, runner: CallbackRunner, on_error: OnError
+    ) -> SilenceWatch:
         return SilenceWatch(
             self,
             self._reader,
-            self._runner,
+            runner,
             # Never in a thread: what stops a robot does not wait for one to be free.
             lambda callback: self._callbacks.make_runner(
                 callback, self, self.stats, on_error=on_error, offload=False

@@ -65,12 +65,12 @@ class Silence(NamedTuple):
 
     Attributes:
         on_silence: Called without arguments, sync or async.
-        silence_sec: The longest silence, in seconds.
+        silence_ns: The longest silence.
         clock: What it is measured with; None for the steady clock.
     """
 
     on_silence: Callable[[], object]
-    silence_sec: float
+    silence_ns: int
     clock: Clock | None = None
 
     @classmethod
@@ -80,20 +80,36 @@ class Silence(NamedTuple):
         silence_sec: float,
         clock: Clock | None,
         subject: str,
+        *,
+        has_callback: bool,
     ) -> Silence | None:
         """Return what the arguments say; None if nothing is to be called.
 
         Raises:
-            TypeError: they say when to call nothing: then a robot would not be stopped.
+            CallbackSignatureError: `on_silence` takes arguments (a TypeError).
+            TypeError: an argument has the wrong type; there is no callback; or the arguments say
+                when to call nothing: then a robot would not be stopped.
+            ValueError: `silence_sec` is not positive, or not finite.
         """
-        if on_silence is not None:
-            return cls(on_silence, silence_sec, clock)
-        if silence_sec != SILENCE_SEC or clock is not None:
+        if on_silence is None:
+            if silence_sec != SILENCE_SEC or clock is not None:
+                raise TypeError(
+                    f"{subject}: silence_sec and clock say when on_silence is called, and there is "
+                    "no on_silence; give a function without parameters"
+                )
+            return None
+        accepts(on_silence, 0, subject=f"{subject}, on_silence", wanted="()")
+        if not has_callback:
             raise TypeError(
-                f"{subject}: silence_sec and clock say when on_silence is called, and there is no "
-                "on_silence; give a function without parameters"
+                f"{subject}: on_silence stops what the callback drives, and there is no callback; "
+                "give one, or limit the wait: asyncio.timeout around receive()"
             )
-        return None
+        if clock is not None and not isinstance(clock, Clock):
+            raise TypeError(
+                f"{subject}: clock is {brief(clock)}; give a clock such as node.get_clock(), or "
+                "nothing for the steady clock"
+            )
+        return cls(on_silence, to_silence_ns(silence_sec, subject), clock)
 
 
 class SilenceWatch:
@@ -107,11 +123,6 @@ class SilenceWatch:
         silence: What the program wants.
         time_base: The time.
         is_linked: Returns whether a publisher is connected by a link: None if it never was.
-
-    Raises:
-        CallbackSignatureError: `on_silence` takes arguments (a TypeError).
-        TypeError: an argument has the wrong type.
-        ValueError: `silence_sec` is not positive, or not finite.
     """
 
     def __init__(
@@ -124,20 +135,17 @@ class SilenceWatch:
         time_base: TimeBase,
         is_linked: Callable[[bytes], bool | None],
     ) -> None:
-        subject = entity._subject
-        accepts(silence.on_silence, 0, subject=f"{subject}, on_silence", wanted="()")
-        period_ns = to_silence_ns(silence, subject)
         self._entity = entity
         self._reader = reader
         self._runner = runner
         self._on_silence = make_runner(silence.on_silence)
         self._is_linked = is_linked
-        self._silence_ns = period_ns
+        self._silence_ns = silence.silence_ns
         steady = time_base.through_suspend()
         self._steady_ns = steady.steady_ns
         self._system_ns = time_base.system_ns
         self._clock = silence.clock
-        self._alarm = SilenceAlarm(steady, period_ns, self._on_alarm, silence.clock)
+        self._alarm = SilenceAlarm(steady, silence.silence_ns, self._on_alarm, silence.clock)
         self._times = PublicationTimes()
         self._enabled = True
         self._runs = False
@@ -410,25 +418,20 @@ class SilenceWatch:
             await rest
 
 
-def to_silence_ns(silence: Silence, subject: str) -> int:
+def to_silence_ns(silence_sec: float, subject: str) -> int:
     """Return the longest silence in nanoseconds.
 
     Raises:
-        TypeError: `silence_sec` is not a number, or `clock` not a clock.
-        ValueError: `silence_sec` is not positive, or not finite.
+        TypeError: it is not a number.
+        ValueError: it is not positive, or not finite.
     """
-    seconds, clock = silence.silence_sec, silence.clock
-    if isinstance(seconds, bool) or not isinstance(seconds, int | float):
+    if isinstance(silence_sec, bool) or not isinstance(silence_sec, int | float):
         raise TypeError(
-            f"{subject}: silence_sec={brief(seconds)}; a number of seconds is needed, such as 0.3"
+            f"{subject}: silence_sec={brief(silence_sec)}; a number of seconds is needed, such as "
+            "0.3"
         )
-    if not (math.isfinite(seconds) and 1 <= seconds * S_TO_NS < 2**63):
+    if not (math.isfinite(silence_sec) and 1 <= silence_sec * S_TO_NS < 2**63):
         raise ValueError(
-            f"{subject}: silence_sec={seconds}; it must be positive and finite, such as 0.3"
+            f"{subject}: silence_sec={silence_sec}; it must be positive and finite, such as 0.3"
         )
-    if clock is not None and not isinstance(clock, Clock):
-        raise TypeError(
-            f"{subject}: clock is {brief(clock)}; give a clock such as node.get_clock(), or "
-            "nothing for the steady clock"
-        )
-    return round(seconds * S_TO_NS)
+    return round(silence_sec * S_TO_NS)

@@ -761,6 +761,14 @@ def test_what_makes_no_silence_is_refused(node: Node, arguments: dict[str, Any],
         node.create_subscription(Int32, "n", given.pop("callback"), **given)
 
 
+def test_what_is_refused_leaves_nothing_behind(node: Node) -> None:
+    """A subscription that was never made watches no publisher."""
+    with pytest.raises(ValueError, match="silence_sec"):
+        node.create_subscription(Int32, "n", print, on_silence=lambda: None, silence_sec=0)
+    assert not node.graph._watchers
+    assert node.subscriptions == []
+
+
 def test_a_stop_takes_no_arguments(node: Node) -> None:
     """Said when it is given, not when the robot has to stop."""
     with pytest.raises(CallbackSignatureError, match=r"on_silence"):
