@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from aionode.endpoints._core.peer_warnings import PeerWarnings
 from aionode.graph import EndpointKind
-from aionode.logging import get_logger
-from aionode.names import is_hidden, logger_name
+from aionode.names import is_hidden
 
 if TYPE_CHECKING:
     from aionode.graph import EndpointInfo, Graph, NodeInfo
@@ -26,6 +26,7 @@ class DuplicateReport:
     def __init__(self, graph: Graph, participant: str) -> None:
         self._graph = graph
         self._participant = participant
+        self._warnings = PeerWarnings("names that are not unique")
         graph.on_node(self.examine_node)
         graph.on_endpoint(self.examine)
 
@@ -45,8 +46,9 @@ class DuplicateReport:
                 if other.participant == self._participant
                 else f"another process (Zenoh id {other.participant})"
             )
-            warn(
+            self._warnings.warn(
                 own,
+                name,
                 f"there are two nodes named {name}: this one, and one in {place}. Requests for "
                 "parameters reach both, and tools cannot tell them apart; rename one of them: "
                 f"--ros-args -r __node:={own.name}_2",
@@ -82,8 +84,9 @@ class DuplicateReport:
             return
         if are_twins(one, other):
             return
-        warn(
+        self._warnings.warn(
             reader,
+            name,
             f"{kind} {name} has two servers, of {one.node.fully_qualified_name} and of "
             f"{other.node.fully_qualified_name}: each request goes to both, and the first response "
             f"is taken. Stop one of them, or rename it: --ros-args -r {name}:=…",
@@ -101,8 +104,3 @@ def are_twins(one: EndpointInfo, other: EndpointInfo) -> bool:
     return (
         one.node != other.node and one.node.fully_qualified_name == other.node.fully_qualified_name
     )
-
-
-def warn(node: NodeInfo, text: str) -> None:
-    """Log a warning as `node`."""
-    get_logger(logger_name(node.namespace, node.name)).warning(text)

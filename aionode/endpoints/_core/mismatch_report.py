@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from aionode.endpoints._core.peer_warnings import PeerWarnings
 from aionode.graph import TOPIC_KINDS, EndpointKind
-from aionode.logging import get_logger
-from aionode.names import logger_name
 from aionode.qos import incompatible_qos_text
 
 if TYPE_CHECKING:
@@ -24,6 +23,7 @@ class MismatchReport:
     def __init__(self, graph: Graph, participant: str) -> None:
         self._graph = graph
         self._participant = participant
+        self._warnings = PeerWarnings("endpoints that do not match")
         graph.on_endpoint(self.examine)
 
     def examine(self, new: EndpointInfo) -> None:
@@ -33,8 +33,7 @@ class MismatchReport:
             own, other = (one, new) if self._is_own(one) else (new, one)
             found = own.compare(other)
             if found is not None and found.aspect not in graph.unreported.get(own, ()):
-                text = mismatch_text(own, other, found)
-                get_logger(logger_name(own.node.namespace, own.node.name)).warning(text)
+                self._warnings.warn(own.node, own.name, mismatch_text(own, other, found))
 
     def _is_own(self, endpoint: EndpointInfo) -> bool:
         return endpoint.node.participant == self._participant
