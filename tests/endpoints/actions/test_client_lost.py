@@ -611,7 +611,7 @@ async def test_signs_pass_between_contexts(monkeypatch: pytest.MonkeyPatch, *, l
             for name, context in zip(("serving", "asking"), contexts, strict=True)
         ]
         serving.create_action_server(
-            Fibonacci, "fibonacci", worker, on_client_lost="cancel", client_lost_sec=0.5
+            Fibonacci, "fibonacci", worker, on_client_lost="cancel", client_lost_sec=1.0
         )
         client: Client = asking.create_action_client(Fibonacci, "fibonacci")
         await client.wait_for_server()
@@ -625,5 +625,5 @@ async def test_signs_pass_between_contexts(monkeypatch: pytest.MonkeyPatch, *, l
 
         assert (await sent.result()).status is GoalStatus.CANCELED
         assert (await sent.result()).error_text == (
-            "its client /asking is lost: no sign of it for 0.5 s"
+            "its client /asking is lost: no sign of it for 1 s"
         )
