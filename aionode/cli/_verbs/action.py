@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from aionode.cli._support import lookup
 from aionode.cli._support.nouns import ACTION
 from aionode.cli._support.yaml_messages import message_from_yaml
-from aionode.errors import CommandError, GoalRejectedError
+from aionode.errors import CommandError, EntityDestroyedError, GoalRejectedError
 from aionode.graph import EndpointKind
 from aionode.message import to_builtins, to_yaml
 
@@ -124,13 +124,16 @@ async def watch(
     handle: ClientGoalHandle[Any, Any], output: Output, *, feedback: bool
 ) -> ActionResult[Any]:
     """Wait for the outcome of a goal, printing its feedback if wanted."""
-    if feedback:
-        async for part in handle:
-            output.item(
-                f"Feedback:\n    {to_yaml(part)}",
-                {"goal_id": handle.text, "feedback": to_builtins(part)},
-            )
-    return await handle.result()
+    try:
+        if feedback:
+            async for part in handle:
+                output.item(
+                    f"Feedback:\n    {to_yaml(part)}",
+                    {"goal_id": handle.text, "feedback": to_builtins(part)},
+                )
+        return await handle.result()
+    except EntityDestroyedError:  # the node ends after Ctrl-C, and nobody awaits this any more
+        raise asyncio.CancelledError from None
 
 
 def print_outcome(

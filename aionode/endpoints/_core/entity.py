@@ -73,8 +73,9 @@ class Entity:
         """Start `_run` as a task of `tasks`; return it, or None if there is no work."""
         work = self._run()
         if work is not None:
+            context = None if self._node_tasks is None else self._node_tasks.context()
             try:
-                self._task = tasks.create_task(work, name=self._subject)
+                self._task = tasks.create_task(work, name=self._subject, context=context)
             except RuntimeError:
                 # The node is failing already; it will destroy the entity in a moment.
                 work.close()

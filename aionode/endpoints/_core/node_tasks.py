@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+from contextvars import Context, ContextVar, copy_context
 from typing import TYPE_CHECKING, Any, TypeVar
-from weakref import WeakKeyDictionary
+from weakref import ref
 
 from aionode.errors import EntityDestroyedError
 
@@ -15,13 +16,16 @@ __all__ = ["NodeTasks", "create_own_task"]
 
 T = TypeVar("T")
 
-OWNERS: WeakKeyDictionary[asyncio.Task[Any], NodeTasks] = WeakKeyDictionary()
+OWNER: ContextVar[ref[NodeTasks] | None] = ContextVar("aionode_owner", default=None)
+"""Whose callback runs, also in the tasks that it starts; weak, as a context may outlive a node."""
 
 
 class NodeTasks:
-    """The tasks of one node: those that run its callbacks, and the body of its ``async with``.
+    """The tasks of one node: those of its callbacks, and the body of its ``async with``.
 
-    Tasks that a callback or the body starts are not the node's, since it does not wait for them.
+    A task that a callback starts is the node's as well, such as those of `asyncio.gather`, of
+    `asyncio.shield` and of a TaskGroup in the callback. A task that the body starts is not: it may
+    belong to a TaskGroup around the node, which would drop a cancellation without a word.
 
     Args:
         on_failure: Called as soon as the node fails.
@@ -34,14 +38,20 @@ class NodeTasks:
         self.error: BaseException | None = None
         self._on_failure = on_failure
         self._body: asyncio.Task[Any] | None = None
+        self._ref = ref(self)
 
     def enter_body(self) -> None:
         """Record that the current task runs the body of ``async with node``."""
         self._body = asyncio.current_task()
 
+    def context(self) -> Context:
+        """Return a context for a task of the node's own, and for the tasks that it starts."""
+        context = copy_context()
+        context.run(OWNER.set, self._ref)
+        return context
+
     def add(self, task: asyncio.Task[Any]) -> None:
-        """Count `task` among the node's own; if it fails, the node has failed."""
-        OWNERS[task] = self
+        """Take `task` for one whose failure is that of the node."""
         task.add_done_callback(self._note_end)
 
     def _note_end(self, task: asyncio.Task[Any]) -> None:
@@ -60,8 +70,9 @@ class NodeTasks:
 
     def own_current_task(self) -> bool:
         """Return whether the current task is one of the node's own."""
-        task = asyncio.current_task()
-        return task is not None and (task is self._body or OWNERS.get(task) is self)
+        if OWNER.get() is self._ref:
+            return True
+        return self._body is not None and asyncio.current_task() is self._body
 
     def end_of_wait(self, subject: str) -> asyncio.CancelledError | EntityDestroyedError:
         """Return what the current task raises when a wait ends because `subject` was destroyed.
@@ -79,10 +90,10 @@ class NodeTasks:
 def create_own_task(
     tasks: asyncio.TaskGroup, work: Coroutine[Any, Any, T], name: str | None = None
 ) -> asyncio.Task[T]:
-    """Return a new task of `tasks`, which belongs to the same node as the current task."""
+    """Return a new task of `tasks`, whose failure is that of the node of the current task."""
     task = tasks.create_task(work, name=name)
-    current = asyncio.current_task()
-    owner = None if current is None else OWNERS.get(current)
+    reference = OWNER.get()
+    owner = None if reference is None else reference()
     if owner is not None:
         owner.add(task)
     return task

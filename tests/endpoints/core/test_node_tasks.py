@@ -47,6 +47,39 @@ async def test_a_callback_and_the_body_are_cancelled(node: Node, *, concurrent: 
     assert isinstance(ends[0], asyncio.CancelledError)
 
 
+async def test_a_task_that_a_callback_starts_is_cancelled(node: Node) -> None:
+    """It would otherwise report an error at every end, for example after `asyncio.shield`."""
+    ends: list[End] = []
+
+    async def take(_msg: String) -> None:
+        ends.extend(await asyncio.gather(asyncio.shield(end_of(node))))
+
+    node.create_subscription(String, "words", take)
+    node.create_publisher(String, "words", 1).publish(String())
+    await settle()
+
+    assert isinstance(ends[0], asyncio.CancelledError)
+
+
+async def test_a_callback_of_another_node_is_not_one_of_this_node(
+    node: Node, node_factory: Callable[..., Node]
+) -> None:
+    """Also if the other node, or its subscription, was made in a callback of this one."""
+    ends: list[End] = []
+
+    def make(_msg: String) -> None:
+        other = node_factory("other")
+        other.create_subscription(String, "words", lambda _msg: ends.append(end_in(node)))
+
+    node.create_subscription(String, "make", make)
+    node.create_publisher(String, "make", 1).publish(String())
+    await settle()
+    node.create_publisher(String, "words", 1).publish(String())
+    await settle()
+
+    assert isinstance(ends[0], EntityDestroyedError)
+
+
 async def test_the_body_of_a_node_is_cancelled(aionode_context: Context) -> None:
     """It is the task that runs the node."""
     async with Node("planner", context=aionode_context) as node:
