@@ -46,6 +46,7 @@ class WatchedGoal:
         client: The full name of its node; empty if it is not known.
         candidates: The gids of the clients of which one has sent the goal, where the middleware
             does not tell which.
+        found_by_ns: Until which steady time such a client may be found only after its goal.
         heard_ns: The steady time of its last sign; None if it has given none.
         gone_ns: From which steady time on it is lost, as it is not in the graph; None if it is.
     """
@@ -53,6 +54,7 @@ class WatchedGoal:
     gid: bytes
     client: str = ""
     candidates: set[bytes] = field(default_factory=set)
+    found_by_ns: int = 0
     heard_ns: int | None = None
     gone_ns: int | None = None
 
@@ -110,17 +112,17 @@ class ClientWatch:
         """Watch the client from which a goal has come; the server is about to decide on it."""
         if not self._lost_ns:
             return
-        goal = WatchedGoal(gid)
+        goal = WatchedGoal(gid, found_by_ns=self._time_base.steady_ns() + self._lost_ns)
         for client in self._graph.endpoints(EndpointKind.CLIENT, name=self._service):
             if client.gid == gid:
                 goal.client = client.node.fully_qualified_name
-            elif client.node.over_rcl or client.node.bridged:
+            elif is_anonymous(client):
                 goal.candidates.add(client.gid)
         if goal.client:
             goal.candidates.clear()
         elif not goal.candidates and any(gid):
             # It is found a little later than its goal, or has gone while that was queued.
-            goal.gone_ns = self._time_base.steady_ns() + self._lost_ns
+            goal.gone_ns = goal.found_by_ns
         self._goals[goal_id] = goal
         if self._alarm is None:
             self._set_alarm()
@@ -148,6 +150,9 @@ class ClientWatch:
             elif client.gid in goal.candidates and not present:
                 goal.candidates.discard(client.gid)
                 goal.gone_ns = None if goal.candidates else now_ns
+            elif present and is_anonymous(client) and now_ns < goal.found_by_ns and not goal.client:
+                goal.candidates.add(client.gid)
+                goal.gone_ns = None
         if self._goals and not present:
             # Later, as an endpoint whose gid changes goes and returns at once.
             asyncio.get_running_loop().call_soon(self._look)
@@ -202,3 +207,8 @@ class ClientWatch:
         if goal.gone_ns is not None:
             return max(goal.gone_ns, self._awake_ns + self._lost_ns)
         return None
+
+
+def is_anonymous(client: EndpointInfo) -> bool:
+    """Return whether the gid of a client in the graph is not the one that its requests have."""
+    return client.node.over_rcl or client.node.bridged

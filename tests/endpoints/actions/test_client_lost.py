@@ -18,10 +18,12 @@ from aionode.action import (
     ServerGoalHandle,
 )
 from aionode.context import Context
+from aionode.endpoints.actions._client_watch import ClientWatch
 from aionode.errors import GoalCanceledError, ServiceError
-from aionode.graph import EndpointKind
+from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.node import Node
+from aionode.qos import QoSProfile
 from aionode.testing import ManualClock, local_context, settle
 from tests.support.actions import Goal, PlainClient, Worker
 from tests.support.peers import isolated_environment
@@ -269,6 +271,46 @@ async def test_a_client_without_signs_is_lost_when_it_leaves_the_graph(
 
     expect(goal, GoalStatus.CANCELED)
     assert "its client /owner is lost: it is not in the graph; cancelling" in caplog.text
+
+
+def over_dds(gid: bytes, name: str) -> EndpointInfo:
+    """Return a client whose gid in the graph is not the one that its requests have."""
+    return EndpointInfo(
+        EndpointKind.CLIENT,
+        NodeInfo(name, 0, name, "/", over_rcl=True),
+        0,
+        "/fibonacci/_action/send_goal",
+        "",
+        "",
+        QoSProfile(depth=10),
+        gid,
+    )
+
+
+async def test_a_client_over_dds_may_be_found_after_its_goal(manual_clock: ManualClock) -> None:
+    """A goal is often quicker than the graph; its client has not gone, and must be missed later."""
+    graph, lost = Graph(), list[list[bytes]]()
+    watch = ClientWatch(
+        "/fibonacci/_action/send_goal",
+        graph,
+        manual_clock,
+        3_000_000_000,
+        lambda goal_ids, _text: lost.append(goal_ids),
+    )
+    first, second = over_dds(b"1" * 16, "first"), over_dds(b"2" * 16, "second")
+    watch.add(b"goal", b"x" * 16)
+
+    graph.add_endpoint(first)
+    graph.add_endpoint(second)
+    await manual_clock.advance(10.0)
+    graph.remove_endpoint(first)
+    await settle()
+    assert lost == []  # the goal may be that of the second one
+
+    graph.remove_endpoint(second)
+    await settle()
+    assert lost == [[b"goal"]]
+    watch.stop()
 
 
 async def test_another_client_may_leave(
