@@ -363,7 +363,13 @@ def cables() -> Iterator[Motion]:
                 (
                     "a holder of a lease",
                     "a lease at the mover, on_silence at the wheels",
-                    {"mover": mover(), "wheel": WATCHFUL, "switches": ("silence", "lease")},
+                    {
+                        "mover": mover(),
+                        "wheel": WATCHFUL,
+                        "switches": ("silence",),
+                        # It has not gone, only its wheels have, which is nothing that it knows.
+                        "returns": True,
+                    },
                 ),
                 (
                     "a publisher",

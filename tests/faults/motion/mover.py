@@ -106,11 +106,11 @@ class MoverNode(Node):
         assert self.publisher is not None
         await self.publisher.wait_for_subscribers()
         while True:
-            self.begin.clear()
             lease = self.publisher.lease(stop=Twist(), ttl_sec=self.mover.ttl_sec)
             with contextlib.suppress(LeaseExpiredError):
                 async with lease:
                     await self.publish_under(lease)
+            self.begin.clear()
             while not self.begin.is_set():  # a program that does not know better
                 with contextlib.suppress(LeaseExpiredError):
                     lease.publish(command())
@@ -133,10 +133,10 @@ class MoverNode(Node):
         assert self.client is not None
         await self.client.wait_for_server()
         while True:
-            self.begin.clear()
             goal = await self.client.send_goal(Fibonacci.Goal(order=os.getpid()))
             if self.mover.asks == "goal":
                 await goal.result()
+            self.begin.clear()
             await self.begin.wait()
 
 

@@ -30,6 +30,9 @@ DDS_LEASE_S = 20.0
 ROS_LEASE_S = 60.0
 """After which rmw_zenoh does."""
 
+LEASE_S = 10.0
+"""And aionode's own sessions: a node of ROS 2 that wakes after that leaves, and comes again."""
+
 PYTHON_VARIABLE = "AIONODE_FAULTS_ROS_PYTHON"
 """The interpreter of an environment that has rclpy, and aionode with its extra ``ros``."""
 
@@ -124,19 +127,22 @@ def publishers(place: Place, who: str, mover: Role, *ways: Any) -> Iterator[Moti
         )
 
 
-def clients(place: Place, who: str, mover: Role, lease_s: float, *ways: Any) -> Iterator[Motion]:
+def clients(
+    place: Place, who: str, mover: Role, leases_s: tuple[float, float], *ways: Any
+) -> Iterator[Motion]:
     """Yield what ``on_client_lost`` does against a client of ROS 2, which gives no sign of life.
 
     Args:
         place: Where.
         who: For the table.
         mover: The process of the client.
-        lease_s: After which its middleware takes it for gone; until then nothing shows.
+        leases_s: What is over sooner does not show; and after which its middleware takes it for
+            gone at the latest.
         ways: In which ways it goes.
     """
+    shows_after_s, gone_s = leases_s
     for goes, strike, lasts_s in ways:
-        gone_s = lease_s if strike is killed or lasts_s else 0.0
-        shows = not lasts_s or lasts_s > lease_s
+        shows = not lasts_s or lasts_s > shows_after_s
         yield Motion(
             place,
             who,
@@ -191,16 +197,27 @@ def ros_motions() -> Iterator[Motion]:
     for way in ("link", "Zenoh"):
         place = layer(way)
         yield from publishers(place, "a publisher of aionode's rclpy", rclpy[0], *ENDS, *freezes(5))
-        yield from clients(place, "a client of aionode's rclpy", rclpy[1], 0.0, *ENDS[:1])
+        yield from clients(place, "a client of aionode's rclpy", rclpy[1], (0.0, 0.0), *ENDS[:1])
     dds = over_dds("aionode")
     yield from publishers(dds, "a publisher of rclpy", rclpy[0], *ENDS, *freezes(5, 14))
     yield from clients(
-        dds, "a client of rclpy", rclpy[1], DDS_LEASE_S, ENDS[0], ENDS[1], *freezes(5, 30)
+        dds,
+        "a client of rclpy",
+        rclpy[1],
+        # Also after SIGINT: rclpy's action clients keep their participant.
+        (DDS_LEASE_S, DDS_LEASE_S),
+        *ENDS[:2],
+        *freezes(5, 30),
     )
     yield from leases(over_dds("rclpy"), "rclpy")
     zenoh = over_zenoh("aionode")
     yield from publishers(zenoh, "a publisher of ROS 2", ros[0], ENDS[0], *freezes(5, 14, 70))
     yield from clients(
-        zenoh, "a client of ROS 2", ros[1], ROS_LEASE_S, ENDS[0], *freezes(5, 14, 70)
+        zenoh,
+        "a client of ROS 2",
+        ros[1],
+        (LEASE_S, ROS_LEASE_S),
+        ENDS[0],
+        *freezes(5, 14, 70),
     )
     yield from leases(over_zenoh("ros"), "ROS 2")

@@ -187,7 +187,9 @@ class Play:
         outcome = stopped(
             self.motion, self.handed(), self._by, (self._told_s, self._struck_s, until_s)
         )
-        outcome.own_s = max(0.0, outcome.raw_s - self._waited_s)
+        # Up to the time limit it was not a core that was waited for.
+        own_s = max(self.motion.limit_s or 0.0, outcome.raw_s - self._waited_s)
+        outcome.own_s = min(outcome.raw_s, own_s)
         if self.motion.joins_late:
             outcome.late += sum(each.what == "move" for each in self.handed("late"))
         if self.motion.ends and self.child.runs:
