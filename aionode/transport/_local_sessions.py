@@ -29,7 +29,7 @@ from typing import Final
 from aionode.clock import perf_ns
 from aionode.transport._zenoh_config import LOOPBACK
 
-__all__ = ["announce", "listed", "new_participant", "reserve_port"]
+__all__ = ["announce", "holder_of", "listed", "new_participant", "reserve_port"]
 
 UDP_SOCKETS: Final = Path("/proc/net/udp")
 
@@ -80,6 +80,16 @@ def listed(group: int) -> set[int] | None:
         if remote.startswith(start):
             ports.add(int(remote.removeprefix(start), 16))
     return ports
+
+
+def holder_of(port: int) -> int | None:
+    """Return the user id of the process that has bound a UDP port of loopback, if it is listed."""
+    local = f"{int.from_bytes(socket.inet_aton(LOOPBACK), sys.byteorder):08X}:{port:04X}"
+    for line in udp_sockets() or ():
+        columns = line.split()
+        if columns[1] == local:
+            return int(columns[7])
+    return None
 
 
 def reserve_port(host: str) -> socket.socket:

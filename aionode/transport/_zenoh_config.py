@@ -103,6 +103,10 @@ Where a hundred start at once, each is silent for more than ten seconds while it
 the others. Those that give it up connect anew, and all of it takes longer still.
 """
 
+MOST_LEASE_MS: Final = 60_000
+"""The longest lease, which is that of ROS 2 nodes: any user of the machine can be listed as many
+processes."""
+
 RETRY: Final = {"period_init_ms": 100, "period_max_ms": 2000, "period_increase_factor": 2}
 """How often what does not answer is dialled again."""
 
@@ -466,7 +470,7 @@ def session_settings(
         "transport/unicast/open_timeout": FAR_OPEN_MS if network.may_reach_far else OPEN_MS,
         "transport/unicast/accept_timeout": OPEN_MS,
         "scouting/multicast/enabled": subnet,
-        "transport/link/tx/lease": LEASE_MS + LEASE_MS_EACH * len(listed),
+        "transport/link/tx/lease": min(LEASE_MS + LEASE_MS_EACH * len(listed), MOST_LEASE_MS),
         **gossip,
         # As rmw_zenoh: if both dialled, Zenoh might keep neither of the two connections.
         "scouting/gossip/autoconnect_strategy": {

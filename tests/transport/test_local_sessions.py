@@ -12,7 +12,13 @@ from pathlib import Path
 import pytest
 
 from aionode.transport import _local_sessions
-from aionode.transport._local_sessions import announce, listed, new_participant, reserve_port
+from aionode.transport._local_sessions import (
+    announce,
+    holder_of,
+    listed,
+    new_participant,
+    reserve_port,
+)
 
 pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"), reason="only Linux lists the sockets of others"
@@ -104,3 +110,13 @@ def test_a_reserved_port_can_be_listened_on_and_is_given_to_nobody_else() -> Non
             pass
         with closing(reserve_port("127.0.0.1")) as other:
             assert other.getsockname()[1] != port
+
+
+def test_the_user_of_a_port_is_known() -> None:
+    """Whoever keeps it may be another user, who is not waited for."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+        one.bind(("127.0.0.1", 0))
+        port = one.getsockname()[1]
+        assert holder_of(port) == os.getuid()
+
+    assert holder_of(port) is None

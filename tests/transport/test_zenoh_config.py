@@ -199,8 +199,15 @@ def test_a_session_that_connects_with_many_may_be_silent_for_longer() -> None:
 
     assert session_settings(Network(), ())[lease] == 10_000
     assert session_settings(Network(), (), Neighbours(40000, ()))[lease] == 10_000
-    many = Neighbours(40000, tuple(range(41000, 41100)))
-    assert session_settings(Network(), (), many)[lease] == 60_000
+    many = Neighbours(40000, tuple(range(41000, 41050)))
+    assert session_settings(Network(), (), many)[lease] == 35_000
+
+
+def test_no_number_of_listed_sessions_makes_a_lease_longer_than_that_of_ros_2() -> None:
+    """Any user of the machine can be listed as many processes, which answer nobody."""
+    lies = Neighbours(40000, tuple(range(41000, 42000)))
+
+    assert session_settings(Network(), (), lies)["transport/link/tx/lease"] == 60_000
 
 
 def test_the_first_process_takes_the_first_meeting_port_and_dials_the_others() -> None:

@@ -15,11 +15,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from aionode.clock import perf_ns
-from aionode.transport._local_sessions import listed
+from aionode.transport._local_sessions import holder_of, listed
 from aionode.transport._zenoh_config import LOOPBACK, near
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Iterator
+    from collections.abc import AsyncIterator, Iterator, Sequence
 
     from aionode.transport._zenoh_config import Network
 
@@ -27,6 +27,9 @@ __all__ = ["connecting", "one_at_a_time"]
 
 TURN_S: Final = 3.0
 """How long a process waits for one that has the turn and does not go on."""
+
+FOREIGN_TURN_S: Final = 0.3
+"""How long it waits while another user's process has the turn, which may keep it on purpose."""
 
 FIRST_POLL_S: Final = 0.002
 """The first interval at which a process looks whether it is its turn."""
@@ -58,9 +61,9 @@ def one_at_a_time(port: int | None) -> Iterator[None]:
         yield
         return
     with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as turn:
-        ends_ns = perf_ns() + int(TURN_S * 1e9)
+        patience = Patience((port,))
         poll_s = FIRST_POLL_S
-        while perf_ns() < ends_ns and not takes(turn, port):
+        while not (takes(turn, port) or patience.is_over()):
             threading.Event().wait(poll_s)
             poll_s = min(poll_s * POLL_GROWTH, LAST_POLL_S)
         yield
@@ -81,18 +84,39 @@ async def connecting(network: Network) -> AsyncIterator[None]:
     if not (others and ports):
         yield
         return
-    loop = asyncio.get_running_loop()
     with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as turn:
-        poll_s, ends_s = FIRST_POLL_S, loop.time() + TURN_S
+        patience, poll_s = Patience(ports), FIRST_POLL_S
         while not (any(takes(turn, port) for port in ports) or is_idle()):
             await asyncio.sleep(poll_s)
             poll_s = min(poll_s * POLL_GROWTH, LAST_CONNECTING_POLL_S)
-            if loop.time() > ends_s:
+            if patience.is_over():
                 before, others = others, listed(group)
-                if others == before:
+                if patience.is_foreign or others == before:
                     break  # nobody has begun to connect meanwhile: those that do are stuck
-                ends_s = loop.time() + TURN_S
+                patience = Patience(ports)
         yield
+
+
+class Patience:
+    """How long a process waits for one of some turns.
+
+    Attributes:
+        is_foreign: Whether processes of other users have all of them.
+    """
+
+    def __init__(self, ports: Sequence[int]) -> None:
+        self._ports = ports
+        self._began_ns = perf_ns()
+        self.is_foreign = False
+
+    def is_over(self) -> bool:
+        """Return whether it has waited long enough, given whose processes have the turns."""
+        waited_s = (perf_ns() - self._began_ns) / 1e9
+        if waited_s < FOREIGN_TURN_S:
+            return False
+        own = None if not hasattr(os, "getuid") else os.getuid()
+        self.is_foreign = not {holder_of(port) for port in self._ports} & {own, None}
+        return self.is_foreign or waited_s >= TURN_S
 
 
 def connecting_ports(network: Network) -> tuple[int, ...]:
