@@ -29,6 +29,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import zenoh
 
+from aionode.clock import perf_ns
 from aionode.errors import ConfigurationError
 from aionode.transport._send_thread import start_thread
 from aionode.transport._zenoh_config import introducers, look_settings
@@ -89,8 +90,11 @@ NODES_S: Final = 3.0
 ATTEMPTS: Final = 4
 """How often the connection is cut for one participant; some are visible, but not reachable."""
 
-ANSWERS: Final = 5
-"""How often a session is asked whose answer lacks tokens that are known."""
+ANSWERS: Final = 20
+"""How often a session is asked at most whose answer lacks tokens that are known."""
+
+ANSWERS_S: Final = 0.2
+"""For how long it is asked again; each answer takes a millisecond or two."""
 
 CHECKS: Final = 3
 """How often the graph is compared after connections have come or gone."""
@@ -421,10 +425,11 @@ def tokens(
         TimeoutError: an answer was not complete in time; what is missing in it may well be there.
     """
     found: set[str] = set()
+    ends_ns = perf_ns() + int(ANSWERS_S * 1e9)
     for _ in range(ANSWERS):
         for key in keys:
             found.update(answer(session, key, timeout_s))
-        if expected <= found:
+        if expected <= found or perf_ns() > ends_ns:
             break
     return found
 
