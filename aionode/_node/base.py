@@ -15,7 +15,7 @@ from aionode.endpoints._core.callback_runner import Callbacks
 from aionode.endpoints._core.endpoint import Endpoint
 from aionode.endpoints._core.entity import EndStage
 from aionode.endpoints._core.loop_affinity import in_loop_thread
-from aionode.endpoints._core.node_tasks import NodeTasks
+from aionode.endpoints._core.node_tasks import OWNER, NodeTasks
 from aionode.endpoints._core.shutdown import Shutdown
 from aionode.errors import EntityDestroyedError
 from aionode.logging import get_logger
@@ -83,6 +83,7 @@ class NodeBase:
         self._entities: dict[Entity, None] = {}  # in order of creation; destroyed ones leave it
         self._tasks: asyncio.TaskGroup | None = None  # of the entities, once the node has started
         self._node_tasks = NodeTasks(self._end_leases)
+        self._node_tasks.enter_constructor()
         self._running = False
         self._destroyed = asyncio.Event()
         self._end_record = EndRecord(f"node {full_name}")
@@ -387,11 +388,15 @@ def destroying_on_error(constructor: Callable[..., None]) -> Callable[..., None]
 
     @wraps(constructor)
     def construct(self: NodeBase, *args: Any, **options: Any) -> None:
+        owner = OWNER.get()
         try:
             constructor(self, *args, **options)
         except BaseException:
             if hasattr(self, "_info"):  # else the name was rejected: there is nothing to destroy
                 self.destroy_node()
             raise
+        finally:
+            if type(self).__init__ is construct:  # else the one of a subclass goes on
+                OWNER.set(owner)
 
     return construct

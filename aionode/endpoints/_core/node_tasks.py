@@ -12,20 +12,24 @@ from aionode.errors import EntityDestroyedError
 if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine
 
-__all__ = ["NodeTasks", "create_own_task"]
+__all__ = ["OWNER", "NodeTasks", "create_own_task"]
 
 T = TypeVar("T")
 
 OWNER: ContextVar[ref[NodeTasks] | None] = ContextVar("aionode_owner", default=None)
-"""Whose callback runs, also in the tasks that it starts; weak, as a context may outlive a node."""
+"""The node whose callback or constructor runs, also in the tasks that these start.
+
+It is weak, as a context may outlive a node.
+"""
 
 
 class NodeTasks:
     """The tasks of one node: those of its callbacks, and the body of its ``async with``.
 
-    A task that a callback starts is the node's as well, such as those of `asyncio.gather`, of
-    `asyncio.shield` and of a TaskGroup in the callback. A task that the body starts is not: it may
-    belong to a TaskGroup around the node, which would drop a cancellation without a word.
+    A task that a callback or the constructor starts is the node's as well, such as those of
+    `asyncio.gather`, of `asyncio.shield` and of a TaskGroup in the callback. A task that the body
+    starts is not: it may belong to a TaskGroup around the node, which would drop a cancellation
+    without a word.
 
     Args:
         on_failure: Called as soon as the node fails.
@@ -39,6 +43,10 @@ class NodeTasks:
         self._on_failure = on_failure
         self._body: asyncio.Task[Any] | None = None
         self._ref = ref(self)
+
+    def enter_constructor(self) -> None:
+        """Count the tasks that are started from here on among the node's own."""
+        OWNER.set(self._ref)
 
     def enter_body(self) -> None:
         """Record that the current task runs the body of ``async with node``."""

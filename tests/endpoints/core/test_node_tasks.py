@@ -61,6 +61,31 @@ async def test_a_task_that_a_callback_starts_is_cancelled(node: Node) -> None:
     assert isinstance(ends[0], asyncio.CancelledError)
 
 
+class Working(Node):
+    """Starts a task in its constructor."""
+
+    def __init__(self, context: Context) -> None:
+        super().__init__("working", context=context)
+        self.work = asyncio.get_running_loop().create_task(end_of(self))
+
+
+class WorkingMore(Working):
+    """Starts another one after that."""
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self.more = asyncio.get_running_loop().create_task(end_of(self))
+
+
+async def test_a_task_that_the_constructor_starts_is_cancelled(aionode_context: Context) -> None:
+    """A program that works in such a task would end every Ctrl-C with a traceback."""
+    node = WorkingMore(aionode_context)
+
+    assert isinstance(await node.work, asyncio.CancelledError)
+    assert isinstance(await node.more, asyncio.CancelledError)
+    assert isinstance(end_in(node), EntityDestroyedError)
+
+
 async def test_a_callback_of_another_node_is_not_one_of_this_node(
     node: Node, node_factory: Callable[..., Node]
 ) -> None:
