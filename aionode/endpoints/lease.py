@@ -148,6 +148,7 @@ class CommandLease(Generic[MsgT]):
         self._lock = threading.RLock()
         self._state = State.NEW
         self._is_publishing = False
+        self._asked = ""  # why another thread ends it now, if one does
         self._numbers = (0, 0)  # of the stop
         self._refusal: Callable[[], Exception] | None = None  # what `publish` raises after the end
         # The loop of the publisher's node, or that of the block if the node does not run.
@@ -305,10 +306,10 @@ class CommandLease(Generic[MsgT]):
         return False
 
     def _look(self) -> None:
-        """End the lease if its time to live is over; on the loop."""
+        """End the lease if its time to live is over, or a thread asks for it; on the loop."""
         with self._lock:
-            if self._state is State.OPEN and self._is_silent():
-                self._expire(self._of_silence())
+            if self._state is State.OPEN and (self._asked or self._is_silent()):
+                self._expire(self._asked or self._of_silence())
 
     def _of_silence(self) -> str:
         return f"nothing was published for {self._ttl_sec:g} s"
@@ -389,6 +390,7 @@ class CommandLease(Generic[MsgT]):
 
     def send_past_loop(self, reason: str) -> bool:
         """Send the stop, unless another thread does; see `Watched`."""
+        self._asked = reason  # a holder that publishes without a pause may not leave the lock
         is_locked = self._lock.acquire(timeout=LOCK_S)
         if not (is_locked or reason):
             return False  # a command is being published

@@ -122,9 +122,11 @@ class LeaseWatch:
         A handler of signals may call it: it takes no lock but those of the leases, which the thread
         has that the handler interrupts, or which are free in a moment.
         """
-        sent = [self._send(*each, STOPPED) for each in list(self._leases.items())]
+        leases = [each for each in list(self._leases.items()) if not each[0].is_sent]
+        for lease, record in leases:
+            self._send(lease, record, STOPPED)
         self.wake()
-        return any(sent)
+        return bool(leases)
 
     def after_fork(self) -> None:
         """Leave all leases to the parent process; in a forked child, which has no thread."""
@@ -178,11 +180,9 @@ class LeaseWatch:
         elif now_ns - record.noticed_ns >= GRACE_NS:
             self._send(lease, record, "")
 
-    def _send(self, lease: Watched, record: Record, reason: str) -> bool:
-        if not lease.send_past_loop(reason):
-            return False
-        record.sent_ns = perf_ns()
-        return True
+    def _send(self, lease: Watched, record: Record, reason: str) -> None:
+        if lease.send_past_loop(reason):
+            record.sent_ns = perf_ns()
 
 
 watch = LeaseWatch()
