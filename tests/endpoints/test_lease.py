@@ -391,17 +391,16 @@ async def test_a_node_that_fails_sends_the_stop_at_once(concurrent: bool) -> Non
         async def fail(_: String) -> None:
             raise OSError
 
-        async def slow(_: String) -> None:
-            try:
-                await asyncio.Event().wait()
-            finally:
-                await unwound.wait()
+        async def live() -> None:
+            async with node:
+                try:
+                    await asyncio.Event().wait()
+                finally:
+                    await unwound.wait()
 
         node.create_subscription(String, "fail", fail, concurrent=concurrent)
-        node.create_subscription(String, "slow", slow)
         news = wheels.create_publisher(String, "fail", 10)
-        wheels.create_publisher(String, "slow", 10).publish(String())
-        running = begin(node.run())
+        running = begin(live())
         await settle()
         holder = begin(hold(speed, wait, ttl_sec=60))
         await settle()
