@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from aionode.clock import perf_ns
 from aionode.transport.base import Transport
 from aionode.transport.zenoh._graph_watcher import NodeDeclaration, Watcher
+from aionode.transport.zenoh._limits import refuse_scarcity
 from aionode.transport.zenoh._local_router import LocalRouter
 from aionode.transport.zenoh._peer_directory import ZenohPeerDirectory
 from aionode.transport.zenoh._publisher import ZenohWriter
@@ -117,6 +118,7 @@ class ZenohTransport(Transport):
 
     async def open(self, graph: Graph) -> None:
         """Connect; return when the running peers are known, as far as that can be determined."""
+        refuse_scarcity()
         async with connecting(self.network):
             await self._open(graph)
 
