@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode.endpoints.actions._client_watch import SIGNS_IN_TIME
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
     from aionode.graph import Graph
 
 __all__ = ["LifeSigns"]
+
+RETRY_NS = 20_000_000
+"""How soon signs are given again when one could not be delivered."""
 
 
 class LifeSigns:
@@ -56,7 +60,7 @@ class LifeSigns:
             self._sign(goal_id)
             if self._alarm is None:
                 self._interval_ns = announced_ns
-                self._set_alarm()
+                self._set_alarm(announced_ns)
 
     def remove(self, goal_id: bytes) -> None:
         """Give no more signs for a goal."""
@@ -108,17 +112,26 @@ class LifeSigns:
             self._sign(goal_id)
         # A server that has left the graph may come back, with its goals.
         self._interval_ns = self._announced_ns() or self._interval_ns
-        self._set_alarm()
+        self._set_alarm(self._interval_ns)
 
-    def _set_alarm(self) -> None:
-        due_ns = self._time_base.steady_ns() + self._interval_ns
+    def _set_alarm(self, after_ns: int) -> None:
+        if self._alarm is not None:
+            self._alarm.cancel()
+        due_ns = self._time_base.steady_ns() + after_ns
         self._alarm = self._time_base.call_at(due_ns, self._beat)
 
     def _sign(self, goal_id: bytes) -> None:
         last = self._goals[goal_id]
         if last is not None:
             last.cancel()
-        self._goals[goal_id] = self._send(alive_id(goal_id))
+        sign = self._goals[goal_id] = self._send(alive_id(goal_id))
+        if sign is not None:
+            sign.answer.add_done_callback(partial(self._note_answer, goal_id))
+
+    def _note_answer(self, goal_id: bytes, answer: asyncio.Future[Any]) -> None:
+        # The first sign counts most: without any, the server takes the client for one of ROS.
+        if not answer.cancelled() and answer.exception() is not None and goal_id in self._goals:
+            self._set_alarm(RETRY_NS)
 
     def _send(self, asked_id: bytes) -> Exchange | None:
         """Ask for the result of a goal that does not exist; nothing without a server."""

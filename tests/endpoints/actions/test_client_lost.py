@@ -19,7 +19,7 @@ from aionode.action import (
 )
 from aionode.context import Context
 from aionode.endpoints.actions._client_watch import ClientWatch
-from aionode.errors import GoalCanceledError, ServiceError
+from aionode.errors import GoalCanceledError, ServiceError, ServiceUnavailableError
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.node import Node
@@ -565,6 +565,22 @@ async def test_a_service_that_is_found_later_than_its_goal_gets_signs(
 
     expect(goal, GoalStatus.EXECUTING)
     assert asking._signs._alarm is not None
+
+
+async def test_a_sign_that_could_not_be_delivered_is_given_again_soon(
+    asking: Client, manual_clock: ManualClock
+) -> None:
+    """The server learns only from the first one that the client gives signs."""
+    await asking.send_goal(Fibonacci.Goal())
+    (sign,) = asking._signs._goals.values()
+    assert sign is not None
+    sign.fail(ServiceUnavailableError("/fibonacci/_action/get_result"))
+    await settle()
+    calls = asking._get_result.stats.calls
+
+    await manual_clock.advance(0.021)
+
+    assert asking._get_result.stats.calls - calls == 1
 
 
 async def test_a_client_that_was_taken_for_lost_learns_why(
