@@ -18,7 +18,7 @@ from aionode.errors import ForkedProcessError, LeaseExpiredError, brief
 from aionode.logging import get_logger
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
     from types import TracebackType
 
     from aionode.clock import TimeBase
@@ -62,7 +62,7 @@ class LeasedPublisher(Protocol[LeasedT_contra]):
         """The full name of the topic."""
 
     def _hold(self, lease: Any, stop: LeasedT_contra | bytes | bytearray | memoryview) -> None:
-        """Have only `lease` publish from now on, and prepare its stop.
+        """Have `lease` prepare its stop, and have only it publish from now on.
 
         Raises:
             LeaseHeldError: another lease does.
@@ -77,9 +77,10 @@ class LeasedPublisher(Protocol[LeasedT_contra]):
     def _number_stop(self, step: int) -> tuple[int, int]:
         """Return the number of the stop, so much after the last one, and its time."""
 
-    @property
-    def _stop_senders(self) -> Sequence[StopSender]:
-        """What sends the stop, for each transport."""
+    def _prepare_stop(
+        self, stop: LeasedT_contra, number: Callable[[], int]
+    ) -> tuple[StopSender, ...]:
+        """Return what sends the stop of a lease, for each transport; `number` returns its own."""
 
 
 class State(enum.Enum):
@@ -149,7 +150,9 @@ class CommandLease(Generic[MsgT]):
         self._state = State.NEW
         self._is_publishing = False
         self._asked = ""  # why another thread ends it now, if one does
-        self._numbers = (0, 0)  # of the stop
+        self._numbers = (0, 0)  # of the stop: its sequence number and time
+        self._message: MsgT | None = None  # the stop, which nobody changes
+        self._senders: tuple[StopSender, ...] = ()
         self._refusal: Callable[[], Exception] | None = None  # what `publish` raises after the end
         # The loop of the publisher's node, or that of the block if the node does not run.
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -211,6 +214,12 @@ class CommandLease(Generic[MsgT]):
         )
         self._silence.start()
         watch.add(self)
+
+    def prepare(self, stop: MsgT | None = None) -> None:
+        """Encode the stop for each transport; again when the publisher has one more in use."""
+        self._message = self._message if stop is None else stop
+        if self._message is not None:
+            self._senders = self._publisher._prepare_stop(self._message, lambda: self._numbers[0])
 
     async def __aexit__(
         self,
@@ -358,7 +367,7 @@ class CommandLease(Generic[MsgT]):
 
     def _send(self, send: Callable[[StopSender, int, int], None]) -> None:
         """Send the stop through each transport; what one cannot do is no reason to leave others."""
-        for sender in self._publisher._stop_senders:
+        for sender in self._senders:
             try:
                 send(sender, *self._numbers)
             except Exception:  # noqa: BLE001  # logged: who ends a lease could do nothing

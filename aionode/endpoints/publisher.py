@@ -91,10 +91,6 @@ class Publisher(Endpoint, Generic[MsgT]):
             # Before anything is announced to others: it refuses callbacks that do not fit.
             self._monitor = PublisherMonitor(self, time_base, event_callbacks)
         self._lease: CommandLease[MsgT] | None = None  # while it is held
-        self._held_writers: tuple[Writer, ...] = ()  # in place of the others, while it is held
-        self._stop: Any = None  # that of the last lease, its number, and what sends it
-        self._stop_number = 0
-        self._stop_senders: tuple[StopSender, ...] = ()
         writers = self._all_writers = tuple(make_writers())  # one for each transport
         self.stats = PublisherStats(writers, self._matched)
         # The tasks in `drain`, and whether `_close` has cancelled them.
@@ -113,7 +109,7 @@ class Publisher(Endpoint, Generic[MsgT]):
         if self._lease is None:
             self._writers: tuple[Writer, ...] = self._awake_writers
         else:
-            self._prepare_stop(self._stop)
+            self._lease.prepare()
 
     def __repr__(self) -> str:
         return (
@@ -242,15 +238,15 @@ class Publisher(Endpoint, Generic[MsgT]):
             self._lease.finish()
         if self._lease is not None:
             raise LeaseHeldError(self.topic_name)
-        self._stop = snapshot(stop if type(stop) is self.msg_type else self._fitting(stop))
-        self._prepare_stop(self._stop)
+        lease.prepare(snapshot(stop if type(stop) is self.msg_type else self._fitting(stop)))
         self._lease = lease
-        self._writers = self._held_writers = (HeldWriter(self.topic_name),)
+        self._writers = (HeldWriter(self.topic_name),)
 
-    def _prepare_stop(self, stop: Any) -> None:
+    def _prepare_stop(self, stop: MsgT, number: Callable[[], int]) -> tuple[StopSender, ...]:
+        """Return what sends the stop of a lease, for each transport; `number` returns its own."""
         stats = self.stats
-        self._stop_senders = tuple(
-            writer.prepare_stop(stop, lambda: self._stop_number == stats.published)
+        return tuple(
+            writer.prepare_stop(stop, lambda: number() == stats.published)
             for writer in self._awake_writers
         )
 
@@ -261,16 +257,16 @@ class Publisher(Endpoint, Generic[MsgT]):
 
     def _publish_leased(self, msg: MsgT | bytes | bytearray | memoryview) -> None:
         """Publish a command of the lease."""
-        self._writers = self._awake_writers
+        held, self._writers = self._writers, self._awake_writers
         try:
             self.publish(msg)
         finally:
-            self._writers = self._held_writers
+            self._writers = held
 
     def _number_stop(self, step: int) -> tuple[int, int]:
         """Return the number of the stop, so much after the last one, and its time."""
-        self.stats.published = self._stop_number = self.stats.published + step
-        return self._stop_number, self._now_ns()
+        self.stats.published += step
+        return self.stats.published, self._now_ns()
 
     def _end_lease(self, refusal: Callable[[], Exception]) -> None:
         """Send the stop of an open lease, whose `publish` raises what `refusal` returns."""
