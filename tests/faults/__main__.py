@@ -79,6 +79,11 @@ def main() -> None:
     parser.add_argument("--times", type=int, default=1, help="how often each case runs (1)")
     parser.add_argument("--only", default="", help="a regular expression for names of cases")
     parser.add_argument("--write", type=Path, help="the page to write")
+    parser.add_argument(
+        "--switched-off",
+        action="store_true",
+        help="run each case of motion without each of its mechanisms, and expect it to break",
+    )
     parser.add_argument("--write-motion", type=Path, help="the page of motion to write")
     parser.add_argument(
         "--jobs", type=int, default=JOBS, help=f"how many run at once, of any round ({JOBS})"
@@ -89,8 +94,14 @@ def main() -> None:
     def chosen(found: list[CaseT]) -> list[CaseT]:
         return [each for each in found if re.search(options.only, each.name)]
 
+    def chosen_cases() -> tuple[list[Case], list[Motion]]:
+        moving = chosen(motions())
+        if options.switched_off:
+            return [], [each.without(switch) for each in moving for switch in each.switches]
+        return chosen(all_cases()), moving
+
     # Each run has cases of its own, and so network namespaces of its own.
-    rounds = [(chosen(all_cases()), chosen(motions())) for _ in range(options.times)]
+    rounds = [chosen_cases() for _ in range(options.times)]
     cases, moving = rounds[0]
     names = [*(each.name for each in cases), *(each.name for each in moving)]
     results: dict[str, list[Any]] = {name: [] for name in names}

@@ -309,7 +309,8 @@ class Child:
     def send(self, number: int) -> None:
         """Send a signal to its process group."""
         if self._process is not None and self.runs:
-            os.killpg(self._process.pid, number)
+            with contextlib.suppress(ProcessLookupError):  # it has just ended
+                os.killpg(self._process.pid, number)
 
     @property
     def pid(self) -> int:

@@ -87,6 +87,7 @@ class Motion(msgspec.Struct, frozen=True):
         ends: Whether the fault ends the process of the mover.
         lasts_s: About how long the fault takes.
         short: Whether it is part of the ordinary tests.
+        off: Which of its mechanisms is switched off.
     """
 
     place: Place
@@ -105,11 +106,13 @@ class Motion(msgspec.Struct, frozen=True):
     ends: bool = False
     lasts_s: float = 0.0
     short: bool = False
+    off: Switch | None = None
 
     @property
     def name(self) -> str:
         """What happens, in one line."""
-        return f"motion, {self.place.name}: {self.who} {self.goes}, {self.stops}"
+        off = f", without {self.off}" if self.off else ""
+        return f"motion, {self.place.name}: {self.who} {self.goes}, {self.stops}{off}"
 
     def broken(self, outcome: Stopped, spare_s: float = 0.0) -> list[str]:
         """Return which promises an outcome breaks.
@@ -150,7 +153,7 @@ class Motion(msgspec.Struct, frozen=True):
             case "signals":
                 mover = msgspec.structs.replace(mover, old_signals=True)
         role = msgspec.structs.replace(self.mover, mover=mover)
-        return msgspec.structs.replace(self, mover=role, wheel=wheel)
+        return msgspec.structs.replace(self, mover=role, wheel=wheel, off=switch)
 
 
 def stopped(

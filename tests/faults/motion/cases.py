@@ -160,6 +160,16 @@ def leases(place: Place) -> Iterator[Motion]:
         )
     yield case(
         place,
+        "a route of FastAPI that holds a lease",
+        "gets SIGTERM, and uvicorn waits 1 s for its browser",
+        lease,
+        mover=mover(program="uvicorn", ttl_sec=LONG_TTL_S),
+        strike=signalled(TERM),
+        ends=True,
+        **{**promised, "limit_s": 1.0},
+    )
+    yield case(
+        place,
         "a holder of a lease",
         "is frozen 5 s while another goes on",
         lease,
@@ -275,7 +285,8 @@ def last_messages(place: Place) -> Iterator[Motion]:
             "a publisher",
             goes,
             "finally at the mover",
-            mover=mover(asks="finally"),
+            # Long enough for a second signal to come between.
+            mover=mover(asks="finally", cleans_up_s=0.1),
             wheel=TOPIC,
             strike=strike,
             switches=(switch,),

@@ -89,6 +89,7 @@ class MoverNode(Node):
                 try:
                     await self.publish()
                 finally:
+                    await asyncio.sleep(self.mover.cleans_up_s)
                     self.publisher.publish(Twist())
             case "goal" | "goal left":
                 await self.send_goals()

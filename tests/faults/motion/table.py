@@ -18,15 +18,20 @@ Result = Stopped | Exception
 
 
 def problems(motion: Motion, result: Result) -> list[str]:
-    """Return which promises one run has broken."""
+    """Return which promises one run has broken; or that it has kept them without a mechanism."""
     if isinstance(result, Skipped):
         return []
-    return [repr(result)] if isinstance(result, Exception) else motion.broken(result)
+    if isinstance(result, Exception):
+        return [repr(result)]
+    if motion.off is None:
+        return motion.broken(result)
+    kept = [] if motion.broken(result) else [f"kept its promise without {motion.off}"]
+    return [*result.wrong, *kept]
 
 
 def line_of(motion: Motion, result: Result) -> str:
     """Return what came of one run, in one line."""
-    verdict = "; ".join(problems(motion, result)) or "kept"
+    verdict = "; ".join(problems(motion, result)) or ("broken" if motion.off else "kept")
     if isinstance(result, Skipped):
         verdict = f"skipped: {result}"
     times = ""

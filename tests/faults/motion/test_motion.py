@@ -18,7 +18,7 @@ from tests.faults.motion.case import Motion, Place, Stopped, stopped
 from tests.faults.motion.cases import motions
 from tests.faults.motion.goings import killed
 from tests.faults.motion.scene import scenes
-from tests.faults.motion.table import motion_page
+from tests.faults.motion.table import motion_page, problems
 from tests.faults.motion.words import Handed, Mover, What, Wheel
 from tests.faults.roles import Role
 
@@ -30,9 +30,7 @@ SPARE_S = 0.5
 
 SHORT = {motion.name: motion for motion in motions() if motion.short}
 SWITCHED_OFF = {
-    f"{motion.name}, without {switch}": motion.without(switch)
-    for motion in SHORT.values()
-    for switch in motion.switches
+    each.name: each for motion in SHORT.values() for each in map(motion.without, motion.switches)
 }
 
 
@@ -68,10 +66,7 @@ def test_motion_ends_with_whoever_asked_for_it(motion: Motion) -> None:
 @pytest.mark.parametrize("motion", SWITCHED_OFF.values(), ids=SWITCHED_OFF)
 def test_a_case_breaks_without_its_mechanism(motion: Motion) -> None:
     """Otherwise something else has stopped the wheels, and the case shows nothing."""
-    outcome = outcome_of(motion)
-
-    assert outcome.wrong == []
-    assert motion.broken(outcome, SPARE_S) != []
+    assert problems(motion, outcome_of(motion)) == []
 
 
 def test_each_case_has_a_mechanism_or_says_that_there_is_none() -> None:

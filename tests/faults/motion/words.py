@@ -37,7 +37,8 @@ class Mover(msgspec.Struct, frozen=True):
         port: On which its web server listens; 0 without one.
         route: The route of it that moves.
         graceful_s: How long its web server waits for connections at its end; None without limit.
-        cleans_up_s: How long it goes on within its lease after it was cancelled.
+        cleans_up_s: How long it goes on within its lease after it was cancelled; or what its
+            ``finally`` does before it publishes.
         old_signals: Whether SIGHUP ends it without cleanup, and so does a second signal, however
             soon it comes: what aionode's handling of signals is compared with.
     """
