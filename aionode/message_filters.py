@@ -20,6 +20,7 @@ dropped and counted.
 from __future__ import annotations
 
 import asyncio
+import math
 from collections import deque
 from typing import TYPE_CHECKING, Any, TypeVar, overload
 
@@ -94,11 +95,23 @@ class Matcher:
 
 
 class ApproximateMatcher(Matcher):
-    """Finds messages whose stamps are less than `slop_ns` apart, around the newest arrival."""
+    """Finds messages whose stamps are less than a slop apart, around the newest arrival.
 
-    def __init__(self, inputs: int, queue_size: int, slop_ns: int) -> None:
+    Args:
+        inputs: The number of inputs.
+        queue_size: As for `Matcher`.
+        slop_sec: The slop, in seconds; with 0, which ROS 2 pairs nothing with, stamps have to be
+            equal.
+
+    Raises:
+        ValueError: `queue_size` is below 1, or the slop is negative or not finite.
+    """
+
+    def __init__(self, inputs: int, queue_size: int, slop_sec: float) -> None:
         super().__init__(inputs, queue_size)
-        self._slop_ns = slop_ns
+        if not 0 <= slop_sec < math.inf:
+            raise ValueError(f"slop={slop_sec}; it must be 0 or more seconds, and finite")
+        self._slop_ns = max(1, round(slop_sec * 1e9))
 
     def _matches(self, index: int, stamp_ns: int) -> list[list[int]]:
         if stamp_ns not in self._queues[index]:
@@ -173,6 +186,10 @@ class SimpleFilter:
         number = len(self.callbacks)
         self.callbacks[number] = (cb, args)
         return number
+
+    def _inner_callbacks(self) -> list[Callable[..., object]]:
+        """Return what was registered; the log names these functions instead of a filter's."""
+        return [callback for callback, _ in self.callbacks.values()]
 
     def signalMessage(self, *msg: Any) -> None:  # noqa: N802  # ROS 2's name
         """Call everything that was registered."""
@@ -365,8 +382,11 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
     Args:
         fs: The inputs.
         queue_size: How many messages of each input wait for the others.
-        slop: By how much the stamps may differ, in seconds.
+        slop: The stamps differ by less than this, in seconds; with 0 they are equal.
         allow_headerless: Whether to use the time of arrival for messages without a header.
+
+    Raises:
+        ValueError: `queue_size` is below 1, or `slop` is negative or not finite.
     """
 
     def __init__(
@@ -377,7 +397,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         allow_headerless: bool = False,
     ) -> None:
         SimpleFilter.__init__(self)
-        self._matcher = ApproximateMatcher(len(fs), queue_size, round(slop * 1e9))
+        self._matcher = ApproximateMatcher(len(fs), queue_size, slop)
         self._stamps = Stamps(allow_headerless=allow_headerless)
         self.connectInput(fs)
 
@@ -480,20 +500,20 @@ def synchronize(
 
     Args:
         subscriptions: Subscriptions without callbacks; the iterator reads them.
-        slop: By how much the stamps may differ, in seconds; by default they must be equal.
+        slop: The stamps differ by less than this, in seconds; by default, and with 0, they are
+            equal.
         queue_size: How many messages of each subscription wait for the others; `dropped` of the
             iterator counts those dropped.
         allow_headerless: Whether to use the time of arrival for messages without a header.
 
     Raises:
-        ValueError: there are fewer than two subscriptions, or `queue_size` is below 1.
+        ValueError: there are fewer than two subscriptions, `queue_size` is below 1, or `slop` is
+            negative or not finite.
     """
     count = len(subscriptions)
     if count < 2:
         raise ValueError(f"{count} subscription(s) given; pass at least two")
     matcher = (
-        Matcher(count, queue_size)
-        if slop is None
-        else ApproximateMatcher(count, queue_size, round(slop * 1e9))
+        Matcher(count, queue_size) if slop is None else ApproximateMatcher(count, queue_size, slop)
     )
     return Synchronized(subscriptions, matcher, Stamps(allow_headerless=allow_headerless))

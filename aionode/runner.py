@@ -6,15 +6,13 @@ import asyncio
 import contextlib
 import gc
 import inspect
-import os
 import sys
 import traceback
 from collections.abc import Callable, Coroutine, Sequence
-from pathlib import Path
-from types import FrameType
 from typing import Any, Self
 
 from aionode._signals import signals_to
+from aionode._tracebacks import TRACEBACK_VARIABLE, is_of_user, is_whole, traceback_text
 from aionode.arguments import Arguments, parse_arguments
 from aionode.context import Context
 from aionode.errors import AionodeError, InvalidROSArgsError
@@ -26,17 +24,11 @@ __all__ = ["Runnable", "freeze_objects", "run"]
 Runnable = Node | Callable[[], Node] | Callable[[], Coroutine[Any, Any, None]]
 LoopFactory = Callable[[], asyncio.AbstractEventLoop]
 
-TRACEBACK_VARIABLE = "AIONODE_TRACEBACK"
-"""If set to anything, `run` also prints the traceback of aionode's own errors."""
-
 STARTED_SEC = 1.0
 """After so long a program has imported and made most of what it keeps."""
 
 FROZEN_BY_PYTHON = 1000
 """Python 3.12 itself has frozen 375 objects when a program begins; a program freezes thousands."""
-
-LIBRARY = Path(__file__).parent
-STANDARD_LIBRARY = Path(asyncio.__file__).parent.parent
 
 
 def run(
@@ -80,8 +72,9 @@ def run(
 
     Raises:
         SystemExit: with status 1 after an error, which was printed on stderr: for one of aionode's
-            own errors the node, entity, file and line; for any other exception, or with
-            ``AIONODE_TRACEBACK=1`` in the environment, the whole traceback.
+            own errors the node, entity, file and line; for any other exception its traceback,
+            without the lines inside aionode. ``AIONODE_TRACEBACK=1`` in the environment shows the
+            whole traceback of either.
         TypeError: there is nothing to run.
         RuntimeError: it was called inside a running event loop.
     """
@@ -219,10 +212,15 @@ async def _until_stopped(nodes: Sequence[Runnable], stop: Stop, freeze: Freeze) 
 def _coroutine_of(node: Runnable) -> Coroutine[Any, Any, None]:
     made = node if isinstance(node, Node) else node()
     if isinstance(made, Node):
-        return made.run()
+        return _run_node(made)
     if inspect.iscoroutine(made):
         return made
     raise TypeError(f"run: {node!r} returned {made!r}, which is neither a node nor a coroutine")
+
+
+async def _run_node(node: Node) -> None:
+    """Run a node without a line in the log if it fails: `run` prints more."""
+    await node.run()
 
 
 def freeze_objects() -> None:
@@ -270,8 +268,10 @@ def failure_text(error: BaseException) -> str:
     """Return what to print for `error`: a summary for aionode's own errors, else a traceback."""
     if isinstance(error, BaseExceptionGroup):
         return "".join(failure_text(part) for part in error.exceptions)
-    if not isinstance(error, AionodeError) or os.environ.get(TRACEBACK_VARIABLE):
-        return "".join(traceback.format_exception(error))
+    if is_whole():
+        return traceback_text(error)
+    if not isinstance(error, AionodeError):
+        return f"{traceback_text(error)}({TRACEBACK_VARIABLE}=1 shows aionode's lines as well)\n"
     lines = [f"error: {error}", *circumstances(error)]
     return "\n  ".join(lines) + "\n"
 
@@ -293,12 +293,3 @@ def circumstances(error: AionodeError) -> list[str]:
         found.append(f"{location}: {summary.line}" if summary.line else location)
         found.append(f"({TRACEBACK_VARIABLE}=1 shows the whole traceback)")
     return found
-
-
-def is_of_user(frame: FrameType) -> bool:
-    """Whether a frame belongs neither to aionode nor to Python's standard library."""
-    path = Path(frame.f_code.co_filename)
-    installed = "site-packages" in path.parts
-    generated = "__name__" not in frame.f_globals  # such as the validator of a message
-    standard = STANDARD_LIBRARY in path.parents and not installed
-    return not (generated or standard or LIBRARY in path.parents)

@@ -7,12 +7,12 @@ one of its callbacks; the next node is a new one, created by the same function.
 from __future__ import annotations
 
 import asyncio
-import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, Literal, Self, TypeVar
 
 from aionode._node.end_record import NodeEnd, short_text
+from aionode._tracebacks import traceback_text
 from aionode.clock import S_TO_NS, SteadyClock
 from aionode.errors import NodeNotRunningError
 from aionode.logging import get_logger
@@ -252,7 +252,7 @@ class Supervisor(Generic[NodeT]):
         factor = 2.0 ** min(self._failed_in_a_row, 64)
         delay_sec = min(self._max_delay_sec, self._min_delay_sec * factor)
         self._failed_in_a_row += 1
-        trace = "" if end.error is None else ":\n" + "".join(traceback.format_exception(end.error))
+        trace = "" if end.error is None else ":\n" + traceback_text(end.error)
         get_logger("aionode.supervisor").error(
             f"node {self._name} {end.reason}; restarting in {delay_sec:g} s{trace}"
         )

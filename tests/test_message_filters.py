@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import random
+from functools import partial
 from itertools import product
 from typing import Any
 
@@ -92,6 +94,40 @@ def test_stamps_beyond_the_slop_wait() -> None:
     assert pairs.dropped == 3
 
 
+def test_a_slop_of_zero_pairs_equal_stamps() -> None:
+    """It would pair nothing, without a word."""
+    left, right, found = pairs_of(ApproximateTimeSynchronizer, 10, 0.0)
+    one, two = stamped(1), stamped(1)
+    left.signalMessage(one)
+    right.signalMessage(stamped(1.000000001))
+    right.signalMessage(two)
+
+    assert found == [(one, two)]
+
+
+@pytest.mark.parametrize("slop", [-0.1, math.nan, math.inf])
+def test_a_slop_that_is_no_duration_is_refused(slop: float) -> None:
+    """A negative one would pair nothing either."""
+    with pytest.raises(ValueError, match=r"slop=.*; it must be 0 or more seconds"):
+        ApproximateTimeSynchronizer([SimpleFilter(), SimpleFilter()], 10, slop)
+
+
+async def test_the_log_names_the_callback_behind_filters(node: Node) -> None:
+    """A warning about `SimpleFilter.signalMessage` does not say what to look at."""
+
+    def on_pair(left: PointStamped, right: PointStamped, _tag: str) -> None:
+        raise ValueError((left, right))
+
+    left = Subscriber(node, PointStamped, "left")
+    right = Subscriber(node, PointStamped, "right")
+    TimeSynchronizer([Cache(left), right], 10).registerCallback(partial(on_pair, _tag="a"))
+
+    for each in (left, right):
+        name = f"(callback {on_pair.__qualname__})"
+        assert each.sub._runner is not None
+        assert each.sub._runner.subject == f"subscription of {each.sub.topic_name} {name}"
+
+
 def test_a_message_without_a_header_can_count_with_its_arrival() -> None:
     """If that is asked for; else it is left out."""
     left, right, found = pairs_of(ApproximateTimeSynchronizer, 10, 10.0, True)
@@ -131,7 +167,7 @@ def test_the_matcher_finds_what_trying_all_combinations_finds(
     arrivals: list[tuple[int, int]], slop: int
 ) -> None:
     """Giving up early changes no result: the plain search in the same order finds the same."""
-    matcher = ApproximateMatcher(3, 5, slop)
+    matcher = ApproximateMatcher(3, 5, slop / 1e9)
     queues: list[dict[int, tuple[int, int]]] = [{}, {}, {}]
     for index, stamp in arrivals:
         message = (index, stamp)

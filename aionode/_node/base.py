@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 from aionode import names
 from aionode._concurrency import to_the_end
-from aionode._node.end_record import EndRecord, NodeEnd
+from aionode._node.end_record import EndRecord, NodeEnd, failure_text
 from aionode.arguments import Arguments, Usage, parse_arguments
 from aionode.clock import ROSClock
 from aionode.endpoints._core.callback_runner import Callbacks
@@ -171,15 +171,34 @@ class NodeBase:
     async def run(self) -> None:
         """Run until `destroy_node` is called, which any callback may do.
 
-        Cancelling destroys the node.
+        Cancelling destroys the node. In a task of its own, ``asyncio.create_task(node.run())``, it
+        also logs one ERROR if the node fails, as nobody may await that task.
 
         Raises:
             ExceptionGroup: the exceptions of callbacks.
             RuntimeError: the node is already running, or was destroyed.
             TransportError: the context cannot connect.
         """
-        async with self:
-            await self.until_destroyed()
+        try:
+            async with self:
+                await self.until_destroyed()
+        except Exception as error:
+            self._tell_failure(error)
+            raise
+
+    def _tell_failure(self, error: Exception) -> None:
+        """Log why the node failed, if a task runs nothing but `run`.
+
+        Such a task may be awaited late or never, and asyncio tells of its exception only when it is
+        collected.
+        """
+        task = asyncio.current_task()
+        coroutine = None if task is None else task.get_coro()
+        if getattr(coroutine, "cr_code", None) is NodeBase.run.__code__:
+            self._logger.error(
+                f"the node failed and has ended: {failure_text(error)}. "
+                "To get the exception, await the task of run()"
+            )
 
     async def until_destroyed(self) -> None:
         """Wait until `destroy_node` is called, as `run` does inside its ``async with``.

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["EndRecord", "NodeEnd", "short_text"]
+__all__ = ["EndRecord", "NodeEnd", "failure_text", "short_text"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +38,13 @@ def short_text(error: BaseException) -> str:
         return "; ".join(short_text(part) for part in error.exceptions)
     text = " ".join(str(error).split())
     return f"{type(error).__name__}: {text}" if text else type(error).__name__
+
+
+def failure_text(error: BaseException) -> str:
+    """Return what `short_text` does, with the callback of each exception."""
+    if isinstance(error, BaseExceptionGroup):
+        return "; ".join(failure_text(part) for part in error.exceptions)
+    return ", ".join([short_text(error), *getattr(error, "__notes__", ())])
 
 
 class EndRecord:

@@ -285,7 +285,10 @@ class GoalRejectedError(GoalError):
 
     def __init__(self, action: str, goal_id: str) -> None:
         super().__init__(
-            action, goal_id, "was rejected by the server's goal_callback; see the server's log"
+            action,
+            goal_id,
+            "was rejected by the server's goal_callback; ROS sends no reason, so have "
+            "goal_callback log one",
         )
 
 

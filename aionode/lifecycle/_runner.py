@@ -16,11 +16,11 @@ from __future__ import annotations
 
 import asyncio
 import inspect
-import traceback
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from aionode._concurrency import is_cancelled_task
+from aionode._tracebacks import traceback_text
 from aionode.errors import CallbackCancelledError, TransitionError
 from aionode.lifecycle._entities import SimpleManagedEntity
 from aionode.lifecycle.states import (
@@ -219,9 +219,7 @@ class TransitionRunner:
         )
 
     def _fail(self, name: str, error: Exception) -> None:
-        self._logger.error(
-            f"on_{name} failed:\n{''.join(traceback.format_exception(error))}".rstrip()
-        )
+        self._logger.error(f"on_{name} failed:\n{traceback_text(error)}".rstrip())
         self._error = error
 
     def cancel(self, result: TransitionCallbackReturn) -> None:

@@ -89,7 +89,7 @@ async def test_an_unknown_transition_lists_those_there_are(
     """In ros2's words."""
     with pytest.raises(
         CommandError,
-        match=r"Unknown transition requested, available ones are:\n- configure \[1\]\n- shutdown",
+        match=r"Unknown transition requested, available ones are: configure \[1\], shutdown \[5\]",
     ):
         await set_state(tool, "/camera", "activate", output=screen.output)
 

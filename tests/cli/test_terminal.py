@@ -352,6 +352,6 @@ def test_the_doctor_sees_nodes_of_another_domain(terminals: Terminals) -> None:
     """The most common reason why no node is found, with a remedy that can be typed."""
     done = terminals.run("doctor", ROS_DOMAIN_ID="41")
 
-    assert done.returncode == 1
-    assert "problem: domain: there are nodes in domain 42, but this is domain 41" in done.stdout
+    assert done.returncode == 0  # it may be meant
+    assert "hint: domain: there are nodes in domain 42, but this is domain 41" in done.stdout
     assert "-> set ROS_DOMAIN_ID=42" in done.stdout

@@ -310,3 +310,39 @@ def test_entities_end_by_destroy_alone() -> None:
     for kind in kinds:
         assert issubclass(kind, Entity)
         assert not hasattr(kind, "close"), kind
+
+
+async def test_a_node_that_fails_in_a_task_of_its_own_logs_one_error(
+    node: Node, caplog: pytest.LogCaptureFixture
+) -> None:
+    """In a notebook nobody awaits the task before its last cell."""
+
+    def tick() -> None:
+        raise ValueError("no map")
+
+    robot = Node("robot", context=node.context)
+    timer = robot.create_timer(0.0, tick)
+    running = asyncio.create_task(robot.run())  # noqa: TID251  # as in a notebook
+    await asyncio.wait([running])
+
+    (line,) = caplog.records
+    assert (line.levelname, line.name) == ("ERROR", "ros.robot")
+    assert line.getMessage() == (
+        "the node failed and has ended: ValueError: no map, in timer of 0 s (callback "
+        f"{tick.__qualname__}) of node /robot. To get the exception, await the task of run()"
+    )
+    assert timer.destroyed
+    assert running.exception() is not None
+
+
+async def test_a_node_that_fails_in_the_task_of_its_caller_logs_nothing(
+    node: Node, caplog: pytest.LogCaptureFixture
+) -> None:
+    """The caller has the exception."""
+    robot = Node("robot", context=node.context)
+    robot.create_timer(0.0, lambda: 1 / 0)
+
+    with pytest.raises(ExceptionGroup):
+        await robot.run()
+
+    assert caplog.records == []

@@ -229,7 +229,7 @@ def network_findings(
         others = ", ".join(map(str, domains))
         found.append(
             Finding(
-                "problem" if alone else "hint",
+                "hint",
                 "domain",
                 f"there are nodes in domain {others}, but this is domain {network.domain_id}: "
                 "domains do not communicate",

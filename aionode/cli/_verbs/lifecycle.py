@@ -115,8 +115,8 @@ async def set_state(node: Node, node_name: str, transition: str, *, output: Outp
     if chosen is None and transition == "shutdown":
         chosen = Transition(label=transition)  # available in every state, but not listed
     if chosen is None:
-        lines = [f"- {one.transition.label} [{one.transition.id}]" for one in available]
-        raise CommandError("\n".join(["Unknown transition requested, available ones are:", *lines]))
+        fits = ", ".join(f"{one.transition.label} [{one.transition.id}]" for one in available)
+        raise CommandError(f"Unknown transition requested, available ones are: {fits}")
     client = node.create_client(ChangeState, f"{name}/change_state")
     response = await client.call(ChangeState.Request(transition=chosen))
     if not response.success:

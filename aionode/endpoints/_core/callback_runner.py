@@ -7,13 +7,14 @@ no other place decides what happens around a callback.
 from __future__ import annotations
 
 import asyncio
+import functools
 import inspect
-import traceback
 from collections.abc import Awaitable, Callable, Coroutine, Generator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from aionode._concurrency import SLICE_NS, checkpoint, is_cancelled_task, run_in_thread
+from aionode._tracebacks import traceback_text
 from aionode.clock import perf_ns
 from aionode.endpoints._core.node_tasks import create_own_task
 from aionode.errors import (
@@ -84,8 +85,6 @@ class CallbackRunner:
         ValueError: `on_error` is an unknown string, or a coroutine function is to be offloaded.
 
     Attributes:
-        subject: The entity and its callback, such as ``subscription of /chatter (callback
-            on_text)``.
         offload: Whether the callback runs in a thread.
         is_sync: Whether a call is expected to finish at once, in the loop's own thread.
         budget_ns: How long a callback may block the loop before that is reported.
@@ -102,8 +101,8 @@ class CallbackRunner:
         on_error: OnError = "raise",
         offload: bool = False,
     ) -> None:
-        name = getattr(callback, "__qualname__", repr(callback))
-        self.subject = f"{entity._subject} (callback {name})"
+        self.callback = callback
+        self._entity = entity
         if isinstance(on_error, str):
             if on_error not in ("raise", "log"):
                 raise ValueError(
@@ -120,9 +119,7 @@ class CallbackRunner:
                 f"{self.subject}: offload=True runs a sync callback in a thread, and this one "
                 "is a coroutine function; use `await asyncio.to_thread(...)` inside it"
             )
-        self.callback = callback
         self.stats = stats
-        self._entity = entity
         self._callbacks = callbacks
         self._on_error = on_error
         self.offload = offload
@@ -130,6 +127,11 @@ class CallbackRunner:
         self.budget_ns = callbacks.budget_ns
         self.waiting = callbacks.waiting
         self._last_report_ns = -REPORT_INTERVAL_NS
+
+    @property
+    def subject(self) -> str:
+        """The entity and its callback, such as ``subscription of /chatter (callback on_text)``."""
+        return f"{self._entity._subject} (callback {callback_name(self.callback)})"
 
     def run(self, *args: Any) -> Coroutine[Any, Any, None] | None:
         """Run the callback and handle its errors; return what is left to await, or None.
@@ -267,8 +269,7 @@ class CallbackRunner:
                 f"{self.subject} refused a request: {error}", throttle_duration_sec=REFUSED_SEC
             )
         elif self._on_error == "log":
-            trace = "".join(traceback.format_exception(error))
-            self._callbacks.logger.error(f"{self.subject} failed:\n{trace}")
+            self._callbacks.logger.error(f"{self.subject} failed:\n{traceback_text(error)}")
         else:
             context = CallbackContext(self._callbacks.node, self.subject, self._entity)
             try:
@@ -480,6 +481,16 @@ def _is_async(callback: Callable[..., Any]) -> bool:
     )
 
 
+def callback_name(callback: Callable[..., Any]) -> str:
+    """Return the name of what a callback calls in the program: behind a partial, or a filter."""
+    if isinstance(callback, functools.partial):
+        return callback_name(callback.func)
+    owner = getattr(callback, "__self__", None)
+    inner = getattr(type(owner), "_inner_callbacks", None)  # of `aionode.message_filters`
+    names = [] if inner is None else [callback_name(each) for each in inner(owner)]
+    return ", ".join(names) or getattr(callback, "__qualname__", repr(callback))
+
+
 def accepts(callback: Callable[..., Any], *counts: int, subject: str, wanted: str) -> int:
     """Return the first of `counts` positional arguments that `callback` can be called with.
 
@@ -499,7 +510,7 @@ def accepts(callback: Callable[..., Any], *counts: int, subject: str, wanted: st
         except TypeError:
             continue
         return count
-    name = getattr(callback, "__qualname__", repr(callback))
+    name = callback_name(callback)
     raise CallbackSignatureError(subject, f"{name}{signature}", wanted)
 
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from aionode.clock import Clock
     from aionode.endpoints._core.callback_runner import CallbackContext
     from aionode.endpoints.service_introspection import ServiceIntrospectionState
+    from aionode.logging import RcutilsLogger
     from aionode.qos import QoSProfile
 
 __all__ = [
@@ -28,11 +29,15 @@ __all__ = [
     "pass_reason",
     "seconds_to_ns",
     "stamp_ns",
+    "tell_rejected",
     "uuid_message",
 ]
 
 
 SHORTEST_LOSS_NS = 30_000_000
+
+REJECTED_SEC = 1.0
+"""The shortest time between two reports of rejected goals, in seconds."""
 
 
 class ActionEntity(Entity):
@@ -94,6 +99,11 @@ def pass_reason(error: Exception, context: CallbackContext) -> None:  # noqa: AR
     """
     if not isinstance(error, AbortReason):
         raise error
+
+
+def tell_rejected(logger: RcutilsLogger, subject: str) -> None:
+    """Log that a server rejected a goal; once a second at most, whatever clients send."""
+    logger.info(f"{subject}: goal_callback rejected a goal", throttle_duration_sec=REJECTED_SEC)
 
 
 # Arguments

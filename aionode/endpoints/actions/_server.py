@@ -24,6 +24,7 @@ from aionode.endpoints.actions._common import (
     pass_reason,
     seconds_to_ns,
     stamp_ns,
+    tell_rejected,
 )
 from aionode.endpoints.actions._early_cancels import EarlyCancels
 from aionode.endpoints.actions._server_goal import ServerGoalHandle
@@ -337,6 +338,8 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             self._warn(
                 f"goal_callback returned {brief(answer)}, no GoalResponse; the goal is rejected"
             )
+        elif answer is GoalResponse.REJECT:
+            tell_rejected(self._logger, self._subject)
         return answer is GoalResponse.ACCEPT
 
     def _accept(

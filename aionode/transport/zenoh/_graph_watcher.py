@@ -16,6 +16,7 @@ from aionode.wire._liveliness import PREFIX, is_node_token, node_token, parse_to
 if TYPE_CHECKING:
     import asyncio
 
+    from aionode.clock import Alarm
     from aionode.transport.zenoh._session_state import SessionState
 
 __all__ = ["NodeDeclaration", "Watcher"]
@@ -31,6 +32,9 @@ ATTEMPTS: Final = 5
 
 ANSWER_S: Final = 60.0
 """How long Zenoh waits for the tokens of all peers; a frozen one is cut long before."""
+
+EXPECTED_NS: Final = 2_000_000_000
+"""How long nodes of this domain are expected, in which other domains are not told of."""
 
 NAMED: Final = 5
 """How many other domains are named in the log."""
@@ -108,7 +112,8 @@ class Watcher:
         self._foreign: dict[int, set[str]] = {}
         self._tell_from = 1
         self._warned = False
-        self._opening = True
+        self._may_tell = False
+        self._expected: Alarm | None = None
         self._subscriber: zenoh.Subscriber[None] | None = None
         self._queue = state.queue(self._take)
         self._changes = state.queue(self._take_change)
@@ -140,8 +145,10 @@ class Watcher:
         self._known.clear()
         self._foreign.clear()
         self._tell_from = 1
-        self._warned = False
-        self._opening = True
+        self._may_tell = False
+        if self._expected is not None:
+            self._expected.cancel()
+            self._expected = None
 
     @property
     def other_domains(self) -> frozenset[int]:
@@ -277,8 +284,12 @@ class Watcher:
                 del self._foreign[domain_id]
 
     def note_domains(self) -> None:
-        """Log nodes of other domains, now and whenever more appear."""
-        self._opening = False
+        """Log nodes of other domains once those of this one had time, and when more appear."""
+        time_base = self._state.time_base
+        self._expected = time_base.call_at(time_base.steady_ns() + EXPECTED_NS, self._begin_to_tell)
+
+    def _begin_to_tell(self) -> None:
+        self._may_tell = True
         self._tell_domains()
 
     def _note_domain(self, domain_id: int, key: str) -> None:
@@ -288,25 +299,28 @@ class Watcher:
                 keys.add(key)
         elif len(self._foreign) < MAX_FOREIGN:
             self._foreign[domain_id] = {key}
-            if not self._opening:
+            if self._may_tell:
                 self._tell_domains()
 
     def _tell_domains(self) -> None:
         """Log a few of the other domains; again only when there are ten times as many.
 
-        A warning if no node of this domain is known: then the domain id is probably a mistake.
+        One warning, if this context hears no other and has a single node: then the domain id may be
+        a mistake.
         """
         count = len(self._foreign)
-        alone = not self._known
-        if count < self._tell_from and not (alone and count and not self._warned):
+        own = sum(map(is_node_token, self._state.own_tokens()))
+        warns = bool(count) and own < 2 and not self._known and not self._warned
+        if count < self._tell_from and not warns:
             return
         self._tell_from = 10 * max(count, 1)
-        self._warned = self._warned or alone
+        self._warned = self._warned or warns
         named = sorted(self._foreign)[:NAMED]
         logger.log(
-            logging.WARNING if alone else logging.DEBUG,
+            logging.WARNING if warns else logging.DEBUG,
             "nodes of domain %s%s can be reached, but this is domain %d: they do not hear each "
-            "other; ROS_DOMAIN_ID or Context(domain_id=...) changes it",
+            "other. ROS_DOMAIN_ID or Context(domain_id=...) changes the domain; --ros-args "
+            "--log-level aionode.transport.zenoh:=error hides this",
             ", ".join(map(str, named)),
             f" and {count - len(named)} more" if count > len(named) else "",
             self._state.domain_id,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack
 from typing import Any, NamedTuple
@@ -293,11 +294,29 @@ async def test_a_rejected_goal_raises(ends: Ends) -> None:
     """The error names action and goal."""
     ends.server.register_goal_callback(lambda _goal: GoalResponse.REJECT)
 
-    with pytest.raises(GoalRejectedError, match=r"/fibonacci: goal [0-9a-f]{32} was rejected"):
+    with pytest.raises(
+        GoalRejectedError,
+        match=r"/fibonacci: goal [0-9a-f]{32} was rejected .*; ROS sends no reason",
+    ):
         await ends.client.send_goal(Fibonacci.Goal())
     with pytest.raises(GoalRejectedError):
         await ends.client.call(Fibonacci.Goal())
     assert ends.client._goals == {}
+
+
+async def test_a_server_logs_rejected_goals_once_a_second(
+    ends: Ends, caplog: pytest.LogCaptureFixture
+) -> None:
+    """The log is where the people of the client look next, and clients do not fill it."""
+    ends.server.register_goal_callback(lambda _goal: GoalResponse.REJECT)
+
+    with caplog.at_level(logging.INFO):
+        for _ in range(3):
+            with pytest.raises(GoalRejectedError):
+                await ends.client.call(Fibonacci.Goal())
+
+    (line,) = [text for text in caplog.messages if "rejected" in text]
+    assert line == "action server /fibonacci: goal_callback rejected a goal"
 
 
 async def test_an_id_of_the_caller_is_used_and_rejected_the_second_time(ends: Ends) -> None:
