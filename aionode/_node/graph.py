@@ -127,13 +127,25 @@ class NodeGraphQueries(NodeBase):
 
     # Topics and services by name
 
-    def get_topic_names_and_types(self, no_demangle: bool = False) -> NamesAndTypes:  # noqa: ARG002  # rclpy's signature
-        """Return every topic with its types; `no_demangle` is ignored."""
-        return self.graph.names_and_types(*TOPIC_KINDS)
+    def get_topic_names_and_types(
+        self,
+        no_demangle: bool = False,  # noqa: ARG002  # rclpy's signature
+        *,
+        include_hidden: bool = True,
+    ) -> NamesAndTypes:
+        """Return every topic with its types; `no_demangle` is ignored.
 
-    def get_service_names_and_types(self) -> NamesAndTypes:
-        """Return every service that has a server or a client, with its types."""
-        return self.graph.names_and_types(*SERVICE_KINDS)
+        Hidden topics, which have a name with a part that begins with ``_``, are those of actions
+        and of tools; without `include_hidden` they are left out, as ``ros2 topic list`` does.
+        """
+        return shown(self.graph.names_and_types(*TOPIC_KINDS), include_hidden)
+
+    def get_service_names_and_types(self, *, include_hidden: bool = True) -> NamesAndTypes:
+        """Return every service that has a server or a client, with its types.
+
+        Without `include_hidden`, hidden services are left out, such as those of actions.
+        """
+        return shown(self.graph.names_and_types(*SERVICE_KINDS), include_hidden)
 
     def get_action_names_and_types(self) -> NamesAndTypes:
         """Return every action, with its types."""
@@ -263,6 +275,11 @@ def topic_endpoint_info(endpoint: EndpointInfo) -> TopicEndpointInfo:
         endpoint_gid=list(endpoint.gid),
         qos_profile=endpoint.qos,
     )
+
+
+def shown(found: NamesAndTypes, include_hidden: bool) -> NamesAndTypes:
+    """Return names and types, with or without those of hidden names."""
+    return found if include_hidden else [one for one in found if not names.is_hidden(one[0])]
 
 
 def actions_among(topics: NamesAndTypes) -> NamesAndTypes:

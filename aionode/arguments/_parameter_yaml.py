@@ -15,6 +15,7 @@ the YAML parser, not its values.
 
 from __future__ import annotations
 
+import base64
 import re
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -36,7 +37,18 @@ __all__ = [
     "read_parameter_file",
 ]
 
-ParameterValueType = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
+ParameterValueType = (
+    bool
+    | int
+    | float
+    | str
+    | bytes
+    | list[bool]
+    | list[int]
+    | list[float]
+    | list[str]
+    | list[bytes]
+)
 """The values that a parameter in a file may have."""
 
 PARAMETERS_KEY = "ros__parameters"
@@ -321,7 +333,7 @@ def read_value(events: Events) -> ParameterValueType:
         text = events.next.value
         value = read_scalar(events)
         if values and type(value) is not type(values[0]):
-            kinds = {bool: "bool", int: "integer", float: "double", str: "string"}
+            kinds = {bool: "bool", int: "integer", float: "double", str: "string", bytes: "byte"}
             events.fail(
                 f"Sequence should be of same type: it starts with type {kinds[type(values[0])]}, "
                 f"and '{text}' is of type {kinds[type(value)]}"
@@ -331,12 +343,17 @@ def read_value(events: Events) -> ParameterValueType:
     return values
 
 
-def read_scalar(events: Events) -> bool | int | float | str:
-    """Read one scalar."""
+def read_scalar(events: Events) -> bool | int | float | str | bytes:
+    """Read one scalar; ``!!binary`` stands for bytes, as ``ros2 param dump`` writes them."""
     if events.is_empty_scalar():
         events.fail("no value; for an empty string write ''")
     event = events.take("Scalar")
     text: str = event.value
     if event.style in {"'", '"'} or event.tag == "tag:yaml.org,2002:str":
         return text
+    if event.tag == "tag:yaml.org,2002:binary":
+        try:
+            return base64.b64decode(text)
+        except ValueError as error:
+            events.fail(f"'{text}' is not in Base64: {error}")
     return parse_scalar(text)

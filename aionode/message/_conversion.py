@@ -1,7 +1,8 @@
 """Converts messages to builtin types, JSON and YAML, and back.
 
-The builtin types are dict, list, int, float, bool and str. Bytes become lists of numbers and a
-single ``byte`` becomes a number, as ROS prints them. JSON has no NaN and infinities: they are
+The builtin types are dict, list, int, float, bool and str. Bytes become lists of numbers, and a
+single ``byte`` becomes a number; in YAML a ``byte`` is a string of one character, as ROS prints it,
+and is read from either. JSON has no NaN and infinities: they are
 written and read as the strings ``"NaN"``, ``"Infinity"`` and ``"-Infinity"``; YAML has its own
 notation (``.nan``, ``.inf``, ``-.inf``).
 """
@@ -11,8 +12,9 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, TypeVar
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeVar
 
 import msgspec
 
@@ -20,9 +22,6 @@ from aionode.errors import MessageError
 from aionode.message._field_types import FieldType
 from aionode.message._message import Message, message_class, type_name
 from aionode.message._validation import fit, given, listed
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 __all__ = ["from_builtins", "from_json", "from_yaml", "to_builtins", "to_json", "to_yaml"]
 
@@ -32,13 +31,52 @@ FLOAT_STRINGS = re.compile(r"NaN|-?Infinity|[-+]?\d+[eE][-+]?\d+")
 """Strings accepted as floats: NaN and infinity in JSON, and 1e5, which is text in YAML 1.1."""
 
 
-def to_builtins(message: Message) -> dict[str, Any]:
+@dataclass(frozen=True, slots=True)
+class Form:
+    """How values are written that have more than one form.
+
+    Attributes:
+        as_float: Returns a float.
+        as_byte: Returns a `byte`, given as its number.
+        truncate: Most elements of an array and characters of a string; None for all.
+    """
+
+    as_float: Callable[[float], object] = float
+    as_byte: Callable[[int], object] = int
+    truncate: int | None = None
+
+    def converter(self, type_: FieldType) -> Callable[[Any], object] | None:
+        """Return what converts each value of a type; None for those that have one form."""
+        if type_.nested is not None:
+            return lambda message: plain(message, self)
+        if type_.kind in {"float32", "float64"}:
+            return self.as_float
+        if type_.kind == "byte":
+            return self.as_byte
+        return self.cut if type_.kind in {"string", "wstring"} else None
+
+    def cut(self, text: str) -> str:
+        """Return a string, with ``...`` in place of the characters beyond the limit."""
+        if self.truncate is None or len(text) <= self.truncate:
+            return text
+        return f"{text[: self.truncate]}..."
+
+
+def to_builtins(message: Message, *, truncate: int | None = None) -> dict[str, Any]:
     """Return a message as dicts, lists, numbers, bools and strings, in the order of its fields.
+
+    Args:
+        message: The message.
+        truncate: Most elements of an array and characters of a string; ``...`` stands for the rest,
+            as in ``ros2 topic echo``, which shows 128. By default nothing is left out.
 
     Raises:
         MessageError: A value does not fit its field.
+        ValueError: `truncate` is negative.
     """
-    return plain(validated(message), lambda number: number)
+    if truncate is not None and truncate < 0:
+        raise ValueError(f"truncate: {truncate} given; it is a number of elements, at least 0")
+    return plain(validated(message), Form(truncate=truncate))
 
 
 def from_builtins(cls: type[MessageT], data: object) -> MessageT:
@@ -58,7 +96,7 @@ def to_json(message: Message) -> str:
     Raises:
         MessageError: A value does not fit its field.
     """
-    return msgspec.json.encode(plain(validated(message), json_float)).decode()
+    return msgspec.json.encode(plain(validated(message), Form(json_float))).decode()
 
 
 def from_json(cls: type[MessageT], text: str | bytes) -> MessageT:
@@ -83,7 +121,7 @@ def to_yaml(message: Message, *, flow_style: bool = False) -> str:
     import yaml
 
     text: str = yaml.dump(
-        to_builtins(message),
+        plain(validated(message), Form(as_byte=chr)),
         Dumper=getattr(yaml, "CSafeDumper", yaml.SafeDumper),  # libyaml is optional
         allow_unicode=True,
         default_flow_style=flow_style,
@@ -129,27 +167,24 @@ def json_float(number: float) -> float | str:
     return "NaN" if math.isnan(number) else "Infinity" if number > 0 else "-Infinity"
 
 
-def plain(message: Message, as_float: Callable[[float], object]) -> dict[str, Any]:
+def plain(message: Message, form: Form) -> dict[str, Any]:
     """Return a valid message as builtin types."""
     return {
-        field.name: plain_value(field.type, getattr(message, field.name), as_float)
+        field.name: plain_value(field.type, getattr(message, field.name), form)
         for field in message.__ros_fields__
     }
 
 
-def plain_value(type_: FieldType, value: Any, as_float: Callable[[float], object]) -> object:
+def plain_value(type_: FieldType, value: Any, form: Form) -> object:
     """Return the valid value of a field as builtin types."""
-    if type_.nested is not None:
-        if type_.container == "single":
-            return plain(value, as_float)
-        return [plain(item, as_float) for item in value]
-    if type_.kind in {"float32", "float64"}:
-        return (
-            as_float(value) if type_.container == "single" else list(map(as_float, value.tolist()))
-        )
-    if type_.form == "value":
-        return value[0] if type_.kind == "byte" else value
-    return value.tolist() if type_.form == "ndarray" else list(value)
+    convert = form.converter(type_)
+    if type_.container == "single":
+        return value if convert is None else convert(value[0] if type_.kind == "byte" else value)
+    cut = form.truncate is not None and len(value) > form.truncate
+    shown = value[: form.truncate] if cut else value
+    items = shown.tolist() if type_.form == "ndarray" else list(shown)
+    items = items if convert is None else list(map(convert, items))
+    return [*items, "..."] if cut else items
 
 
 def message_from(cls: type[Message], data: object, path: str) -> Message:
@@ -182,7 +217,7 @@ def value_from(type_: FieldType, value: object, path: str) -> object:
         return [message_from(type_.nested, item, f"{path}[{i}]") for i, item in items]
     if type_.container == "single":
         value = scalar_from(type_, value, path)
-    elif type_.kind in {"float32", "float64"} and isinstance(value, list | tuple):
+    elif type_.kind in {"float32", "float64", "byte"} and isinstance(value, list | tuple):
         value = [scalar_from(type_, item, f"{path}[{i}]") for i, item in enumerate(value)]
     fitted = fit(type_, value, path)
     if type_.form == "ndarray" and fitted is not value and fitted.flags.owndata:
@@ -191,7 +226,13 @@ def value_from(type_: FieldType, value: object, path: str) -> object:
 
 
 def scalar_from(type_: FieldType, value: object, path: str) -> object:
-    """Return a single value; numbers are accepted for bytes, and strings for special floats."""
+    """Return a single value.
+
+    For a `byte`, a number or a string of one character is accepted, and for special floats a
+    string.
+    """
+    if type_.kind == "byte" and isinstance(value, str) and len(value) == 1 and ord(value) < 256:
+        return bytes((ord(value),))
     if type_.kind == "byte" and not isinstance(value, bytes):
         return bytes((fit(FieldType("uint8"), value, path),))
     if type_.kind in {"float32", "float64"} and isinstance(value, str):

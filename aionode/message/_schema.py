@@ -157,11 +157,11 @@ def validated(cls: type[Message], value: object) -> Message:
 
 def serialized(message: Message, info: SerializationInfo) -> dict[str, Any]:
     """Return a message as builtin types, only with values that JSON has in its JSON mode."""
-    from aionode.message._conversion import json_float, plain, to_builtins
+    from aionode.message._conversion import Form, json_float, plain, to_builtins
     from aionode.message._snapshot import snapshot
 
     if info.mode == "json":
-        return plain(snapshot(message), json_float)
+        return plain(snapshot(message), Form(json_float))
     return to_builtins(message)
 
 

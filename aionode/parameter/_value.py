@@ -252,19 +252,31 @@ def parameter_value_to_python(parameter_value: rcl_msg.ParameterValue) -> Any:
 
 
 def get_parameter_value(string_value: str) -> rcl_msg.ParameterValue:
-    """Return the value of a text, by the rules of parameter files.
+    """Return the value of a text as ``ros2 param set`` reads it: as PyYAML does.
 
-    What is no value there, such as a list of mixed types, is a string.
+    What PyYAML refuses, and what no parameter holds, such as a list of mixed types, is a string.
+    Parameter files and ``-p`` have other rules: those of rcl.
     """
-    try:
-        from aionode.arguments import parse_value  # programs that read no text start without
+    value = loaded_yaml(string_value)
+    if isinstance(value, list):
+        for (kind,), type_ in ARRAYS:  # an empty list is one of bools, as in rclpy
+            items = list(map(kind, value)) if all(isinstance(it, kind) for it in value) else None
+            if items is not None and type_.check(items):
+                return Parameter("", type_, items).get_parameter_value()
+    elif any(type_.check(value) for _, type_ in ELEMENTS):
+        return Parameter("", value=value).get_parameter_value()
+    return Parameter("", value=string_value).get_parameter_value()
 
-        value = parse_value(string_value)
-    except ParameterFileError:
-        value = string_value
-    if value == []:
-        return Parameter("", ParameterType.BOOL_ARRAY, []).get_parameter_value()  # as in rclpy
-    return Parameter("", value=value).get_parameter_value()
+
+def loaded_yaml(text: str) -> Any:
+    """Return what PyYAML reads; the text itself where that is not YAML."""
+    import yaml  # programs that read no text start without
+
+    try:
+        return yaml.safe_load(text)
+    except (yaml.YAMLError, ArithmeticError, LookupError, RecursionError, TypeError, ValueError):
+        # Those that are not PyYAML's are from its constructors: an empty `!!int`, for example.
+        return text
 
 
 def parameter_dict_from_yaml_file(

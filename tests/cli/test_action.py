@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+import json
 from collections.abc import Callable
 from typing import Any
 
 import pytest
 
 from aionode import Node
-from aionode.action import ActionServer, CancelResponse, GoalResponse
+from aionode.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from aionode.cli._support.nouns import ACTION
 from aionode.cli._verbs.action import info, send_goal
 from aionode.errors import CommandError
@@ -164,6 +165,22 @@ async def test_list_info_type_and_find(tool: Node, server: Node, screen: Any) ->
         f"{FIBONACCI}\n"
         "/fibonacci\n"
     )
+
+
+async def test_clients_are_counted_by_node(
+    tool: Node, server: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """A node with two clients is one, as ros2 counts."""
+    users = [node_factory("driver"), node_factory("arm")]
+    for user in (*users, users[0]):
+        ActionClient(user, Fibonacci, "/fibonacci")
+
+    await info(tool, "/fibonacci", output=screen.output)
+    await info(tool, "/fibonacci", output=screen.json_output)
+
+    *lines, record = screen.text.splitlines()
+    assert lines[1:4] == ["Action clients: 2", "    /arm", "    /driver"]
+    assert [each["node"] for each in json.loads(record)["clients"]] == ["/arm", "/driver"]
 
 
 async def test_an_unknown_action_is_named(tool: Node, server: Node, screen: Any) -> None:

@@ -18,7 +18,7 @@ from aionode.cli._support.options import hertz, natural, positive, seconds, whol
 from aionode.cli._support.yaml_messages import Filler, message_from_yaml
 from aionode.cli._verbs.param import parameter_value, pattern_from
 from aionode.clock import Time
-from aionode.errors import AionodeError, CommandError, ParameterFileError
+from aionode.errors import AionodeError, CommandError
 from aionode.interfaces.geometry_msgs.msg import PoseArray, TwistStamped
 from aionode.interfaces.rcl_interfaces.msg import Parameter
 from aionode.interfaces.sensor_msgs.msg import Image
@@ -86,7 +86,7 @@ def test_any_text_is_a_value_of_a_parameter_or_an_error(text: str) -> None:
     """Of `param set`."""
     try:
         parameter_value(text)
-    except ParameterFileError as error:
+    except CommandError as error:
         expect_one_line(error)
 
 

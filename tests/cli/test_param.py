@@ -82,7 +82,7 @@ async def test_list_can_be_narrowed(tool: Node, owner: Node, screen: Any) -> Non
         ("switch", False, "Boolean value is: False"),
         ("number", 3, "Integer value is: 3"),
         ("speed2", 1.5, "Double value is: 1.5"),
-        ("data", b"\x01\x02", "Byte values are: [1, 2]"),
+        ("data", b"\x01\x02", "Byte values are: [b'\\x01', b'\\x02']"),
         ("switches", [True, False], "Boolean values are: [True, False]"),
         ("numbers", [1, 2], "Integer values are: [1, 2]"),
         ("speeds", [0.5], "Double values are: [0.5]"),
@@ -126,6 +126,40 @@ async def test_set_says_that_it_is_done(
 
 
 @pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("[x, y]", ["x", "y"]),
+        ("[1_000, 2]", [1000, 2]),
+        ("1_000", 1000),
+        ("1:30", 90),
+        ("1e3", "1e3"),
+        ("y", "y"),
+        ("[1, 2.0]", "[1, 2.0]"),
+        ("2026-11-23", "2026-11-23"),
+        ("null", "null"),
+        ("[]", []),
+        (str(2**63), str(2**63)),
+        (f"[{2**63}]", f"[{2**63}]"),
+    ],
+)
+async def test_set_reads_values_as_ros2_does(
+    text: str, value: Any, tool: Node, owner: Node, screen: Any
+) -> None:
+    """With PyYAML; the rules of parameter files are those of rcl, where ``y`` is a bool."""
+    owner.declare_parameter("any", None, ParameterDescriptor(dynamic_typing=True))
+
+    await set_parameter(tool, "/param_node", "any", text, output=screen.output)
+
+    assert owner.get_parameter("any").value == value
+
+
+async def test_set_refuses_a_mapping(tool: Node, owner: Node, screen: Any) -> None:
+    """No parameter holds one; ros2 ends with a traceback."""
+    with pytest.raises(CommandError, match=r"value '\{a: 1\}': a mapping"):
+        await set_parameter(tool, "/param_node", "name", "{a: 1}", output=screen.output)
+
+
+@pytest.mark.parametrize(
     ("name", "reason"),
     [
         ("name", "Wrong parameter type, expected 'Type.STRING' got 'Type.INTEGER'"),
@@ -145,7 +179,7 @@ async def test_a_failed_set_is_an_error(
 
 async def test_malformed_yaml_is_no_string(tool: Node, owner: Node, screen: Any) -> None:
     """Otherwise text with an unclosed bracket would be stored as a string."""
-    with pytest.raises(ParameterFileError, match=r"value '\[1, 2'.*not YAML"):
+    with pytest.raises(CommandError, match=r"value '\[1, 2'.*not YAML"):
         await set_parameter(tool, "/param_node", "name", "[1, 2", output=screen.output)
 
 
@@ -221,6 +255,37 @@ async def test_dump_prints_a_parameter_file(tool: Node, owner: Node, screen: Any
         "    use_sim_time: false\n"
         "\n"
     )
+
+
+async def test_dump_prints_the_lines_of_ros2(tool: Node, owner: Node, screen: Any) -> None:
+    """Long strings are folded, other scripts escaped, bytes in Base64: PyYAML's defaults."""
+    owner.set_parameters([Parameter("name", value="word " * 20 + "é")])
+    owner.declare_parameter("data", b"\x01\xff")
+
+    await dump(tool, "/param_node", output=screen.output)
+
+    assert screen.text.startswith(
+        "/param_node:\n"
+        "  ros__parameters:\n"
+        "    data:\n"
+        "    - !!binary |\n"
+        "      AQ==\n"
+        "    - !!binary |\n"
+        "      /w==\n"
+        '    name: "word word word word word word word word word word word word word word word\\\n'
+        '      \\ word word word word word \\xE9"\n'
+    )
+
+
+async def test_bytes_are_numbers_in_records(tool: Node, owner: Node, screen: Any) -> None:
+    """JSON has no bytes."""
+    owner.declare_parameter("data", b"\x01\xff")
+
+    await get(tool, "/param_node", "data", output=screen.json_output)
+    await dump(tool, "/param_node", output=screen.json_output)
+
+    assert screen.records[0]["value"] == [1, 255]
+    assert screen.records[1]["/param_node"]["ros__parameters"]["data"] == [1, 255]
 
 
 async def test_what_dump_prints_load_reads(

@@ -45,7 +45,7 @@ async def test_each_event_is_yaml_and_three_dashes(
 
     first, second, end = screen.text.split("---\n")
     assert first.startswith("info:\n  event_type: REQUEST_RECEIVED\n  stamp:\n    sec: ")
-    assert "  client_gid: '<array type: char[16]>'\n  sequence_number: 1\n" in first
+    assert "  client_gid: '<array type: uint8[16]>'\n  sequence_number: 1\n" in first
     assert "event_type: RESPONSE_SENT" in second
     assert end == ""
 

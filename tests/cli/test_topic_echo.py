@@ -13,7 +13,14 @@ from aionode.cli._verbs.topic_echo import echo
 from aionode.errors import CommandError
 from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
 from aionode.interfaces.sensor_msgs.msg import JointState
-from aionode.interfaces.std_msgs.msg import Header, Int32MultiArray, String, UInt8MultiArray
+from aionode.interfaces.std_msgs.msg import (
+    ByteMultiArray,
+    Header,
+    Int32MultiArray,
+    String,
+    UInt8MultiArray,
+)
+from aionode.interfaces.trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from aionode.testing import FaultyTransport, settle
 from aionode.transport.local import LocalTransport
 
@@ -128,8 +135,48 @@ async def test_no_arr_and_no_str_describe_what_they_leave_out(
 
     text = await echoed(running, tool, screen, talker, message, no_arr=True, no_str=True)
 
-    assert "position: '<sequence type: float64, length: 2>'" in text
+    assert "position: '<sequence type: double, length: 2>'" in text
     assert "frame_id: '<string length: <3>>'" in text
+
+
+@pytest.mark.parametrize(
+    ("options", "shown"),
+    [
+        ({}, 'data:\n- "\\x01"\n- a\n- ÿ\n---\n'),
+        ({"flow_style": True}, 'data: ["\\x01", a, ÿ]\n---\n'),
+        ({"truncate_length": 1, "flow_style": True}, "data: [\"\\x01\", '...']\n---\n"),
+        ({"no_arr": True}, "data: '<sequence type: octet, length: 3>'\n---\n"),
+        ({"csv": True}, "b'\\x01',b'a',b'\\xff'\n"),
+        ({"field": "data"}, "[b'\\x01', b'a', b'\\xff']\n---\n"),
+    ],
+)
+async def test_bytes_are_characters(
+    options: dict[str, Any], shown: str, running: Any, tool: Node, talker: Node, screen: Any
+) -> None:
+    """ros2 prints a `byte` so, and a row of CSV has Python's form of it."""
+    message = ByteMultiArray(data=b"\x01a\xff")
+
+    text = await echoed(running, tool, screen, talker, message, **options)
+
+    assert text.endswith(shown)
+
+
+async def test_flow_style_is_that_of_arrays(
+    running: Any, tool: Node, talker: Node, screen: Any
+) -> None:
+    """ros2 keeps a line for each field; only messages within arrays are in braces."""
+    message = JointTrajectory(
+        joint_names=["a", "b"], points=[JointTrajectoryPoint(positions=[1.0, 2.0])]
+    )
+
+    text = await echoed(running, tool, screen, talker, message, flow_style=True)
+
+    assert text == (
+        "header:\n  stamp:\n    sec: 0\n    nanosec: 0\n  frame_id: ''\n"
+        "joint_names: [a, b]\n"
+        "points: [{positions: [1.0, 2.0], velocities: [], accelerations: [], effort: [], "
+        "time_from_start: {sec: 0, nanosec: 0}}]\n---\n"
+    )
 
 
 @pytest.mark.parametrize(

@@ -34,6 +34,30 @@ def test_two_messages_are_one_too_many() -> None:
         message_from_yaml(String, "data: a\n---\ndata: b\n")
 
 
+@pytest.mark.parametrize(
+    ("text", "key", "meant"),
+    [
+        ("{data:hi}", "data:hi", "data: hi"),
+        ("data:hi", "data:hi", "data: hi"),
+        ("{header: {frame_id:map}}", "frame_id:map", "frame_id: map"),
+        ("{pose: {position: {x:1, y: 2}}}", "x:1", "x: 1"),
+    ],
+)
+def test_a_missing_blank_is_named(text: str, key: str, meant: str) -> None:
+    """YAML takes such a pair for one word, so the error spoke of a field ``order:3``."""
+    with pytest.raises(CommandError) as raised:
+        message_from_yaml(PoseStamped, text)
+
+    says = str(raised.value)
+    assert f"field '{key}'; YAML wants a blank after the colon: '{meant}'" in says
+
+
+@pytest.mark.parametrize("text", ["{data: 'a:b'}", "{data: a:b}"])
+def test_a_colon_within_a_value_is_one(text: str) -> None:
+    """Only a key without a value is misspelled."""
+    assert message_from_yaml(String, text) == String(data="a:b")
+
+
 def test_a_stamp_is_set_deep_inside() -> None:
     """And again for the next message."""
     filler = Filler(PoseStamped, "{header: {stamp: now, frame_id: map}}")

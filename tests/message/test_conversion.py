@@ -18,7 +18,15 @@ from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticSt
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.geometry_msgs.msg import Polygon, Twist, Vector3
 from aionode.interfaces.sensor_msgs.msg import Image, Imu, JointState
-from aionode.interfaces.std_msgs.msg import Empty, Float32, Float64, Header, Int8, String
+from aionode.interfaces.std_msgs.msg import (
+    ByteMultiArray,
+    Empty,
+    Float32,
+    Float64,
+    Header,
+    Int8,
+    String,
+)
 from aionode.message import (
     Message,
     from_builtins,
@@ -241,3 +249,30 @@ def test_every_message_survives_plain_values_json_and_yaml(message: Message) -> 
     assert from_builtins(cls, to_builtins(message)) == message
     assert from_json(cls, to_json(message)) == message
     assert from_yaml(cls, to_yaml(message)) == message
+
+
+def test_long_arrays_and_strings_can_be_truncated() -> None:
+    """As ``ros2 topic echo`` prints them; an image has megabytes."""
+    message = JointState(name=["abcd", "e", "f"], position=[1.0, 2.0])
+
+    plain = to_builtins(message, truncate=2)
+
+    assert (plain["name"], plain["position"]) == (["ab...", "e", "..."], [1.0, 2.0])
+    assert plain["header"]["frame_id"] == ""
+    assert to_builtins(Image(data=bytes(1000)), truncate=1)["data"] == [0, "..."]
+
+
+def test_a_negative_limit_is_refused() -> None:
+    """Python would count it from the end."""
+    with pytest.raises(ValueError, match="truncate: -1 given"):
+        to_builtins(String(), truncate=-1)
+
+
+def test_a_byte_is_a_character_in_yaml() -> None:
+    """As ros2 prints it; numbers are accepted as well."""
+    message = DiagnosticStatus(level=b"\x02")
+
+    assert 'level: "\\x02"' in to_yaml(message)
+    assert from_yaml(DiagnosticStatus, to_yaml(message)) == message
+    assert from_yaml(DiagnosticStatus, "{level: 2}") == message
+    assert from_yaml(ByteMultiArray, "{data: [1, a]}").data == b"\x01a"

@@ -361,6 +361,24 @@ async def test_a_node_knows_its_names(context: Context) -> None:
     assert node.resolve_service_name("move") == "/robot1/move"
 
 
+async def test_hidden_names_can_be_left_out(context: Context) -> None:
+    """Those of actions and tools; `ros2 topic list` shows none of them either."""
+    async with Node("arm", context=context) as node:
+        node.create_publisher(String, "/words", 10)
+        node.create_publisher(String, "/_words", 10)
+        node.create_service(AddTwoInts, "/arm/_add", lambda request: request)
+
+        topics = dict(node.get_topic_names_and_types(include_hidden=False))
+        services = dict(node.get_service_names_and_types(include_hidden=False))
+
+        assert "/words" in topics
+        assert "/_words" not in topics
+        assert "/arm/get_parameters" in services
+        assert "/arm/_add" not in services
+        assert "/_words" in dict(node.get_topic_names_and_types())
+        assert "/arm/_add" in dict(node.get_service_names_and_types())
+
+
 async def test_the_graph_shows_nodes_topics_and_services(context: Context) -> None:
     """What `aionode node list` and `topic list` are made of."""
     async with Node("arm", namespace="/robot1", context=context) as node:

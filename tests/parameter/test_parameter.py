@@ -159,9 +159,13 @@ def test_a_message_of_an_unknown_type_is_an_error() -> None:
     [
         ("true", True),
         ("3", 3),
-        ("1e3", 1000.0),
+        ("1.0e3", "1.0e3"),
+        ("1.0e+3", 1000.0),
         ("[1, 2]", [1, 2]),
+        ("[x, y]", ["x", "y"]),
+        ("[true, 1]", [1, 1]),
         ("[1, a]", "[1, a]"),
+        ("!!int ''", "!!int ''"),
         ("{a: 1}", "{a: 1}"),
         ("hello", "hello"),
         ("'7'", "7"),
@@ -169,7 +173,7 @@ def test_a_message_of_an_unknown_type_is_an_error() -> None:
         ("a: b: c", "a: b: c"),
     ],
 )
-def test_a_text_is_guessed_by_the_rules_of_files(text: str, value: object) -> None:
+def test_a_text_is_guessed_as_rclpy_does(text: str, value: object) -> None:
     """`param set` takes one; what is no value is a string."""
     guessed = parameter.get_parameter_value(text)
 

@@ -93,7 +93,7 @@ def call_command(json: bool, values: str | None, stdin: bool, **options: Any) ->
 )
 @click.option("--no-arr", is_flag=True, help="Describe arrays instead of printing them.")
 @click.option("--no-str", is_flag=True, help="Describe strings instead of printing them.")
-@click.option("--flow-style", is_flag=True, help="Print each event in braces, on one line.")
+@click.option("--flow-style", is_flag=True, help="Print each array in brackets, on one line.")
 @click.option("--once", is_flag=True, help="Print one event and end.")
 @click.option("--timeout", metavar="N", type=positive, help="End after N seconds.")
 @json_option

@@ -89,7 +89,7 @@ add_type_and_find(topic, TOPIC, "msg")
 )
 @click.option("--no-arr", is_flag=True, help="Describe arrays instead of printing them.")
 @click.option("--no-str", is_flag=True, help="Describe strings instead of printing them.")
-@click.option("--flow-style", is_flag=True, help="Print each message in braces, on one line.")
+@click.option("--flow-style", is_flag=True, help="Print each array in brackets, on one line.")
 @click.option("--no-lost-messages", is_flag=True, help="Do not report lost messages.")
 @click.option("--raw", is_flag=True, help="Print the serialized bytes.")
 @click.option(

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -11,12 +13,19 @@ from aionode.message import Message, fields, type_name
 from aionode.qos import HistoryPolicy
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
+    from aionode.cli._support.output import Output
     from aionode.graph import EndpointInfo
     from aionode.message import FieldType
 
-__all__ = ["PrintOptions", "csv_line", "endpoint_text", "field_of", "names_text", "yaml_text"]
+__all__ = [
+    "PrintOptions",
+    "byte_form",
+    "csv_line",
+    "endpoint_text",
+    "field_of",
+    "names_text",
+    "yaml_text",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,11 +36,13 @@ class PrintOptions:
         limit: Maximum elements of an array and characters of a string; None prints all.
         no_arr: Whether arrays are described instead of printed.
         no_str: Whether strings are described instead of printed.
+        as_byte: Returns a `byte` as it is printed, given its number.
     """
 
     limit: int | None = None
     no_arr: bool = False
     no_str: bool = False
+    as_byte: Callable[[int], object] = int
 
     def message(self, msg: Message) -> dict[str, Any]:
         """Return a message as plain values."""
@@ -47,7 +58,7 @@ class PrintOptions:
         if isinstance(value, str):
             return self._string(value)
         if isinstance(value, bytes) and type_ is not None and type_.container == "single":
-            return value[0]
+            return self.as_byte(value[0])
         if isinstance(value, bool | int | float):
             return value
         return self._many(value, type_)
@@ -65,44 +76,66 @@ class PrintOptions:
         cut = self.limit is not None and len(values) > self.limit
         shown = values[: self.limit] if cut else values
         plain = shown.tolist() if hasattr(shown, "tolist") else list(shown)
-        plain = [v if type(v) in {int, float, bool} else self.value(v) for v in plain]
+        if type_ is not None and type_.kind == "byte":
+            plain = list(map(self.as_byte, plain))
+        plain = [v if type(v) in {int, float, bool, bytes} else self.value(v) for v in plain]
         return [*plain, "..."] if cut else plain
 
 
+def byte_form(output: Output, *, csv: bool) -> Callable[[int], object]:
+    """Return what makes a `byte` of its number as ros2 prints it: a character, in CSV bytes."""
+    if output.json:
+        return int
+    return (lambda number: bytes((number,))) if csv else chr
+
+
+IDL_NAMES = {
+    "float32": "float",
+    "float64": "double",
+    "byte": "octet",
+    "bool": "boolean",
+    "char": "uint8",
+}
+"""The names of types in IDL, where they differ from those in ``.msg`` files."""
+
+
 def described(values: Any, type_: FieldType) -> str:
-    """Return the description of an array: its type and length."""
-    name = type_name(type_.nested) if type_.nested is not None else type_.kind
+    """Return the description of an array: its type, as ros2 names it, and its length."""
+    nested = type_.nested
+    name = IDL_NAMES.get(type_.kind, type_.kind) if nested is None else type_name(nested)
     if type_.container == "array":
         return f"<array type: {name}[{type_.size}]>"
     bound = f"[{type_.size}]" if type_.container == "bounded" else ""
     return f"<sequence type: {name}{bound}, length: {len(values)}>"
 
 
-def yaml_text(
-    plain: object, *, flow_style: bool = False, quoted: Callable[[str], bool] | None = None
-) -> str:
-    """Return plain values as YAML; strings that `quoted` selects are put in quotes."""
+def yaml_text(plain: object, *, flow_style: bool = False) -> str:
+    """Return plain values as YAML; with `flow_style`, lists are in brackets on one line."""
     import yaml
 
-    base: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)  # libyaml is optional
-    dumper: Any = base
-    if quoted is not None:
-        dumper = type("Quoting", (base,), {})
-
-        def represent(to: Any, text: str) -> Any:
-            style = "'" if quoted(text) else None
-            return to.represent_scalar("tag:yaml.org,2002:str", text, style)
-
-        dumper.add_representer(str, represent)
     text: str = yaml.dump(
         plain,
-        Dumper=dumper,
+        Dumper=block_mappings(),
         allow_unicode=True,
         default_flow_style=flow_style,
         sort_keys=False,
         width=2**31 - 1,
     )
     return text
+
+
+@functools.cache
+def block_mappings() -> Any:
+    """Return PyYAML's dumper, but with a line for each key, as ros2 prints messages."""
+    import yaml
+
+    base: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)  # libyaml is optional
+    dumper: Any = type("BlockMappings", (base,), {})
+    tag = "tag:yaml.org,2002:map"
+    dumper.add_representer(
+        dict, lambda to, mapping: to.represent_mapping(tag, mapping, flow_style=False)
+    )
+    return dumper
 
 
 def csv_line(plain: Any) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
-from aionode.cli._support.formatting import yaml_text
 from aionode.cli._support.lookup import absolute
 
 if TYPE_CHECKING:
@@ -50,12 +49,14 @@ LABELS = (
 )
 
 
-def plain(parameter: Parameter) -> Any:
-    """Return the value of a parameter for printing and YAML: bytes become numbers."""
+def plain(parameter: Parameter, *, as_numbers: bool = False) -> Any:
+    """Return the value of a parameter for printing, with bytes as ros2 has them or as numbers."""
     value = parameter.value
-    if isinstance(value, list | tuple | bytes):
-        return [item[0] if isinstance(item, bytes) else item for item in value]
-    return value
+    if isinstance(value, bytes | bytearray):
+        value = [bytes((each,)) for each in value]
+    if not isinstance(value, list | tuple):
+        return value
+    return [each[0] if as_numbers and isinstance(each, bytes) else each for each in value]
 
 
 def description(descriptor: ParameterDescriptor) -> list[str]:
@@ -98,23 +99,34 @@ def descriptor_record(node_name: str, descriptor: ParameterDescriptor) -> dict[s
     }
 
 
-def file_form(parameters: Iterable[Parameter]) -> dict[str, Any]:
+def file_form(parameters: Iterable[Parameter], *, as_numbers: bool = False) -> dict[str, Any]:
     """Return parameters in the form of a parameter file: sorted, nested where names have dots."""
     values: dict[str, Any] = {}
     # `a` sorts before `a.b`; then `a.b` cannot be nested below it and keeps its dotted name.
     for parameter in sorted(parameters, key=attrgetter("name")):
-        insert(values, parameter.name, plain(parameter))
+        insert(values, parameter.name, plain(parameter, as_numbers=as_numbers))
     return ordered(values)
 
 
 def file_text(record: dict[str, Any]) -> str:
-    """Return the text of a parameter file, quoting strings that its rules would read as numbers.
+    """Return the text of a parameter file, in the lines of ``ros2 param dump``.
 
-    These rules differ from YAML's: ``INF`` is a number, for example.
+    Strings that the rules of such files would read as numbers are quoted, which ros2 leaves out.
+    Those rules differ from YAML's: ``INF`` is a number, for example.
     """
+    import yaml
+
     from aionode.arguments._parameter_yaml import parse_scalar
 
-    return yaml_text(record, quoted=lambda text: parse_scalar(text) != text)
+    dumper: Any = type("Quoting", (yaml.SafeDumper,), {})
+
+    def represent(to: Any, text: str) -> Any:
+        style = None if parse_scalar(text) == text else "'"
+        return to.represent_scalar("tag:yaml.org,2002:str", text, style)
+
+    dumper.add_representer(str, represent)
+    text: str = yaml.dump(record, Dumper=dumper, default_flow_style=False)
+    return text
 
 
 def insert(values: dict[str, Any], name: str, value: Any) -> None:

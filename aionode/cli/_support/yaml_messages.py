@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +13,7 @@ if TYPE_CHECKING:
     from aionode.clock import Time
     from aionode.message import Message
 
-__all__ = ["Filler", "message_from_yaml"]
+__all__ = ["Filler", "message_from_yaml", "shortened"]
 
 DEEPEST = 100
 """Maximum nesting depth of values."""
@@ -54,6 +55,8 @@ def plain_values(text: str, what: str) -> dict[str, Any]:
         )
     # `topic echo` prints three dashes after a message, which begin another, empty document.
     values = documents[0] if documents else {}
+    if isinstance(values, str) and UNSEPARATED.match(values):
+        raise unseparated(values)
     if not isinstance(values, dict):
         raise CommandError(
             "The passed value needs to be a dictionary in YAML format: "
@@ -115,12 +118,44 @@ def message_from_yaml(msg_type: type[Message], text: str) -> Message:
     return made(msg_type, plain_values(text, example_of(msg_type)))
 
 
+UNSEPARATED = re.compile(r"\w+:\S")
+"""A key and a value without the blank between them, which YAML reads as one word."""
+
+
+def expect_separated(values: object) -> None:
+    """Raise CommandError for a key that is a key and its value: ``order:3``."""
+    seen: set[int] = set()  # by an alias, YAML may hold a value within itself
+    waiting = [values]
+    while waiting:
+        value = waiting.pop()
+        if id(value) in seen:
+            continue
+        seen.add(id(value))
+        if isinstance(value, list):
+            waiting.extend(value)
+        elif isinstance(value, dict):
+            waiting.extend(value.values())
+            for key in value:
+                if value[key] is None and isinstance(key, str) and UNSEPARATED.match(key):
+                    raise unseparated(key)
+
+
+def unseparated(pair: str) -> CommandError:
+    """Return the error for a key and a value without the blank between them."""
+    meant = shortened(pair.replace(":", ": ", 1))
+    return CommandError(
+        f"The passed value has the field {shortened(pair)}; YAML wants a blank after the colon: "
+        f"{meant}"
+    )
+
+
 def made(msg_type: type[Message], values: dict[str, Any]) -> Message:
     """Return the message with the given field values."""
     try:
         msg = from_builtins(msg_type, values)
         check(msg)
     except MessageError as error:
+        expect_separated(values)
         raise CommandError(f"Failed to populate field: {error}") from error
     return msg
 

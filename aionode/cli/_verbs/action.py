@@ -15,6 +15,7 @@ from aionode.message import to_builtins, to_yaml
 if TYPE_CHECKING:
     from aionode.action import ActionClient, ActionResult, ClientGoalHandle
     from aionode.cli._support.output import Output
+    from aionode.graph import NodeInfo
     from aionode.node import Node
 
 __all__ = ["info", "send_goal"]
@@ -47,14 +48,17 @@ async def info(
 
 
 def nodes_with(node: Node, name: str, kind: EndpointKind) -> list[dict[str, Any]]:
-    """Return the nodes with one side of an action: servers publish feedback, clients subscribe."""
-    found = lookup.endpoints(node, kind, name=f"{name}/_action/feedback")
+    """Return the nodes with one side of an action: servers publish feedback, clients subscribe.
+
+    A node with several clients is one, as ros2 counts them.
+    """
+    types: dict[NodeInfo, set[str]] = {}
+    for endpoint in lookup.endpoints(node, kind, name=f"{name}/_action/feedback"):
+        of = endpoint.type_name.removesuffix("_FeedbackMessage")
+        types.setdefault(endpoint.node, set()).add(of)
     return [
-        {
-            "node": endpoint.node.fully_qualified_name,
-            "types": [endpoint.type_name.removesuffix("_FeedbackMessage")],
-        }
-        for endpoint in found
+        {"node": info.fully_qualified_name, "types": sorted(of)}
+        for info, of in sorted(types.items(), key=lambda item: item[0].fully_qualified_name)
     ]
 
 

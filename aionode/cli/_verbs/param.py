@@ -18,6 +18,7 @@ from aionode.cli._support.param_text import (
     file_text,
     plain,
 )
+from aionode.cli._support.yaml_messages import shortened
 from aionode.errors import AionodeError, CommandError, ParameterFileError
 from aionode.graph import EndpointKind
 
@@ -195,7 +196,7 @@ async def get(
         if not found:
             raise await not_declared(client, [parameter_name])
     (parameter,) = found
-    value = plain(parameter)
+    value = plain(parameter, as_numbers=output.json)
     label = LABELS[parameter.type_]
     text = label if value is None else f"{label} {value}"
     output.item(
@@ -222,8 +223,7 @@ async def set_parameter(
     """Set a parameter to a value in YAML; return the exit status.
 
     Raises:
-        CommandError: there is no such node.
-        ParameterFileError: the value is not valid YAML.
+        CommandError: there is no such node, or the value is not valid YAML.
     """
     from aionode.parameter import Parameter
 
@@ -240,19 +240,32 @@ async def set_parameter(
 
 
 def parameter_value(text: str) -> Any:
-    """Return the message for a value in YAML.
+    """Return the message for a value in YAML, read as ``ros2 param set`` reads it.
 
     `get_parameter_value` would store text with an unclosed bracket or quote as a string.
 
     Raises:
-        ParameterFileError: brackets or quotes are not balanced.
+        CommandError: brackets or quotes are not balanced, or the value is a mapping.
     """
-    from aionode.arguments import parse_value
     from aionode.parameter import get_parameter_value
 
     if text.lstrip()[:1] in {"[", "{", '"', "'"}:
-        parse_value(text, f"value {text!r}")
+        expect_value(text)
     return get_parameter_value(text)
+
+
+def expect_value(text: str) -> None:
+    """Raise CommandError unless a text is a scalar or a list in YAML."""
+    import yaml
+
+    expected = "expected a scalar or a list of scalars"
+    try:
+        node = yaml.compose(text, yaml.SafeLoader)
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        problem = getattr(error, "problem", None) or str(error).partition("\n")[0]
+        raise CommandError(f"value {shortened(text)}: not YAML: {problem}; {expected}") from error
+    if isinstance(node, yaml.MappingNode):
+        raise CommandError(f"value {shortened(text)}: a mapping; {expected}")
 
 
 def message_of(name: str, value: Any) -> Any:
@@ -334,8 +347,8 @@ async def dump(
     async with parameters_of(node, node_name, timeout, hidden=hidden) as client:
         names = sorted((await client.list_parameters()).names)
         found = await get_all(client, names)
-    record = {absolute(node_name): {"ros__parameters": file_form(found)}}
-    output.item(file_text(record), record)
+    record = {absolute(node_name): {"ros__parameters": file_form(found, as_numbers=output.json)}}
+    output.item("" if output.json else file_text(record), record)
 
 
 async def get_all(client: AsyncParameterClient, names: list[str]) -> list[Parameter]:
@@ -403,7 +416,7 @@ async def load(
 def like(before: Parameter | None, name: str, value: Any) -> Parameter:
     """Return a parameter with a value from a file, keeping its type where YAML cannot express it.
 
-    That concerns bytes, which a file holds as integers, and empty lists.
+    That concerns bytes, which a file may hold as integers, and empty lists.
     """
     from aionode.parameter import Parameter, ParameterType
 

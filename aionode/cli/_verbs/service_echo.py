@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.cli._support import lookup
 from aionode.cli._support.follow import Follower
-from aionode.cli._support.formatting import PrintOptions, csv_line, yaml_text
+from aionode.cli._support.formatting import PrintOptions, byte_form, csv_line, yaml_text
 from aionode.cli._support.nouns import SERVICE
 from aionode.endpoints.service_introspection import TOPIC_SUFFIX
 from aionode.errors import CommandError
@@ -58,7 +58,12 @@ async def echo(
     name = SERVICE.resolve(node, service_name)
     srv_type = await service_class(node, name, service_type)
     topic = name + TOPIC_SUFFIX
-    options = PrintOptions(None if output.json else truncate_length, no_arr=no_arr, no_str=no_str)
+    options = PrintOptions(
+        None if output.json else truncate_length,
+        no_arr=no_arr,
+        no_str=no_str,
+        as_byte=byte_form(output, csv=csv),
+    )
     follower = Follower(node)
 
     def on_event(event: Any, _: MessageInfo) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.cli._support import lookup
 from aionode.cli._support.follow import Follower, filter_from
-from aionode.cli._support.formatting import PrintOptions, csv_line, field_of, yaml_text
+from aionode.cli._support.formatting import PrintOptions, byte_form, csv_line, field_of, yaml_text
 from aionode.errors import CommandError
 from aionode.graph import TOPIC_KINDS, EndpointKind
 from aionode.message import Message
@@ -68,7 +68,10 @@ async def echo(
     if not publishers:
         output.warn(f"WARNING: topic [{name}] does not appear to be published yet")
     print_options = PrintOptions(
-        None if output.json else truncate_length, no_arr=no_arr, no_str=no_str
+        None if output.json else truncate_length,
+        no_arr=no_arr,
+        no_str=no_str,
+        as_byte=byte_form(output, csv=csv or field is not None),
     )
     printer = Printer(output, print_options, csv=csv, field=field, flow_style=flow_style)
     fits = filter_from(filter_text)
