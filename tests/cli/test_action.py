@@ -10,7 +10,13 @@ from typing import Any
 import pytest
 
 from aionode import Node
-from aionode.action import ActionClient, ActionServer, CancelResponse, GoalResponse
+from aionode.action import (
+    ActionClient,
+    ActionServer,
+    CancelResponse,
+    ClientGoalHandle,
+    GoalResponse,
+)
 from aionode.cli._support.nouns import ACTION
 from aionode.cli._verbs.action import info, send_goal
 from aionode.errors import CommandError
@@ -110,16 +116,48 @@ async def test_an_aborted_goal_is_no_success(tool: Node, server: Node, screen: A
     assert screen.text.endswith("Goal finished with status: ABORTED\n")
 
 
-async def test_an_interrupted_wait_cancels_the_goal(
-    running: Any, tool: Node, server: Node, screen: Any
-) -> None:
-    """Ctrl-C must not leave a robot driving."""
-    async with running(send_goal(tool, "/fibonacci", FIBONACCI, output=screen.output)) as task:
+async def test_an_interrupted_wait_cancels_the_goal(tool: Node, server: Node, screen: Any) -> None:
+    """Ctrl-C must not leave a robot driving; result and status are printed, as ros2 does."""
+    async with asyncio.TaskGroup() as tasks:
+        work = send_goal(tool, "/fibonacci", FIBONACCI, output=screen.output)
+        task = tasks.create_task(work)
+        await settle()
         assert screen.text.count("Goal accepted") == 1
         task.cancel()
-        await settle()
 
-    assert screen.text.endswith("\nCanceling goal...\nGoal canceled.\n")
+    assert task.result() == 0
+    assert screen.text.endswith(
+        "\nCanceling goal...\nGoal canceled.\n"
+        "Result:\n    sequence: []\n\nGoal finished with status: CANCELED\n"
+    )
+
+
+@pytest.mark.parametrize("code", [0, 1])
+async def test_a_refused_cancel_is_an_error(
+    code: int, tool: Node, node_factory: Callable[..., Node], screen: Any, monkeypatch: Any
+) -> None:
+    """A server of rclpy answers 0, one of aionode 1; either way the goal goes on."""
+    refusing = node_factory("fib_server")
+    ActionServer(refusing, Fibonacci, "/fibonacci", execute)
+    answer = ClientGoalHandle.cancel
+
+    async def like_rclpy(self: Any) -> Any:
+        response = await answer(self)
+        response.return_code = code
+        return response
+
+    monkeypatch.setattr(ClientGoalHandle, "cancel", like_rclpy)
+
+    async def interrupted() -> None:
+        with pytest.raises(CommandError, match="Failed to cancel goal: the server refused"):
+            await send_goal(tool, "/fibonacci", FIBONACCI, output=screen.output)
+
+    async with asyncio.TaskGroup() as tasks:
+        task = tasks.create_task(interrupted())
+        await settle()
+        task.cancel()
+
+    assert "Goal canceled" not in screen.text
 
 
 @pytest.mark.parametrize(

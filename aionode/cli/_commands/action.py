@@ -17,7 +17,7 @@ from aionode.cli._support.options import (
     stdin_text,
 )
 from aionode.cli._support.session import run_verb
-from aionode.cli._verbs.action import info, send_goal
+from aionode.cli._verbs.action import STOP_S, info, send_goal
 
 __all__ = ["action"]
 
@@ -70,7 +70,12 @@ add_type_and_find(action, ACTION, "action")
 def send_goal_command(json: bool, values: str | None, stdin: bool, **options: Any) -> None:
     """Send a goal in YAML, such as '{order: 10}', and print its result.
 
-    Ctrl-C cancels the goal. The exit status is 0 if the goal succeeded.
+    Ctrl-C cancels the goal and prints its result. The exit status is 0 if the goal succeeded, or
+    was canceled so.
     """
     text = stdin_text(values, stdin)
-    run_verb(lambda node, output: send_goal(node, values=text, output=output, **options), json=json)
+    run_verb(
+        lambda node, output: send_goal(node, values=text, output=output, **options),
+        json=json,
+        stop_s=STOP_S,
+    )

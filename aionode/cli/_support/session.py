@@ -30,7 +30,7 @@ CLOSE_S = 0.9
 """How long a command may take to exit after it has printed its answer, in seconds."""
 
 STOP_S = 3.5
-"""How long it may take to exit after a signal, in seconds; time for the server to cancel a goal."""
+"""How long it may take to exit after a signal, in seconds."""
 
 QUIET_S = 2.0
 """How long discovery has to be quiet before it counts as complete, in seconds.
@@ -73,6 +73,7 @@ def run_verb(
     endless: bool = False,
     busy: bool = False,
     asks: bool = True,
+    stop_s: float = STOP_S,
 ) -> None:
     """Run `verb` with a node, until it returns or Ctrl-C; then end the command.
 
@@ -84,6 +85,7 @@ def run_verb(
         endless: Whether Ctrl-C is the normal end, with status 0, and not an interruption (130).
         busy: Whether many messages are expected, which makes the faster loop worth its import.
         asks: Whether the verb needs a complete graph, so that discovery is awaited first.
+        stop_s: How long it may take to exit after a signal, in seconds.
 
     Raises:
         click.exceptions.Exit: always, with the exit status.
@@ -115,7 +117,7 @@ def run_verb(
         status = run_until_stopped(
             work(),
             loop_factory=best_loop_factory() if busy else None,
-            on_stop=lambda: deadline.set(STOP_S, stopped_status),
+            on_stop=lambda: deadline.set(stop_s, stopped_status),
         )
     finally:
         deadline.cancel()

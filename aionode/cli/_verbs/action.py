@@ -18,10 +18,16 @@ if TYPE_CHECKING:
     from aionode.graph import NodeInfo
     from aionode.node import Node
 
-__all__ = ["info", "send_goal"]
+__all__ = ["STOP_S", "info", "send_goal"]
 
 CANCEL_S = 2.0
 """Timeout for the server's answer to a cancel request, in seconds."""
+
+ENDED_S = 10.0
+"""How long a goal may take to end after the server has agreed to cancel it, in seconds."""
+
+STOP_S = CANCEL_S + ENDED_S + 1.5
+"""How long the command may take to exit after Ctrl-C, in seconds; a second one ends it at once."""
 
 USERS = {"clients": EndpointKind.SUBSCRIPTION, "servers": EndpointKind.PUBLISHER}
 
@@ -74,10 +80,12 @@ async def send_goal(
 ) -> int:
     """Send a goal in YAML, and print its result; return 0 if it succeeded, else 1.
 
-    It waits at most `timeout` seconds for a server. Cancelling it cancels the goal first.
+    It waits at most `timeout` seconds for a server. Cancelling it cancels the goal, prints the
+    result, and returns 0 if the server agreed, as ros2 does.
 
     Raises:
-        CommandError: the action has another type, the goal is invalid, or no server appeared.
+        CommandError: the action has another type, the goal is invalid, no server appeared, or the
+            server refused to cancel the goal.
         GoalLostError: the server went away.
     """
     from aionode.action import ActionClient
@@ -100,10 +108,20 @@ async def send_goal(
         # Shielded, as cancelling `watch` would cancel the goal before that is reported.
         outcome = await asyncio.shield(watch(handle, output, feedback=feedback))
     except asyncio.CancelledError:
-        if not handle.done:
-            await cancel(handle, output)
-        raise
+        if handle.done or not await cancel(handle, output):
+            raise
+        await print_end(handle, output)
+        return 0
     return print_outcome(handle, outcome, output)
+
+
+async def print_end(handle: ClientGoalHandle[Any, Any], output: Output) -> None:
+    """Wait for the end of a goal that is being canceled, and print its outcome."""
+    try:
+        async with asyncio.timeout(ENDED_S):
+            print_outcome(handle, await handle.result(), output)
+    except TimeoutError:
+        output.warn(f"The goal has not ended within {ENDED_S:g} s: it is still being canceled")
 
 
 async def class_of(node: Node, name: str, action_type: str) -> Any:
@@ -154,8 +172,12 @@ def print_outcome(
     return 0 if status == "SUCCEEDED" else 1
 
 
-async def cancel(handle: ClientGoalHandle[Any, Any], output: Output) -> None:
-    """Cancel a goal, and report whether the server accepted that."""
+async def cancel(handle: ClientGoalHandle[Any, Any], output: Output) -> bool:
+    """Cancel a goal; return whether the server has answered that it ends.
+
+    Raises:
+        CommandError: the server refused.
+    """
     output.progress("Canceling goal...")
     try:
         async with asyncio.timeout(CANCEL_S):
@@ -164,8 +186,11 @@ async def cancel(handle: ClientGoalHandle[Any, Any], output: Output) -> None:
         output.warn(
             f"The server did not answer within {CANCEL_S:g} s: the goal may still be running"
         )
-        return
-    if response.return_code == 0:
-        output.progress("Goal canceled.")
-    else:
-        output.warn("The server refused to cancel the goal: it is still running")
+        return False
+    if response.return_code == response.ERROR_GOAL_TERMINATED:
+        return True  # it has ended meanwhile
+    # A server of rclpy that refuses answers with code 0 too, and an empty list.
+    if len(response.goals_canceling) == 0:
+        raise CommandError("Failed to cancel goal: the server refused, and it is still running")
+    output.progress("Goal canceled.")
+    return True
