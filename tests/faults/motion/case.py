@@ -35,12 +35,15 @@ class Stopped(msgspec.Struct):
         own_s: The same without the time for which the mover or the wheels waited for a core.
         late: How many commands moved them after they had stopped, while they were watched.
         wrong: What else was wrong.
+        void: Why the run shows nothing, such as wheels that stood still before the fault; empty if
+            it does.
     """
 
     raw_s: float = math.inf
     own_s: float = math.inf
     late: int = 0
     wrong: list[str] = []
+    void: str = ""
 
 
 class Place(msgspec.Struct, frozen=True):
@@ -121,6 +124,8 @@ class Motion(msgspec.Struct, frozen=True):
             outcome: The outcome.
             spare_s: How much longer a stop may take beside other tests.
         """
+        if outcome.void:
+            return [outcome.void]
         found = list(outcome.wrong)
         if self.limit_s is None:
             if math.isfinite(outcome.raw_s):
@@ -172,9 +177,9 @@ def stopped(
     moves = [each for each in handed if each.what == "move" and each.by == by]
     stops = [each.time_s for each in handed if each.what != "move"]
     if not any(since_s < each.time_s < struck_s for each in moves):
-        return Stopped(wrong=["did not move before the fault"])
+        return Stopped(void="did not move before the fault")
     if any(since_s < each < struck_s for each in stops):
-        return Stopped(wrong=["stopped before the fault"])
+        return Stopped(void="stopped before the fault")
     stop_s = min((each for each in stops if each > struck_s), default=math.inf)
     if motion.beside is None:
         moves = [each for each in handed if each.what == "move"]

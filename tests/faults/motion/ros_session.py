@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import threading
 import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
 __all__ = ["commander", "obey", "send_goal"]
 
 GOAL_ID = os.urandom(16)
+
+ASK_S = 2.0
+"""How often a goal is sent until there is an answer."""
 
 
 def commander(stand_in: StandIn, mover: Mover) -> Callable[[], None]:
@@ -45,7 +49,7 @@ def commander(stand_in: StandIn, mover: Mover) -> Callable[[], None]:
 
 
 def send_goal(stand_in: StandIn, mover: Mover) -> None:
-    """Announce the parts of an action client, and send a goal until it is accepted."""
+    """Announce the parts of an action client, and send a goal until it is answered."""
     impl = Fibonacci.Impl
     hidden = f"{mover.topic}/_action"
     gids = {}
@@ -70,13 +74,19 @@ def send_goal(stand_in: StandIn, mover: Mover) -> None:
             timeout=600.0,
         )
 
-    def accepted(_reply: zenoh.Reply) -> None:
+    answered = threading.Event()
+
+    def take(_reply: zenoh.Reply) -> None:
+        answered.set()
         result = impl.GetResultService.Request()
         result.goal_id.uuid = list(GOAL_ID)
         ask("get_result", impl.GetResultService, result, lambda _: None)
 
-    time.sleep(2.0)  # until the server is known
-    ask("send_goal", impl.SendGoalService, request, accepted)
+    def send() -> None:
+        while not answered.wait(ASK_S):  # the server may not be known yet
+            ask("send_goal", impl.SendGoalService, request, take)
+
+    threading.Thread(target=send, daemon=True).start()
 
 
 def obey(stand_in: StandIn, wheel: Wheel) -> None:

@@ -45,8 +45,11 @@ STANDS_S = 1.0
 LATE_S = 1.0
 """How long after the stop other wheels join."""
 
-AGAIN_S = 30.0
+AGAIN_S = 60.0
 """How long the wheels may take to obey the next mover, which starts only then."""
+
+REPEATS = 2
+"""How often a run is made anew that showed nothing, as on a machine that has no core to spare."""
 
 TOGETHER = 8
 """How many cases one scene has at most."""
@@ -176,7 +179,7 @@ class Play:
     def judge(self) -> Stopped:
         """Return what came of it."""
         if self.never:
-            return Stopped(wrong=[self.never])
+            return Stopped(void=self.never)
         until_s = self._over_s + self._watch_s
         outcome = stopped(
             self.motion, self.handed(), self._by, (self._told_s, self._struck_s, until_s)
@@ -211,12 +214,25 @@ class Scene:
         Args:
             busy: Held while processes start.
         """
-        outcomes: Sequence[Stopped | Exception]
-        try:
-            outcomes = await self._run(busy)
-        except Exception as error:  # noqa: BLE001 - it is told
-            outcomes = [error] * len(self.motions)
+        outcomes = await self._outcomes(busy)
+        for _ in range(REPEATS):
+            void = [
+                number
+                for number, each in enumerate(outcomes)
+                if isinstance(each, Stopped) and each.void
+            ]
+            if not void:
+                break
+            scene = Scene([self.motions[number] for number in void], self._watch_s)
+            for number, outcome in zip(void, await scene._outcomes(busy), strict=True):
+                outcomes[number] = outcome
         return list(zip(self.motions, outcomes, strict=True))
+
+    async def _outcomes(self, busy: asyncio.Semaphore) -> list[Stopped | Exception]:
+        try:
+            return [*await self._run(busy)]
+        except Exception as error:  # noqa: BLE001 - it is told
+            return [error] * len(self.motions)
 
     async def _run(self, busy: asyncio.Semaphore) -> Sequence[Stopped]:
         async with contextlib.AsyncExitStack() as stack:
@@ -278,7 +294,7 @@ class Scene:
             await play.stood.wait()
         await asyncio.sleep(LATE_S)
         await self._add(stage, Role("late", wheels=tuple(play.motion.wheel for play in plays)))
-        await until_ready(stage, "late")
+        await until_ready(stage, "late", limit_s=READY_LIMIT_S)
 
     async def _move_again(
         self, stage: Stage, plays: Sequence[Play], outcomes: Sequence[Stopped]

@@ -23,7 +23,7 @@ def problems(motion: Motion, result: Result) -> list[str]:
         return []
     if isinstance(result, Exception):
         return [repr(result)]
-    if motion.off is None:
+    if motion.off is None or result.void:
         return motion.broken(result)
     kept = [] if motion.broken(result) else [f"kept its promise without {motion.off}"]
     return [*result.wrong, *kept]
@@ -90,9 +90,8 @@ def cells(
         runs = [each for each in by_place.get(place, (motion, ()))[1] if isinstance(each, Stopped)]
         never = motion.limit_s is None and runs
         yield "no: its own limit" if never else seconds_of(each.own_s for each in runs)
-    yield seconds_of(
-        each.raw_s for _, each in all_runs if isinstance(each, Stopped) and motion.limit_s
-    )
+    stopped = [each for _, each in all_runs if isinstance(each, Stopped)]
+    yield "" if motion.limit_s is None else seconds_of(each.raw_s for each in stopped)
     skipped = [each for _, each in all_runs if isinstance(each, Skipped)]
     if skipped:
         yield f"skipped: {skipped[0]}"
