@@ -43,10 +43,14 @@ Handle = ServerGoalHandle[NavigateTo.Goal, NavigateTo.Result, NavigateTo.Feedbac
 
 async def main() -> None:
     """Run the robot, or with the parameter `mode` set to `client`, send it a goal."""
-    async with Node("navigate") as node:
-        if node.declare_parameter("mode", "server").value == "client":
+    reader = Node("param_reader")
+    mode = reader.declare_parameter("mode", "server").value
+    reader.destroy_node()
+    if mode == "client":
+        async with Node("navigate_client") as node:
             await send(node)
-        else:
+    else:
+        async with Node("navigate_server") as node:
             await serve(node)
 
 

@@ -3,6 +3,9 @@
 Run it with ``python examples/web_control.py``, the robot with ``python examples/web_robot.py``, and
 open http://127.0.0.1:8001. The robot stops when the page is closed. It needs
 ``pip install fastapi uvicorn websockets``.
+
+The types are those of the robot's program: a type is known by its name and its fields, and so this
+file needs no other one.
 """
 
 from __future__ import annotations
@@ -28,8 +31,7 @@ from aionode.errors import (
 )
 from aionode.fastapi import until_disconnected
 from aionode.interfaces.std_msgs.msg import Float32
-from aionode.message import to_json
-from examples.web_robot import Drive, SetSpeed
+from aionode.message import ActionType, Message, ServiceType, float64, to_json
 
 ANSWER_SEC = 5.0
 
@@ -50,6 +52,39 @@ PAGE = """<!doctype html>
   }
 </script>
 """
+
+
+class SetSpeed(ServiceType, typename="tutorial_interfaces/srv/SetSpeed"):
+    """Sets the speed, in m/s."""
+
+    class Request(Message):
+        """The requested speed."""
+
+        speed: float64 = 0.0
+
+    class Response(Message):
+        """The new speed."""
+
+        speed: float64 = 0.0
+
+
+class Drive(ActionType, typename="tutorial_interfaces/action/Drive"):
+    """Drives straight ahead; distances are in metres."""
+
+    class Goal(Message):
+        """The distance to drive."""
+
+        distance: float64 = 0.0
+
+    class Result(Message):
+        """The distance driven."""
+
+        distance: float64 = 0.0
+
+    class Feedback(Message):
+        """The distance driven so far."""
+
+        distance: float64 = 0.0
 
 
 class Operator(Node):

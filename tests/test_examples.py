@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import re
+import shutil
 import signal
 import socket
 import subprocess
@@ -21,6 +22,7 @@ from aionode.examples.quality_of_service.incompatible_qos import POLICIES
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
 from examples.fastapi_app import make_app
+from tests.support.peers import isolated_environment
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable, Iterator
@@ -102,9 +104,12 @@ def running(*arguments: str, domain: int | None = None) -> Iterator[Program]:
 
 
 @pytest.fixture
-def domain() -> int:
-    """A ROS domain that no other test on this machine is likely to use."""
-    return 1 + os.getpid() % 100
+def domain(monkeypatch: pytest.MonkeyPatch) -> int:
+    """The ROS domain of a test whose programs hear each other, and nothing else."""
+    environment = isolated_environment()
+    for name, value in environment.items():
+        monkeypatch.setenv(name, value)
+    return int(environment["ROS_DOMAIN_ID"])
 
 
 def test_the_first_example_tells_its_story() -> None:
@@ -418,6 +423,19 @@ def test_a_program_of_the_tutorial_can_be_executed(name: str) -> None:
     assert os.access(path, os.X_OK)
 
 
+def test_a_call_without_a_server_says_what_is_missing(domain: int) -> None:
+    """The first thing that a reader of the README forgets is the server."""
+    with running("examples/call_service.py", domain=domain) as client:
+        text = client.rest()
+
+    assert text.splitlines()[-1] == (
+        "error: /add_two_ints: no reply in 2 s; no server is matched: is it running, with this "
+        "name and type?"
+    )
+    assert "Traceback" not in text
+    assert client.process.returncode == 1
+
+
 def test_any_async_program_can_ask_the_service(domain: int) -> None:
     """The program of the README prints the sum."""
     with running("examples/service_client_server.py", domain=domain) as server:
@@ -521,6 +539,38 @@ def test_the_robot_drives_where_a_client_in_another_process_tells_it(domain: int
     assert [float(left) for left in re.findall(r"Feedback: (.*) m left", text)] == [0.3, 0.1, 0.0]
     assert "Result: 0.5 m travelled" in text
     assert client.process.returncode == 0
+
+
+def test_the_tutorials_robot_and_its_client_have_names_of_their_own(domain: int) -> None:
+    """Each would warn that two nodes share a name."""
+    program = "examples/navigate.py"
+    with running(program, domain=domain) as robot:
+        robot.wait_until_running()
+        asking = ["--ros-args", "-p", "mode:=client", "-p", "x:=0.3", "-p", "y:=0.0"]
+        with running(program, *asking, domain=domain) as client:
+            told = client.rest()
+        told += robot.end_with(signal.SIGINT)[1]
+
+    assert "[navigate_client]: Result: 0.3 m travelled" in told
+    assert "WARN" not in told
+
+
+def test_the_web_application_runs_where_it_is_copied_to(
+    tmp_path: Path,
+) -> None:
+    """A reader takes one file, and has no package `examples`."""
+    copied = shutil.copy(ROOT / "examples" / "web_control.py", tmp_path)
+    script = "import runpy, sys; sys.modules['examples'] = None; runpy.run_path(sys.argv[1])"
+    done = subprocess.run(
+        [sys.executable, "-c", script, copied],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_ctrl_c_at_the_client_stops_the_robot(domain: int) -> None:

@@ -23,8 +23,7 @@ from aionode.interfaces.std_msgs.msg import Float32
 from aionode.node import Node
 from aionode.testing import settle
 from examples import fastapi_app, web_control
-from examples.web_control import Operator
-from examples.web_robot import SetSpeed
+from examples.web_control import Operator, SetSpeed
 
 LEAVES: dict[str, object] = {"type": "http.disconnect"}
 

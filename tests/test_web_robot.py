@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import os
 import re
 import signal
 import socket
@@ -22,8 +21,9 @@ from aionode.interfaces.std_msgs.msg import Float32
 from aionode.message import to_json
 from aionode.node import Node
 from examples import web_control
-from examples.web_control import Operator, make_app
-from examples.web_robot import Drive, Robot
+from examples.web_control import Drive, Operator, make_app
+from examples.web_robot import Robot
+from tests.support.peers import isolated_environment
 from tests.test_examples import Program
 
 if TYPE_CHECKING:
@@ -38,10 +38,7 @@ pytestmark = [pytest.mark.timeout(60), pytest.mark.one_loop]
 @pytest.fixture
 def network(monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
     """The environment in which both processes find each other, and no others."""
-    env = {
-        "ROS_DOMAIN_ID": str(1 + os.getpid() % 100),
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-    }
+    env = isolated_environment()
     for name, value in env.items():
         monkeypatch.setenv(name, value)
     return env

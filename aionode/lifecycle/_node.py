@@ -40,9 +40,10 @@ if TYPE_CHECKING:
     from aionode.lifecycle.states import State, Transition
     from aionode.message import ServiceClass
 
-    Result: TypeAlias = Any
-    """A `TransitionCallbackReturn`, or an awaitable of one. A union would make type checkers refuse
-    ``return super().on_activate(state)`` in an override that returns either of the two."""
+    Result: TypeAlias = TransitionCallbackReturn | Any
+    """A `TransitionCallbackReturn`, or an awaitable of one. Type checkers take what these methods
+    return for the former, for ``return super().on_activate(state)``, and `Any` lets overrides be
+    coroutine functions."""
 
 __all__ = ["LifecycleNode"]
 

@@ -14,6 +14,7 @@ from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.geometry_msgs.msg import Point, PoseStamped, Twist, Vector3
 from aionode.interfaces.sensor_msgs.msg import Image, Imu, JointState, LaserScan
 from aionode.interfaces.std_msgs.msg import ByteMultiArray, Header, String
+from aionode.lifecycle import LifecycleNode, State, TransitionCallbackReturn
 from aionode.message import (
     DEFAULT,
     ActionClass,
@@ -211,6 +212,19 @@ async def calls(node: Node) -> None:
         pass
     while not await node.wait_for_node("other", 1.0):
         pass
+
+
+class Camera(LifecycleNode):
+    """Overrides callbacks, one of them as a coroutine function."""
+
+    def on_activate(self, state: State) -> TransitionCallbackReturn:
+        """Start, and enable what is managed."""
+        return super().on_activate(state)
+
+    async def on_configure(self, state: State) -> TransitionCallbackReturn:
+        """Await something first."""
+        await self.get_clock().sleep(0.0)
+        return super().on_configure(state)
 
 
 async def supervised() -> None:

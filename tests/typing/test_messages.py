@@ -1,4 +1,4 @@
-"""What mypy --strict and pyright say of code that uses messages."""
+"""What mypy --strict and pyright say of code that uses messages, and of the page about them."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 # The types of numpy that is installed are read as its own Python does: 2.5 needs 3.12.
 PYTHON = f"{sys.version_info.major}.{sys.version_info.minor}"
+PAGE = ROOT / "docs" / "howto" / "messages.md"
 ACCEPTED, REJECTED = HERE / "accepted.py", HERE / "rejected.py"
 
 
@@ -25,14 +26,22 @@ def marked(file: Path) -> set[int]:
     return {number for number, line in enumerate(lines, 1) if line.endswith("# error")}
 
 
-def mypy() -> dict[Path, set[int]]:
+def code_of_page(folder: Path) -> Path:
+    """Return a file with the code of the page about messages."""
+    blocks = re.findall(r"^```python\n(.*?)^```", PAGE.read_text(), re.DOTALL | re.MULTILINE)
+    code = folder / "messages.py"
+    code.write_text("# pyright: standard\n" + "\n".join(blocks))
+    return code
+
+
+def mypy(page: Path) -> dict[Path, set[int]]:
     """Return the lines in which mypy finds mistakes, by file.
 
     With the options and the cache of `make check`.
     """
     command = [sys.executable, "-m", "mypy", "--no-error-summary", "--python-version", PYTHON]
     done = subprocess.run(
-        [*command, str(ACCEPTED), str(REJECTED)],
+        [*command, str(ACCEPTED), str(REJECTED), str(page)],
         check=False,
         capture_output=True,
         text=True,
@@ -43,13 +52,13 @@ def mypy() -> dict[Path, set[int]]:
     return by_file((ROOT / file, int(line)) for file, line in found)
 
 
-def pyright(folder: Path) -> dict[Path, set[int]]:
+def pyright(folder: Path, page: Path) -> dict[Path, set[int]]:
     """Return the lines in which pyright finds mistakes, by file."""
     settings = {"typeCheckingMode": "strict", "extraPaths": [str(ROOT)], "pythonVersion": PYTHON}
     (folder / "pyrightconfig.json").write_text(json.dumps(settings))
     command = [sys.executable, "-m", "basedpyright", "--outputjson", "--project", str(folder)]
     done = subprocess.run(
-        [*command, "--pythonpath", sys.executable, str(ACCEPTED), str(REJECTED)],
+        [*command, "--pythonpath", sys.executable, str(ACCEPTED), str(REJECTED), str(page)],
         check=False,
         capture_output=True,
         text=True,
@@ -70,9 +79,9 @@ def by_file(found: Iterable[tuple[Path, int]]) -> dict[Path, set[int]]:
 
 
 @pytest.mark.timeout(300)  # the first run reads all of numpy's types
-def test_mypy_finds_the_mistakes_and_nothing_else() -> None:
+def test_mypy_finds_the_mistakes_and_nothing_else(tmp_path: Path) -> None:
     """A wrong field name or type is seen before the robot runs."""
-    assert mypy() == {ACCEPTED: marked(ACCEPTED), REJECTED: marked(REJECTED)}
+    assert mypy(code_of_page(tmp_path)) == {ACCEPTED: marked(ACCEPTED), REJECTED: marked(REJECTED)}
 
 
 @pytest.mark.timeout(300)  # the first run reads all of numpy's types
@@ -81,4 +90,7 @@ def test_mypy_finds_the_mistakes_and_nothing_else() -> None:
 )
 def test_pyright_finds_the_mistakes_and_nothing_else(tmp_path: Path) -> None:
     """Editors show what it says."""
-    assert pyright(tmp_path) == {ACCEPTED: marked(ACCEPTED), REJECTED: marked(REJECTED)}
+    assert pyright(tmp_path, code_of_page(tmp_path)) == {
+        ACCEPTED: marked(ACCEPTED),
+        REJECTED: marked(REJECTED),
+    }
