@@ -11,9 +11,10 @@ from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.geometry_msgs.msg import TwistStamped
 from aionode.interfaces.std_msgs.msg import String
+from aionode.lifecycle import LifecycleNode
 from aionode.message import Message
 
-__all__ = ["AddServer", "FibServer", "ParamNode", "Talker"]
+__all__ = ["AddServer", "Camera", "FibServer", "ParamNode", "Talker"]
 
 
 class Words(Message, typename="robot_msgs/msg/Words"):
@@ -62,6 +63,13 @@ class ParamNode(Node):
         super().__init__("param_node")
         self.declare_parameter("name", "bob")
         self.declare_parameter("speed", 1.5)
+
+
+class Camera(LifecycleNode):
+    """A managed node that nobody configures; hidden, as only its transitions are asked for."""
+
+    def __init__(self) -> None:
+        super().__init__("_camera")
 
 
 class FibServer(Node):

@@ -5,9 +5,13 @@ from __future__ import annotations
 import os
 import shutil
 import sys
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
+
+from tests.support.peers import isolated_environment
 
 pexpect = pytest.importorskip("pexpect", reason="pseudo-terminals are of Unix")
 
@@ -31,24 +35,39 @@ pytestmark = [
 ]
 
 
-@pytest.mark.parametrize("shell", SHELLS)
-def test_a_type_is_completed_in_two_steps(shell: str, tmp_path: Path) -> None:
-    """First the package, without a space after the slash, then the name: a single word."""
+@pytest.fixture
+def child(shell: str, tmp_path: Path) -> Iterator[Any]:
+    """A shell that completes the commands of aionode."""
     if shutil.which(shell) is None:
         pytest.skip(f"{shell} is not installed")
     program, *arguments = SHELLS[shell]
-    env = {**os.environ, "HOME": str(tmp_path), "TERM": "dumb"}
+    env = {**os.environ, **isolated_environment(), "HOME": str(tmp_path), "TERM": "dumb"}
     env["PATH"] = f"{BIN}{os.pathsep}{env['PATH']}"
     child = pexpect.spawn(program, arguments, env=env, encoding="utf-8", timeout=PATIENCE_S)
     try:
         child.sendline(BEFORE[shell])
         child.sendline("echo set up | tr a-z A-Z")
         child.expect("SET UP")
-        child.send("aionode interface show std_sr\t")
-        child.expect("std_srvs/")
-        child.send("srv/Tri\t")
-        child.expect("srv/Trigger")
-        child.send("\r")
-        child.expect("bool success")
+        yield child
     finally:
         child.close(force=True)
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_a_type_is_completed_in_two_steps(child: Any) -> None:
+    """First the package, without a space after the slash, then the name: a single word."""
+    child.send("aionode interface show std_sr\t")
+    child.expect("std_srvs/")
+    child.send("srv/Tri\t")
+    child.expect("srv/Trigger")
+    child.send("\r")
+    child.expect("bool success")
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_values_are_completed_as_one_word(child: Any) -> None:
+    """They have blanks, commas and quotes; the command gets them as they are in YAML."""
+    child.send("aionode topic pub -1 -w 0 /a std_msgs/msg/Header \t")
+    child.expect("frame_id")
+    child.send("\r")
+    child.expect("publishing #1: std_msgs.msg.Header")

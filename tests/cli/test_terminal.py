@@ -72,7 +72,7 @@ class Terminals:
 def terminals() -> Iterator[Terminals]:
     """Terminals, and the robot's nodes running in one of them."""
     opened = Terminals()
-    classes = ("Talker", "AddServer", "ParamNode", "FibServer")
+    classes = ("Talker", "AddServer", "ParamNode", "Camera", "FibServer")
     robot = opened.open("run", *(f"{ROBOT}:{name}" for name in classes))
     robot.expect("the robot is ready")
     yield opened
@@ -285,6 +285,9 @@ def test_an_invalid_domain_is_an_error(terminals: Terminals) -> None:
 # The shell and other programs
 
 
+LINEAR = ["twist.linear", "twist.linear.x", "twist.linear.y", "twist.linear.z"]
+
+
 @pytest.mark.parametrize(
     ("words", "offered"),
     [
@@ -297,6 +300,15 @@ def test_an_invalid_domain_is_an_error(terminals: Terminals) -> None:
         (["param", "get", "/param_node", "s"], ["speed", "start_type_description_service"]),
         (["param", "describe", "param_node", "name", "sp"], ["speed"]),
         (["param", "get", "/unknown", ""], []),
+        (["topic", "pub", "/chatter", "std_msgs/msg/String", ""], ['{data: ""}']),
+        (["topic", "pub", "/_words", "robot_msgs/msg/Words", ""], ['{text: ""}']),
+        (["topic", "pub", "/chatter", "std_msgs/msg/Nope", ""], []),
+        (["service", "call", "/add_two_ints", ADD, ""], ["{a: 0, b: 0}"]),
+        (["action", "send_goal", "/fibonacci", FIBONACCI, ""], ["{order: 0}"]),
+        (["topic", "echo", "/stamped", "--field", "twist.l"], LINEAR),
+        (["topic", "echo", "--field", ""], []),
+        (["lifecycle", "set", "/_camera", ""], ["configure", "shutdown"]),
+        (["lifecycle", "set", "/unknown", ""], []),
     ],
 )
 def test_the_shell_is_offered_what_is_on_the_network(
@@ -309,7 +321,7 @@ def test_the_shell_is_offered_what_is_on_the_network(
         COMP_CWORD=str(len(words)),
     )
 
-    assert done.stdout.split() == [f"plain,{name}" for name in offered]
+    assert done.stdout.strip("\n").splitlines() == [f"plain,{name}" for name in offered]
     assert done.stderr == ""
 
 

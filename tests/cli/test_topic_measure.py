@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -103,6 +105,85 @@ async def test_hz_of_several_topics_is_a_table(
         "/chatter   5.000   0.200       0.200       0.00000   4     \n"
         "/other     6.667   0.150       0.150       0.00000   5     \n\n"
     )
+
+
+async def test_hz_has_a_row_for_a_silent_topic(
+    running: Any, tool: Node, talker: Node, manual_clock: ManualClock, screen: Any
+) -> None:
+    """Otherwise it looks as if it had not been asked for."""
+    talker.create_publisher(String, "/silent", 10)
+
+    async with running(hz(tool, ["/silent", "/chatter"], output=screen.output)):
+        await manual_clock.advance(1.05)
+
+    assert screen.text.endswith(
+        "/silent    -       -           -           -         -     \n"
+        "/chatter   5.000   0.200       0.200       0.00000   4     \n\n"
+    )
+
+
+async def test_hz_does_not_wait_for_a_topic_that_nobody_has(
+    running: Any, tool: Node, talker: Node, manual_clock: ManualClock, screen: Any
+) -> None:
+    """ros2 measures none until all are there."""
+    async with running(hz(tool, ["/late", "/chatter"], output=screen.json_output)):
+        await manual_clock.advance(1.05)
+        late, chatter = screen.records
+        publisher = talker.create_publisher(String, "/late", 10)
+        talker.create_timer(0.1, lambda: publisher.publish(String()))
+        await manual_clock.advance(2.0)
+
+    assert chatter["rate_hz"] == pytest.approx(5.0)
+    assert (late["rate_hz"], late["min_s"], late["window"]) == (0.0, None, 0)
+    assert screen.records[-2]["rate_hz"] == pytest.approx(10.0)
+
+
+async def test_hz_shows_that_a_topic_fell_silent(
+    running: Any,
+    tool: Node,
+    talker: Node,
+    node_factory: Callable[..., Node],
+    manual_clock: ManualClock,
+    screen: Any,
+) -> None:
+    """A rate of before would be taken for the present one; a slow topic keeps its row."""
+    slow = node_factory("slow")
+    publisher = slow.create_publisher(String, "/slow", 10)
+    slow.create_timer(3.0, lambda: publisher.publish(String()))
+
+    async with running(hz(tool, ["/chatter", "/slow"], output=screen.json_output)):
+        await manual_clock.advance(7.0)
+        talker.destroy_node()
+        await manual_clock.advance(4.0)
+
+    chatter, slowly = screen.records[-2:]
+    assert chatter["rate_hz"] == 0.0
+    assert slowly["rate_hz"] == pytest.approx(1 / 3)
+
+
+@pytest.mark.parametrize(
+    ("width", "columns"),
+    [
+        (80, ["topic", "rate", "min_delta", "max_delta", "std_dev", "window"]),
+        (60, ["topic", "rate", "min_delta", "max_delta", "std_dev"]),
+        (50, ["topic", "rate", "min_delta", "max_delta"]),
+        (35, ["topic", "rate", "min_delta"]),
+        (20, ["topic", "rate"]),
+    ],
+)
+def test_a_narrow_terminal_drops_columns(width: int, columns: list[str]) -> None:
+    """The names of topics and the rates stay whole."""
+    from rich.console import Console
+
+    rows = [("/chatter", "5.000", "0.200", "0.200", "0.00000", "4"), ("/b", *topic_measure.SILENT)]
+    console = Console(width=width, record=True, file=io.StringIO())
+
+    console.print(topic_measure.hz_table(rows, width))
+
+    text = console.export_text()
+    assert [word for word in topic_measure.HZ_HEADER if word in text] == columns
+    assert "…" not in text
+    assert re.search(r"/chatter +(│ )?5\.000", text)
 
 
 async def test_hz_counts_only_what_the_filter_lets_through(

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from aionode.cli._commands.completion import complete_names, complete_types_of
+from aionode.cli._commands.completion import complete_names, complete_types_of, complete_values
 from aionode.cli._commands.typed_names import add_type_and_find
 from aionode.cli._support.nouns import ACTION
 from aionode.cli._support.options import (
@@ -60,7 +60,9 @@ add_type_and_find(action, ACTION, "action")
 @action.command("send_goal")
 @action_argument
 @click.argument("action_type", shell_complete=complete_types_of("action", "action"))
-@click.argument("values", metavar="[GOAL]", required=False)
+@click.argument(
+    "values", metavar="[GOAL]", required=False, shell_complete=complete_values("action")
+)
 @click.option("--stdin", is_flag=True, help="Read the goal from standard input.")
 @click.option("-f", "--feedback", is_flag=True, help="Print the feedback.")
 @click.option("--timeout", metavar="N", type=positive, help="Wait at most N seconds for a server.")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -14,10 +14,13 @@ if TYPE_CHECKING:
     from aionode.node import Node
 
 __all__ = [
+    "complete_fields",
     "complete_interfaces",
     "complete_names",
     "complete_parameters",
+    "complete_transitions",
     "complete_types_of",
+    "complete_values",
     "completion",
 ]
 
@@ -38,17 +41,18 @@ _aionode_completion() {
     local IFS=$'\\n' response completion type value
     response=$(env COMP_WORDS="${COMP_WORDS[*]}" COMP_CWORD=$COMP_CWORD \\
         _AIONODE_COMPLETE=bash_complete "$1")
-    for completion in $response; do
-        IFS=',' read -r type value <<< "$completion"
+    while IFS=',' read -r type value; do
         case $type in
             dir) COMPREPLY=(); compopt -o dirnames ;;
             file) COMPREPLY=(); compopt -o default ;;
             plain)
+                # Values in YAML are one word of the shell.
+                [[ $value == *[[:space:]]* ]] && value=${value@Q}
                 COMPREPLY+=("$value")
                 # A package name, which continues after its slash.
                 [[ $value == */ ]] && compopt -o nospace ;;
         esac
-    done
+    done <<< "$response"
     return 0
 }
 complete -o nosort -F _aionode_completion aionode
@@ -56,7 +60,7 @@ complete -o nosort -F _aionode_completion aionode
 ZSH = """\
 #compdef aionode
 _aionode_completion() {
-    local -a response plain unfinished described
+    local -a response plain unfinished described quoted
     local type key descr
     (( ! $+commands[aionode] )) && return 1
     response=("${(@f)$(env COMP_WORDS="${words[*]}" COMP_CWORD=$((CURRENT-1)) \\
@@ -71,6 +75,9 @@ _aionode_completion() {
                 elif [[ $key == */ ]]; then
                     # A package name, which continues after its slash.
                     unfinished+=("$key")
+                elif [[ $key == *[[:space:]]* ]]; then
+                    # Values in YAML are one word of the shell.
+                    quoted+=("${(qq)key}")
                 else
                     plain+=("$key")
                 fi ;;
@@ -78,6 +85,7 @@ _aionode_completion() {
     done
     (( $#described )) && _describe -V unsorted described -U
     (( $#unfinished )) && compadd -S '' -U -V unsorted -a unfinished
+    (( $#quoted )) && compadd -Q -U -V unsorted -a quoted
     (( $#plain )) && compadd -U -V unsorted -a plain
     return 0
 }
@@ -87,8 +95,27 @@ else
     compdef _aionode_completion aionode
 fi
 """
-OWN_SCRIPTS = {"bash": BASH, "zsh": ZSH}
-"""Replace click's scripts, which append a space to everything. fish appends none to a slash."""
+FISH = """\
+function _aionode_completion
+    set -l response (env _AIONODE_COMPLETE=fish_complete COMP_WORDS=(commandline -cp) \\
+        COMP_CWORD=(commandline -t) aionode)
+    for completion in $response
+        # Values in YAML have commas of their own.
+        set -l metadata (string split -m 1 "," -- $completion)
+        switch $metadata[1]
+            case dir
+                __fish_complete_directories $metadata[2]
+            case file
+                __fish_complete_path $metadata[2]
+            case plain
+                echo $metadata[2]
+        end
+    end
+end
+complete --no-files --command aionode --arguments "(_aionode_completion)"
+"""
+OWN_SCRIPTS = {"bash": BASH, "zsh": ZSH, "fish": FISH}
+"""Replace click's scripts, which append a space to everything, and end a value at its comma."""
 
 SHELLS = {
     "bash": ("~/.bashrc", 'eval "$(aionode completion bash)"'),
@@ -101,18 +128,9 @@ SHELLS = {
 @click.argument("shell", type=click.Choice(list(SHELLS)))
 def completion(shell: str) -> None:
     """Print the script with which SHELL completes commands, options, types and names."""
-    from click.shell_completion import get_completion_class
-
-    from aionode.cli._main import root
-
     file, line = SHELLS[shell]
     click.echo(SETUP.format(file=file, line=line), nl=False)
-    if shell in OWN_SCRIPTS:
-        click.echo(OWN_SCRIPTS[shell], nl=False)
-        return
-    made = get_completion_class(shell)
-    assert made is not None  # noqa: S101  # click knows all of SHELLS
-    click.echo(made(root, {}, "aionode", "_AIONODE_COMPLETE").source())
+    click.echo(OWN_SCRIPTS[shell], nl=False)
 
 
 def complete_names(what: str) -> Completer:
@@ -159,18 +177,103 @@ def complete_parameters(ctx: click.Context, param: click.Parameter, incomplete: 
     return beginning(incomplete, sorted(now(names)))
 
 
+def complete_values(kind: str) -> Completer:
+    """Return the completer for values of the type before them, with their defaults, in YAML.
+
+    Args:
+        kind: ``message``, ``service`` or ``action``.
+    """
+
+    def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+        cls = class_named(ctx.params.get(f"{kind}_type"))
+        if cls is None or incomplete:
+            return []  # an edited text is not replaced
+        part = {"message": "", "service": "Request", "action": "Goal"}[kind]
+        made = getattr(cls, part, None) if part else cls
+        return [] if made is None else [prototype(made)]
+
+    return complete
+
+
+def prototype(cls: Any) -> str:
+    """Return the defaults of a message in YAML on one line, without single quotes."""
+    from aionode.message import to_yaml
+
+    return to_yaml(cls(), flow_style=True).strip().replace("''", '""')
+
+
+def class_named(type_name: str | None) -> Any:
+    """Return the class of a type, if need be as the nodes describe it; None if there is none."""
+    from aionode.errors import InterfaceNotFoundError
+    from aionode.interfaces import get_interface
+
+    if not type_name:
+        return None
+    try:
+        return get_interface(type_name)
+    except InterfaceNotFoundError:
+        return next(iter(now(lambda node: listed(node.find_type(type_name)))), None)
+
+
+async def listed(awaited: Awaitable[Any]) -> list[Any]:
+    """Return the result of an awaitable in a list."""
+    return [await awaited]
+
+
+def complete_fields(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Complete the path of a field of the topic earlier on the command line."""
+    # An option that has no value yet ends click's parsing: it leaves the arguments as they are.
+    given = [*ctx.args, ctx.params.get("topic_name"), ctx.params.get("message_type")]
+    name, *types = list(filter(None, given)) or [""]
+    if name and not types:
+        types = now(lambda node: done(types_of(node, "topic", name)))
+    classes = [class_named(each) for each in types]
+    paths = [path for cls in classes if cls is not None for path in field_paths(cls)]
+    return beginning(incomplete, list(dict.fromkeys(paths)))
+
+
+def field_paths(cls: Any) -> Iterator[str]:
+    """Yield the paths of all fields of a message class; those of messages in arrays have none."""
+    from aionode.message import fields
+
+    for field in fields(cls):
+        yield field.name
+        if field.type.nested is not None and field.type.container == "single":
+            yield from (f"{field.name}.{path}" for path in field_paths(field.type.nested))
+
+
+def complete_transitions(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Complete the transitions available to the managed node earlier on the command line."""
+    node_name = ctx.params.get("node_name")
+    if not node_name:
+        return []
+
+    async def labels(node: Node) -> list[str]:
+        from aionode.cli._support.lookup import absolute
+        from aionode.cli._verbs.lifecycle import managed_nodes, transitions
+
+        name = absolute(node_name)
+        if name not in managed_nodes(node, hidden=True):
+            return []
+        async with asyncio.timeout(ANSWER_S):
+            found = await transitions(node, name)
+        return [one.transition.label for one in found]
+
+    return beginning(incomplete, now(labels))
+
+
 def beginning(incomplete: str, names: list[str]) -> list[str]:
     """Return the names that begin with `incomplete`."""
     return [name for name in names if name.startswith(incomplete)]
 
 
-def now(question: Callable[[Node], Awaitable[list[str]]]) -> list[str]:
+def now(question: Callable[[Node], Awaitable[list[Any]]]) -> list[Any]:
     """Return the network's answer to a question, or nothing after an error.
 
     An error cannot be shown in the middle of a command line.
     """
 
-    async def ask() -> list[str]:
+    async def ask() -> list[Any]:
         from aionode.cli._support.session import make_node
 
         async with make_node() as node:

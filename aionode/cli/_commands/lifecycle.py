@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from aionode.cli._commands.completion import complete_names
+from aionode.cli._commands.completion import complete_names, complete_transitions
 from aionode.cli._support.options import json_option, ros2_options
 from aionode.cli._support.session import run_verb
 from aionode.cli._verbs.lifecycle import (
@@ -68,7 +68,7 @@ def list_command(json: bool, node_name: str, every: bool) -> None:
 
 @lifecycle.command("set")
 @node_argument
-@click.argument("transition")
+@click.argument("transition", shell_complete=complete_transitions)
 @json_option
 @ros2_options
 def set_command(json: bool, node_name: str, transition: str) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from aionode.cli._commands.completion import complete_names, complete_types_of
+from aionode.cli._commands.completion import complete_names, complete_types_of, complete_values
 from aionode.cli._commands.typed_names import add_type_and_find
 from aionode.cli._support.nouns import SERVICE
 from aionode.cli._support.options import (
@@ -60,7 +60,7 @@ add_type_and_find(service, SERVICE, "srv")
 @service.command("call")
 @service_argument
 @click.argument("service_type", shell_complete=complete_types_of("service", "srv"))
-@click.argument("values", required=False)
+@click.argument("values", required=False, shell_complete=complete_values("service"))
 @click.option("--stdin", is_flag=True, help="Read the values from standard input.")
 @click.option("-r", "--rate", metavar="N", type=hertz, help="Repeat the call, in Hz.")
 @click.option("--timeout", metavar="N", type=positive, help="Wait at most N seconds.")

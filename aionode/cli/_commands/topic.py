@@ -7,7 +7,12 @@ from typing import Any
 
 import click
 
-from aionode.cli._commands.completion import complete_names, complete_types_of
+from aionode.cli._commands.completion import (
+    complete_fields,
+    complete_names,
+    complete_types_of,
+    complete_values,
+)
 from aionode.cli._commands.typed_names import add_type_and_find
 from aionode.cli._support.nouns import TOPIC
 from aionode.cli._support.options import (
@@ -76,7 +81,10 @@ add_type_and_find(topic, TOPIC, "msg")
 @click.argument("message_type", required=False, shell_complete=complete_types_of("topic", "msg"))
 @qos_options("sensor_data")
 @click.option("--csv", is_flag=True, help="Print all values on one line, separated by commas.")
-@click.option("--field", metavar="PATH", help="Print one field, such as pose.position or name[0].")
+@click.option(
+    "--field", metavar="PATH", shell_complete=complete_fields,
+    help="Print one field, such as pose.position or name[0].",
+)  # fmt: skip
 @click.option("-f", "--full-length", is_flag=True, help="Print arrays and strings in full.")
 @click.option(
     "-l",
@@ -140,7 +148,7 @@ def echo_command(
 @topic.command("pub")
 @topic_argument
 @click.argument("message_type", shell_complete=complete_types_of("topic", "msg"))
-@click.argument("values", required=False)
+@click.argument("values", required=False, shell_complete=complete_values("message"))
 @click.option("--stdin", is_flag=True, help="Read the values from standard input.")
 @click.option(
     "-r",

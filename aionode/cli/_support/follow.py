@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 from typing import TYPE_CHECKING, Any
 
 from aionode.cli._support import lookup
@@ -92,9 +93,16 @@ class Follower:
 
 
 async def wait_for_type(
-    node: Node, topic: str, output: Output, given: str | None = None
+    node: Node,
+    topic: str,
+    output: Output,
+    given: str | None = None,
+    *,
+    spinner: bool = True,
 ) -> type[Message]:
     """Return the class of a topic's messages, waiting for an endpoint if there is none yet.
+
+    Meanwhile a terminal shows a `spinner`, unless it shows something else.
 
     Raises:
         CommandError: the type cannot be determined.
@@ -103,7 +111,8 @@ async def wait_for_type(
     if found is None:
         hint = lookup.close_to(topic, lookup.names_and_types(node, *TOPIC_KINDS))
         output.progress(f"WARNING: topic [{topic}] does not appear to be published yet{hint}")
-        with output.waiting(f"waiting for a publisher of {topic}"):
+        waiting = output.waiting(f"waiting for a publisher of {topic}")
+        with waiting if spinner else contextlib.nullcontext():
             await node.graph.until(
                 lambda: bool(lookup.endpoints(node, *TOPIC_KINDS, name=topic)), topic
             )

@@ -18,7 +18,7 @@ from aionode._streams import discard
 from aionode.errors import CommandError, escaped
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 __all__ = ["Output", "unwritable"]
 
@@ -122,13 +122,17 @@ class Output:
             yield
 
     @contextlib.contextmanager
-    def live(self) -> Iterator[Any]:
-        """Yield a function that displays a rich table in place of the previous one."""
+    def live(self) -> Iterator[Callable[[Callable[[int], Any]], None]]:
+        """Yield a function that displays a rich table in place of the previous one.
+
+        It is given what makes the table for the width of the terminal, in characters.
+        """
         from rich.console import Console
         from rich.live import Live
 
-        with Live(console=Console(file=self._stdout), auto_refresh=False) as live:
-            yield lambda table: live.update(table, refresh=True)
+        console = Console(file=self._stdout)
+        with Live(console=console, auto_refresh=False) as live:
+            yield lambda table_for: live.update(table_for(console.width), refresh=True)
 
 
 def unwritable(error: OSError) -> str:

@@ -17,7 +17,14 @@ if TYPE_CHECKING:
     from aionode.message import ServiceClass
     from aionode.node import Node
 
-__all__ = ["get_state", "list_nodes", "list_transitions", "set_state", "transitions"]
+__all__ = [
+    "get_state",
+    "list_nodes",
+    "list_transitions",
+    "managed_nodes",
+    "set_state",
+    "transitions",
+]
 
 RequestT = TypeVar("RequestT", bound=Message)
 

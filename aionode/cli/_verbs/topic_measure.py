@@ -7,6 +7,7 @@ counted: connecting delays them.
 
 from __future__ import annotations
 
+import asyncio
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -49,6 +50,12 @@ QOS = qos_profile_sensor_data.replace(depth=DEPTH)
 
 HZ_HEADER = ("topic", "rate", "min_delta", "max_delta", "std_dev", "window")
 
+LEAST_FIRST = (5, 4, 3, 2)
+"""The columns that a narrow terminal leaves out, the least important one first."""
+
+SILENT = ("-",) * (len(HZ_HEADER) - 1)
+"""What stands for the statistics of a silent topic."""
+
 
 # Rate
 
@@ -78,32 +85,32 @@ async def hz(
         if intervals[name].arrive(arrival_ns(node, info, wall_time=wall_time)):
             output.text("time has reset, resetting counters")
 
-    subscriptions = []
-    for name in names:
-        msg_type = await wait_for_type(node, name, output)
-        if len(names) > 1:
+    subscriptions: list[Subscription[Any]] = []
+
+    async def subscribe(name: str) -> None:
+        msg_type = await wait_for_type(node, name, output, spinner=len(names) == 1)
+        if len(names) > 1 and not output.is_terminal:  # there, the table has its row already
             output.text(f"Subscribed to [{name}]")
-        subscriptions.append(
-            follow_connected(
-                node, follower, msg_type, name, partial(on_message, name), raw=filter_text is None
-            )
-        )
+        deliver = partial(on_message, name)
+        raw = filter_text is None
+        subscriptions.append(follow_connected(node, follower, msg_type, name, deliver, raw=raw))
+
     dropped = Dropped(subscriptions, output)
-    shown: dict[str, Spread] = {}
-
-    def report(show: Callable[[dict[str, Spread]], None]) -> None:
-        dropped.warn()
-        new = {name: spread for name in names if (spread := intervals[name].spread())}
-        shown.update(new)
-        if new:
-            show(shown)
-
-    if len(names) > 1 and output.is_terminal:
+    if len(names) == 1:
+        await subscribe(names[0])
+        show = partial(print_rate, output, names[0], intervals[names[0]], dropped)
+        await every_second(node, follower, show)
+        return
+    table = RateTable(intervals)
+    # At the same time: a topic that has no publisher yet must not hide the others.
+    subscribing = map(subscribe, names)
+    if output.is_terminal:
         with output.live() as update:
-            await every_second(node, follower, partial(report, lambda s: update(hz_table(s))))
+            show = partial(show_rates, table, dropped, update)
+            await asyncio.gather(every_second(node, follower, show), *subscribing)
     else:
-        show = partial(print_rate if len(names) == 1 else print_rates, output)
-        await every_second(node, follower, partial(report, show))
+        show = partial(print_rates, table, dropped, output)
+        await asyncio.gather(every_second(node, follower, show), *subscribing)
 
 
 def follow_connected(
@@ -169,8 +176,11 @@ def hz_values(spread: Spread) -> tuple[str, str, str, str, str]:
     )
 
 
-def hz_record(name: str, spread: Spread) -> dict[str, Any]:
-    """Return the record of one topic."""
+def hz_record(name: str, spread: Spread | None) -> dict[str, Any]:
+    """Return the record of one topic; of a silent one the rate is 0."""
+    if spread is None:
+        silent = dict.fromkeys(("min_s", "max_s", "std_dev_s"))
+        return {"topic": name, "rate_hz": 0.0, **silent, "window": 0}
     return {
         "topic": name,
         "rate_hz": spread.rate_hz,
@@ -181,9 +191,57 @@ def hz_record(name: str, spread: Spread) -> dict[str, Any]:
     }
 
 
-def print_rate(output: Output, shown: dict[str, Spread]) -> None:
-    """Print the statistics of the only topic."""
-    ((name, spread),) = shown.items()
+class RateTable:
+    """The newest statistics of several topics, each once a second.
+
+    A topic is silent until its second message, and again when its next one is long overdue.
+
+    Args:
+        intervals: For each topic, the time between its messages.
+    """
+
+    def __init__(self, intervals: dict[str, Intervals]) -> None:
+        self._intervals = intervals
+        self._shown: dict[str, Spread | None] = dict.fromkeys(intervals)
+        self._silent_s = dict.fromkeys(intervals, 0.0)
+
+    def update(self) -> bool:
+        """Take what came in the last second; return whether anything did, or fell silent."""
+        changed = False
+        for name, before in self._shown.items():
+            new = self._intervals[name].spread()
+            self._silent_s[name] = 0.0 if new else self._silent_s[name] + PRINT_PERIOD_S
+            if new is None and before is not None and self._silent_s[name] > overdue_s(before):
+                self._shown[name] = None
+                changed = True
+            if new is not None:
+                self._shown[name] = new
+                changed = True
+        return changed
+
+    def rows(self) -> list[tuple[str, ...]]:
+        """Return a row for each topic, in the columns of `HZ_HEADER`."""
+        return [
+            (name, *(SILENT if spread is None else hz_values(spread)))
+            for name, spread in self._shown.items()
+        ]
+
+    def records(self) -> list[dict[str, Any]]:
+        """Return the record of each topic."""
+        return [hz_record(name, spread) for name, spread in self._shown.items()]
+
+
+def overdue_s(spread: Spread) -> float:
+    """Return after how many silent seconds a topic counts as silent: a few of its intervals."""
+    return 1.0 + 3 * spread.high / 1e9
+
+
+def print_rate(output: Output, name: str, intervals: Intervals, dropped: Dropped) -> None:
+    """Print the statistics of the only topic, unless nothing came."""
+    dropped.warn()
+    spread = intervals.spread()
+    if spread is None:
+        return
     rate, low, high, deviation, count = hz_values(spread)
     output.item(
         f"average rate: {rate}\n\tmin: {low}s max: {high}s std dev: {deviation}s window: {count}",
@@ -191,22 +249,48 @@ def print_rate(output: Output, shown: dict[str, Spread]) -> None:
     )
 
 
-def print_rates(output: Output, shown: dict[str, Spread]) -> None:
-    """Print the statistics of several topics."""
-    output.text(table_text(HZ_HEADER, [(n, *hz_values(s)) for n, s in shown.items()]))
+def print_rates(table: RateTable, dropped: Dropped, output: Output) -> None:
+    """Print the statistics of several topics, unless nothing came."""
+    dropped.warn()
+    if not table.update():
+        return
+    output.text(table_text(HZ_HEADER, table.rows()))
     if output.json:
-        for name, spread in shown.items():
-            output.item("", hz_record(name, spread))
+        for record in table.records():
+            output.item("", record)
 
 
-def hz_table(shown: dict[str, Spread]) -> Any:
-    """Return the statistics as a rich table."""
+def show_rates(
+    table: RateTable, dropped: Dropped, update: Callable[[Callable[[int], Any]], None]
+) -> None:
+    """Display the statistics of several topics on a terminal."""
+    dropped.warn()
+    table.update()
+    update(partial(hz_table, table.rows()))
+
+
+def hz_table(rows: list[tuple[str, ...]], width: int) -> Any:
+    """Return the statistics as a rich table, without the columns that do not fit."""
+    from rich import box
     from rich.table import Table
 
-    table = Table(*HZ_HEADER)
-    for name, spread in shown.items():
-        table.add_row(name, *hz_values(spread))
+    kept = columns_for(rows, width)
+    # In less than 40 columns the frame goes too: names of topics matter more.
+    table = Table(*(HZ_HEADER[i] for i in kept), box=None if len(kept) == 2 else box.HEAVY_HEAD)
+    for row in rows:
+        table.add_row(*(row[i] for i in kept))
     return table
+
+
+def columns_for(rows: list[tuple[str, ...]], width: int) -> list[int]:
+    """Return which columns fit into `width`; topic and rate always stay."""
+    widths = [max(map(len, column)) for column in zip(HZ_HEADER, *rows, strict=True)]
+    kept = list(range(len(HZ_HEADER)))
+    for column in LEAST_FIRST:
+        if sum(widths[i] + 3 for i in kept) + 1 <= width:  # each has two blanks and a line
+            break
+        kept.remove(column)
+    return kept
 
 
 # Bandwidth
