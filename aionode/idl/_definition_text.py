@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import textwrap
 from collections.abc import Iterator
@@ -27,6 +28,9 @@ __all__ = ["definition_text"]
 WIDTH = 96
 """The longest line of a comment, in characters."""
 
+STAND_IN = re.compile(r"The (request|response|goal|result|feedback) of \w+\.|\w+, as in \S+\.")
+"""What the classes made of a definition say of themselves where that has no comment."""
+
 CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]")
 
 
@@ -47,7 +51,7 @@ def definition_text(
         nested: Show the fields of nested messages below each field, indented by tabs, as
             ``ros2 interface show`` does. Such text is for reading only and cannot be parsed.
         comments: Which comments to show: those of the file of the sourced ROS 2 that defines the
-            type, or else what the class says of its fields.
+            type, or else what the class says of itself and its fields.
 
     Raises:
         TypeError: `cls` is not such a class, or has no ROS name.
@@ -57,6 +61,8 @@ def definition_text(
     parts = source_parts(cls) if comments != "none" else None
     if parts is None:
         found = [lines(message, package, nested=nested, comments=comments) for message in messages]
+        if cls not in messages and comments != "none":
+            found[0] = itertools.chain(summary(cls), found[0])
     else:
         found = [
             source_lines(part, message, nested=nested, comments=comments)
@@ -69,16 +75,36 @@ def lines(
     cls: type[Message], package: str, *, nested: bool, comments: Comments = "none"
 ) -> Iterator[str]:
     """Yield the lines of one message, constants first."""
-    described = {} if comments == "none" else documentation(cls)[1]
+    described = {}
+    if comments != "none":
+        described = documentation(cls)[1]
+        yield from summary(cls, alone=not fields(cls) and not constants(cls))
     for constant in constants(cls):
         yield f"{constant.type} {constant.name}={literal(constant.type, constant.value)}"
     for field in fields(cls):
-        for line in textwrap.wrap(described.get(field.name, ""), WIDTH):
-            yield f"# {line}"
+        yield from comment(described.get(field.name, ""))
         default = "" if field.default is None else f" {default_text(field)}"
         yield f"{type_text(field.type, package)} {field.name}{default}"
         if nested:
             yield from nested_lines(field, comments)
+
+
+def summary(cls: type[Message | ServiceType | ActionType], *, alone: bool = False) -> Iterator[str]:
+    """Yield what a class says of itself, and an empty line unless it stands `alone`.
+
+    Standard types have their units there: "A point in space: coordinates in m."
+    """
+    text = documentation(cls)[0]
+    if text and STAND_IN.fullmatch(text) is None:
+        yield from comment(text)
+        if not alone:
+            yield ""
+
+
+def comment(text: str) -> Iterator[str]:
+    """Yield a text of a docstring as lines of a comment."""
+    for line in textwrap.wrap(text.replace("``", "`"), WIDTH):
+        yield f"# {line}"
 
 
 def nested_lines(field: Field, comments: Comments) -> Iterator[str]:
@@ -94,7 +120,7 @@ def nested_lines(field: Field, comments: Comments) -> Iterator[str]:
         package = split_type_name(type_name(cls))[0]
         found = lines(cls, package, nested=True, comments=inner)
     for line in found:
-        yield f"\t{line}"
+        yield f"\t{line}" if line else ""
 
 
 def source_parts(cls: type[Message | ServiceType | ActionType]) -> list[list[str]] | None:

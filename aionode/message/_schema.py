@@ -115,7 +115,7 @@ def with_notes(field: Field, text: str | None, schema: Schema) -> Schema:
     return {**schema, **notes}
 
 
-def documentation(cls: type[Message]) -> tuple[str, dict[str, str]]:
+def documentation(cls: type[object]) -> tuple[str, dict[str, str]]:
     """Return the docstring's text, and its description of each field under ``Attributes:``."""
     text, _, attributes = inspect.cleandoc(cls.__doc__ or "").partition("\nAttributes:\n")
     described: dict[str, str] = {}

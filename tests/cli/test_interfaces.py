@@ -10,14 +10,42 @@ import pytest
 from aionode.cli._main import main
 from aionode.cli._verbs.interface import list_interfaces, package, packages, proto, show
 from aionode.errors import CommandError
-from aionode.interfaces import get_interface
+from aionode.interfaces import get_interface, interface_names
 
 
 def test_show_prints_a_service(screen: Any) -> None:
     """Recorded with ros2."""
-    show(get_interface("example_interfaces/srv/AddTwoInts"), output=screen.output)
+    show(get_interface("example_interfaces/srv/AddTwoInts"), output=screen.output, comments="none")
 
     assert screen.text == "int64 a\nint64 b\n---\nint64 sum\n"
+
+
+def test_show_says_what_a_type_is_for(screen: Any) -> None:
+    """A service by itself, and each of its halves."""
+    show(get_interface("std_srvs/srv/Trigger"), output=screen.output)
+    show(get_interface("geometry_msgs/msg/Point"), output=screen.output)
+
+    assert screen.text == (
+        "# Have something done that needs no arguments.\n\n"
+        "# Nothing: the call is the request.\n"
+        "---\n"
+        "# Whether it was done, and a word on how.\n\n"
+        "bool success\nstring message\n"
+        "# A point in space: coordinates in m.\n\n"
+        "float64 x\nfloat64 y\nfloat64 z\n"
+    )
+
+
+SHOWN = [name for name in interface_names() if not name.startswith("test_msgs/")]
+
+
+@pytest.mark.parametrize("name", SHOWN)
+def test_every_shipped_type_has_comments(name: str, screen: Any) -> None:
+    """And a stand-in such as "The request of GetMap." is none."""
+    show(get_interface(name), output=screen.output)
+
+    assert screen.text.startswith("# ") or "\n# " in screen.text
+    assert "# The request of" not in screen.text
 
 
 def test_show_indents_what_is_inside(screen: Any) -> None:
@@ -33,9 +61,10 @@ def test_show_says_what_fields_mean(screen: Any) -> None:
     show(get_interface("geometry_msgs/msg/Twist"), output=screen.output)
 
     assert screen.text.startswith(
+        "# A velocity: what `/cmd_vel` carries.\n\n"
         "# In m/s; x is forward, y to the left, z up.\nVector3 linear\n\t"
     )
-    assert screen.text.count("#") == 2
+    assert screen.text.count("#") == 3
 
 
 def test_show_prints_the_comments_of_the_installed_file(
