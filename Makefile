@@ -15,7 +15,7 @@
 #   make live      aionode beside a real ROS 2 on rmw_zenoh, where one is sourced
 #   make crowd     300 nodes come and go beside a router, which has to answer all the while
 #   make soak      everything at once, for SOAK_SECONDS seconds: nothing may grow
-#   make quotes    brings the code quoted in README.md and docs/ up to date
+#   make quotes    brings the code and the docstrings that the documentation shows up to date
 #   make clean     removes what was made, .venv included
 
 # The first of these that is Python 3.11 or newer. Use another one with make PYTHON=/path/to/python.

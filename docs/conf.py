@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
+import sys
 from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+sys.path.insert(0, str(Path(__file__).parent.parent))
+from docs.contents import without_contents
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
 
 project = "aionode"
 author = "The aionode authors"
@@ -39,3 +48,13 @@ napoleon_google_docstring = True
 napoleon_numpy_docstring = False
 napoleon_use_rtype = False
 napoleon_use_ivar = True
+
+
+def setup(app: Sphinx) -> None:
+    """Leave out the lists for those who read the files."""
+    app.connect("source-read", leave_out_contents)
+
+
+def leave_out_contents(_app: Sphinx, _page: str, source: list[str]) -> None:
+    """Change the text of one page before it is parsed."""
+    source[0] = without_contents(source[0])

@@ -1,4 +1,4 @@
-"""Keeps the code quoted in the documentation equal to the files that it is quoted from.
+"""Keeps the code quoted in the documentation, and the lists in the reference, up to date.
 
 A block of code below ``<!-- quote: examples/talker.py -->`` is that file, and below
 ``<!-- quote: examples/talker.py#Talker.say -->`` that class, method or function of it.
@@ -16,6 +16,10 @@ from pathlib import Path
 from typing import Final
 
 ROOT: Final = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT))  # run as a program, it has the path of its folder only
+
+from docs.contents import with_contents
+
 QUOTE: Final = re.compile(
     r"^<!-- quote: (?P<source>\S+) -->\n+```(?P<language>\w*)\n(?P<code>.*?)^```$",
     re.MULTILINE | re.DOTALL,
@@ -70,18 +74,24 @@ def refreshed(page: str) -> str:
     return QUOTE.sub(replace, page)
 
 
+def current(path: Path, text: str) -> str:
+    """Return the text of a page with its quotes, and its list in the reference, as they are now."""
+    new = refreshed(text)
+    return with_contents(new) if path.parent.name == "reference" else new
+
+
 def main(*, check: bool) -> int:
     """Refresh or check every page; the result is the exit status."""
     stale = 0
     for path in pages():
         text = path.read_text(encoding="utf-8")
-        new = refreshed(text)
+        new = current(path, text)
         if new == text:
             continue
         stale += 1
         name = path.relative_to(ROOT)
         if check:
-            print(f"{name}: quotes code that has changed; make quotes", file=sys.stderr)
+            print(f"{name}: shows code that has changed; make quotes", file=sys.stderr)
         else:
             path.write_text(new, encoding="utf-8")
             print(f"{name}: brought up to date")

@@ -17,6 +17,7 @@ import pytest
 
 from aionode.cli._main import root
 from aionode.context import Context
+from docs.contents import with_contents, without_contents
 from docs.quotes import QUOTE, ROOT, fragment, pages, refreshed
 
 if TYPE_CHECKING:
@@ -85,6 +86,17 @@ def test_quoted_code_is_the_code_that_is_run() -> None:
         assert refreshed(text) == text, page
         marks = re.findall(r"^<!-- quote:", text, re.MULTILINE)
         assert len(marks) == len(QUOTE.findall(text)), f"{page}: a quote without a block"
+
+
+def test_the_reference_lists_what_sphinx_shows() -> None:
+    """In a checkout and on a code host its pages would be empty; `make quotes` makes the lists."""
+    for page in sorted((ROOT / "docs" / "reference").glob("*.md")):
+        text = page.read_text(encoding="utf-8")
+
+        assert with_contents(text) == text, page
+    node = (ROOT / "docs" / "reference" / "node.md").read_text(encoding="utf-8")
+    assert "  - `create_publisher`: Return a publisher" in node
+    assert "create_publisher" not in without_contents(node)
 
 
 @pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "python")])
