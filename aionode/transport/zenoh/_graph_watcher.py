@@ -319,8 +319,8 @@ class Watcher:
         logger.log(
             logging.WARNING if warns else logging.DEBUG,
             "nodes of domain %s%s can be reached, but this is domain %d: they do not hear each "
-            "other. ROS_DOMAIN_ID or Context(domain_id=...) changes the domain; --ros-args "
-            "--log-level aionode.transport.zenoh:=error hides this",
+            "other. ROS_DOMAIN_ID or Context(domain_id=...) changes the domain; in a "
+            "program, --ros-args --log-level aionode.transport.zenoh:=error hides this",
             ", ".join(map(str, named)),
             f" and {count - len(named)} more" if count > len(named) else "",
             self._state.domain_id,

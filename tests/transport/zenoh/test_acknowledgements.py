@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import partial
@@ -47,6 +48,21 @@ def writer_of(publisher: Any) -> ZenohWriter:
     writer = publisher._writers[1]
     assert isinstance(writer, ZenohWriter)
     return writer
+
+
+async def test_the_log_gives_a_publisher_a_remedy_that_it_does_not_use_yet(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """A KEEP_ALL publisher is not told to use KEEP_ALL."""
+    with caplog.at_level(logging.WARNING, "aionode.transport.zenoh"):
+        async with quiet_node("here") as node:
+            for qos in (KEEP_ALL, QoSProfile(depth=10)):
+                writer_of(node.create_publisher(Int32, "n", qos)).lost(1)
+
+    keeps_all, keeps_last = (text for text in caplog.messages if "were dropped" in text)
+    assert "KEEP_ALL" not in keeps_all
+    assert "`await drain()`" in keeps_all
+    assert "A greater depth keeps more of them, KEEP_ALL and `await drain()` all" in keeps_last
 
 
 async def acknowledged(publisher: Any) -> None:
