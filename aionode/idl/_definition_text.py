@@ -28,7 +28,9 @@ __all__ = ["definition_text"]
 WIDTH = 96
 """The longest line of a comment, in characters."""
 
-STAND_IN = re.compile(r"The (request|response|goal|result|feedback) of \w+\.|\w+, as in \S+\.")
+STAND_IN = re.compile(
+    r"The (request|response|goal|result|feedback) of \w+\.|\S+, as (in \S+|a node describes it)\."
+)
 """What the classes made of a definition say of themselves where that has no comment."""
 
 CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]")

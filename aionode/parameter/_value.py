@@ -251,6 +251,17 @@ def parameter_value_to_python(parameter_value: rcl_msg.ParameterValue) -> Any:
 # Text
 
 
+FROM_CONSTRUCTORS = (
+    ArithmeticError,
+    AttributeError,
+    LookupError,
+    RecursionError,
+    TypeError,
+    ValueError,
+)
+"""What PyYAML's constructors raise besides its own errors, for an empty ``!!int`` for example."""
+
+
 def get_parameter_value(string_value: str) -> rcl_msg.ParameterValue:
     """Return the value of a text as ``ros2 param set`` reads it: as PyYAML does.
 
@@ -274,8 +285,7 @@ def loaded_yaml(text: str) -> Any:
 
     try:
         return yaml.safe_load(text)
-    except (yaml.YAMLError, ArithmeticError, LookupError, RecursionError, TypeError, ValueError):
-        # Those that are not PyYAML's are from its constructors: an empty `!!int`, for example.
+    except (yaml.YAMLError, *FROM_CONSTRUCTORS):
         return text
 
 

@@ -166,6 +166,7 @@ def test_a_message_of_an_unknown_type_is_an_error() -> None:
         ("[true, 1]", [1, 1]),
         ("[1, a]", "[1, a]"),
         ("!!int ''", "!!int ''"),
+        ("!!timestamp", "!!timestamp"),
         ("{a: 1}", "{a: 1}"),
         ("hello", "hello"),
         ("'7'", "7"),
