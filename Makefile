@@ -10,6 +10,7 @@
 #   make docs      the documentation as pages, in site/
 #   make fuzz      damaged input for every parser: by property tests, and guided by coverage
 #   make faults    processes that freeze, lag and die, FAULTS_TIMES times: writes docs/reliability.md
+#   make attacks   lies, floods and forgeries beside true traffic: writes them into docs/security.md
 #   make motion    robots whose movers go in every way, MOTION_TIMES times: writes docs/motion.md
 #   make ros-test  aionode over DDS, beside rclpy of PyPI; Linux x86-64
 #   make live      aionode beside a real ROS 2 on rmw_zenoh, where one is sourced
@@ -30,11 +31,11 @@ MOTION_TIMES ?= 20
 WORKERS ?= auto
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test stress check coverage bench profile docs fuzz faults motion live ros-test crowd \
+.PHONY: help demo test stress check coverage bench profile docs fuzz faults attacks motion live ros-test crowd \
 	soak quotes clean
 
 help:
-	@sed -n '3,19s/^# *//p' Makefile
+	@sed -n '3,20s/^# *//p' Makefile
 
 demo: .venv/installed
 	$(BIN)/python -m aionode.examples.pubsub
@@ -77,9 +78,13 @@ fuzz: .venv/installed-dev
 	$(BIN)/python -m tests.support.fuzz_cdr --cases 3000000
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fuzz]'
 	$(BIN)/python -m tests.fuzz --seconds $(FUZZ_SECONDS)
+	$(BIN)/python -m tests.attacks.fuzz --seconds $(FUZZ_SECONDS)
 
 faults: .venv/installed-dev
 	$(BIN)/python -m tests.faults --times $(FAULTS_TIMES) --write docs/reliability.md
+
+attacks: .venv/installed-dev
+	$(BIN)/python -m tests.attacks --write docs/security.md
 
 motion: .venv/installed-dev
 	$(BIN)/python -m tests.faults --only '^motion' --times $(MOTION_TIMES) --write-motion docs/motion.md

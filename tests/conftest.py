@@ -59,6 +59,7 @@ def debugging_loop() -> asyncio.AbstractEventLoop:
 PROCESSES = (
     "tests/processes/",
     "tests/faults/",
+    "tests/attacks/",
     "tests/cli/test_terminal.py",
     "tests/cli/test_ending.py",
     "tests/cli/test_shells.py",

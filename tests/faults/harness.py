@@ -359,9 +359,13 @@ class Child:
         self._terminal.close()
         self._closing.close()
 
+    def whole_output(self) -> str:
+        """Return what it wrote."""
+        return self._output.read_text(errors="replace") if self._output.exists() else ""
+
     def output(self) -> str:
         """Return the end of what it wrote."""
-        return self._output.read_text(errors="replace")[-2000:] if self._output.exists() else ""
+        return self.whole_output()[-2000:]
 
 
 def command_of(role: Role) -> Sequence[str]:

@@ -24,8 +24,10 @@ from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.rcl_interfaces.msg import ParameterValue
 from aionode.interfaces.rcl_interfaces.srv import GetParameters
 from aionode.interfaces.std_msgs.msg import String
+from aionode.message import type_name
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from aionode.transport.zenoh._session import close_session, open_router
+from aionode.wire import cdr
 from tests.faults.motion.wheels import Wheels, move
 from tests.faults.roles import (
     REPORTS_VARIABLE,
@@ -234,7 +236,10 @@ class Process:
         async with (
             Context() as context,
             Node(
-                role.name, context=context, enable_rosout=False, start_parameter_services=False
+                role.name,
+                context=context,
+                enable_rosout=False,
+                start_parameter_services=bool(role.parameter_size),
             ) as node,
         ):
             self.offer(node)
@@ -252,6 +257,8 @@ class Process:
                 work.append(shout(node))
             if role.fork:
                 work.append(fork(self.report))
+            if role.curious:
+                work.append(look_up(node))
             async with asyncio.TaskGroup() as tasks:
                 for each_work in work:
                     tasks.create_task(each_work)
@@ -263,6 +270,8 @@ class Process:
     def offer(self, node: Node) -> None:
         """Subscribe and serve, and be wheels."""
         role = self.role
+        if role.parameter_size:
+            node.declare_parameter("large", "x" * role.parameter_size)
         for each in role.hear:
             self.hear(node, each)
         if role.serve:
@@ -280,6 +289,8 @@ class Process:
         async def take(msg: String) -> None:
             nonlocal paused
             self.reporter.hear(hear.topic, msg.data)
+            if hear.block_s:
+                time.sleep(hear.block_s)  # noqa: ASYNC251 - the loop is to be busy
             if hear.slow_s:
                 await asyncio.sleep(hear.slow_s)
             if hear.pause_s and not paused and int(msg.data.split(" ", 3)[2]) >= 50:
@@ -372,6 +383,18 @@ async def shout(node: Node) -> None:
     while True:
         node.get_logger().warning("x" * 1000)
         await asyncio.sleep(0.001)
+
+
+async def look_up(node: Node) -> None:
+    """Look up types of topics that are not known, as a bag or a browser does, until cancelled."""
+    while True:
+        names = {name for _, types in node.get_topic_names_and_types() for name in types}
+        for name in names - {type_name(String)}:
+            with suppress(AionodeError):
+                found = await node.find_type(name)
+                node.create_subscription(found, "/looked_up", print).destroy()
+                cdr.encode(found())
+        await asyncio.sleep(REPORT_S)
 
 
 def forked() -> None:

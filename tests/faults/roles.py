@@ -70,6 +70,7 @@ class Hear(msgspec.Struct, frozen=True):
         depth: How many messages may wait for its callback.
         transient: Whether it asks for what its publishers have kept.
         slow_s: How long the callback awaits for each message.
+        block_s: How long it keeps the loop busy for each message.
         pause_s: How long it awaits once, at message number 50, with its loop free.
     """
 
@@ -78,6 +79,7 @@ class Hear(msgspec.Struct, frozen=True):
     depth: int = 10
     transient: bool = False
     slow_s: float = 0.0
+    block_s: float = 0.0
     pause_s: float = 0.0
 
 
@@ -100,6 +102,9 @@ class Role(msgspec.Struct, frozen=True):
             rmw_zenoh, the lease of 60 s included. It can only publish and hear.
         noisy: Whether it writes to stdout and stderr without end.
         fork: Whether it makes a node in a forked child of its own.
+        parameter_size: Characters of the parameter ``large`` that its services of parameters offer;
+            0 for a node without such services.
+        curious: Whether it looks up types that it does not know, and makes messages of them.
         control: Whether it has no node, and does nothing but watch its event loop.
         mover: What it asks to move, in a program of its own.
         wheels: The wheels that it has.
@@ -127,6 +132,8 @@ class Role(msgspec.Struct, frozen=True):
     ros: bool = False
     noisy: bool = False
     fork: bool = False
+    parameter_size: int = 0
+    curious: bool = False
     control: bool = False
     mover: Mover | None = None
     wheels: tuple[Wheel, ...] = ()

@@ -1,0 +1,154 @@
+"""The attacks: who, what, and beside which processes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+
+from tests.attacks.harness import AccessControl, Attack
+from tests.faults.roles import Hear, Publish, Role
+
+__all__ = ["all_attacks"]
+
+OPEN = "not mended yet"
+
+ZENOH = "Zenoh itself: its put waits while it takes in, or drops, thousands of declarations"
+
+
+def pair(link: str = "off", env: dict[str, str] | None = None, **talker: Any) -> tuple[Role, ...]:
+    """Return two nodes with true messages in both directions, 100 in each second.
+
+    Args:
+        link: Whether they are linked, or talk over Zenoh.
+        env: Variables of their environment, in place of that one.
+        talker: What the first node does besides.
+    """
+    env = {"AIONODE_LINK": link} if env is None else env
+    publish = (Publish("/chatter", period_s=0.01), *talker.pop("publish", ()))
+    return (
+        Role("talker", publish=publish, hear=(Hear("/back", depth=100),), env=env, **talker),
+        Role(
+            "listener",
+            publish=(Publish("/back", period_s=0.01),),
+            hear=(Hear("/chatter", depth=100),),
+            env=env,
+        ),
+    )
+
+
+def clouds(**options: Any) -> tuple[Publish, ...]:
+    """Return a publisher of messages of 10 kB that none of the true nodes hears."""
+    return (Publish("/clouds", period_s=0.02, size=10_000, readers=0, **options),)
+
+
+SMALL_QUEUES = {"AIONODE_LINK": "off", "AIONODE_QUEUE_BYTES": str(4 << 20)}
+LISTS = (("node", "list"), ("topic", "list", "-t"), ("topic", "info", "-v", "/chatter"))
+
+
+def all_attacks() -> list[Attack]:
+    """Return all attacks, each with what it needs around it."""
+    rules = AccessControl()
+    return [
+        Attack("none: what the table compares with", "nobody", "wait", pair()),
+        Attack("random bytes to their ports", "outsider", "send_garbage", pair(), short=True),
+        Attack(
+            "connections to their ports that say nothing", "outsider", "keep_connections", pair()
+        ),
+        Attack(
+            "takes all turns, and pretends 200 sessions",
+            "other user",
+            "pretend_sessions",
+            pair(),
+            longer_s=2.0,
+            commands=(("node", "list"),),
+        ),
+        Attack(
+            "DATA in the talker's name, by a visitor that may publish /scan",
+            "visitor",
+            "forge_data",
+            pair(env=rules.robot),
+            around=rules,
+            env=rules.visitor,
+            issue=OPEN,
+        ),
+        Attack(
+            "a batch in the talker's name, as if from its link",
+            "member",
+            "post_batch",
+            pair("on"),
+            replaced="talker",
+            issue=OPEN,
+        ),
+        Attack("HEARTBEAT up to 2^62", "member", "heartbeat", pair(), issue=OPEN),
+        Attack("GAP up to 2^62", "member", "gap", pair(), issue=OPEN),
+        Attack("ACKNACK of any numbers", "member", "send_absurd_submessages", pair()),
+        Attack("messages that are none", "member", "send_damaged", pair(), short=True),
+        Attack(
+            "a parameter of 100 kB, asked for 40 000 times at once",
+            "member",
+            "ask_for_one_name",
+            pair(parameter_size=100_000),
+        ),
+        Attack(
+            "requests that are none", "member", "send_damaged_requests", pair(parameter_size=10)
+        ),
+        Attack(
+            "50 content filters of 4 kB with LIKE",
+            "member",
+            "filter_costly",
+            pair(publish=clouds()),
+            short=True,
+        ),
+        Attack(
+            "10 000 content filters of one reader",
+            "member",
+            "filter_often",
+            pair(publish=clouds()),
+            issue=ZENOH,
+        ),
+        Attack(
+            "40 messages of 1 MB a second to a busy loop (queues of 4 MiB)",
+            "member",
+            "flood_topic",
+            (
+                *pair(env=SMALL_QUEUES)[:1],
+                worker(pair(env=SMALL_QUEUES)[1]),
+            ),
+        ),
+        Attack(
+            "a KEEP_ALL reader that never acknowledges (queues of 4 MiB)",
+            "member",
+            "never_acknowledge",
+            pair(env=SMALL_QUEUES, publish=clouds(keep_all=True)),
+        ),
+        Attack(
+            "a type of 30 levels of two fields",
+            "member",
+            "describe_deep",
+            pair(curious=True),
+            commands=(("topic", "echo", "--once", "--timeout", "1", "/words"),),
+            longer_s=6.0,
+            seconds=8.0,
+        ),
+        Attack(
+            "a type with an array of 2^37 elements",
+            "member",
+            "describe_large",
+            pair(curious=True),
+        ),
+        Attack(
+            "escapes of terminals in names", "member", "announce_escapes", pair(), 8.0, LISTS, 3.0
+        ),
+        Attack(
+            "2000 subscriptions with QoS that does not fit", "member", "subscribe_oddly", pair()
+        ),
+        Attack("5000 subscriptions of one topic", "member", "subscribe_often", pair(), issue=ZENOH),
+        Attack("10 000 publishers of 10 000 topics", "member", "flood_graph", pair(), issue=ZENOH),
+    ]
+
+
+def worker(role: Role) -> Role:
+    """Return a role with a callback besides that keeps its loop for most of the time."""
+    hear = (*role.hear, Hear("/work", depth=10, block_s=0.1))
+    return msgspec.structs.replace(role, hear=hear)

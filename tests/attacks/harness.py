@@ -1,0 +1,316 @@
+"""Runs attacks beside true traffic: the harness of the fault cases, and how an attack is judged.
+
+The attacker is one more process of the case. What it takes from its victims is measured beside
+their reports: memory from outside, and what they log.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import re
+import secrets
+import shutil
+import signal
+import sys
+import tempfile
+import time
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import msgspec
+import trustme
+
+from tests.attacks.programs import FORGED
+from tests.faults.faults import replace
+from tests.faults.harness import ROOT, Case, Outcome, Stage, run_case
+from tests.faults.roles import Role, stream_key
+from tests.processes.process import Process
+from tests.support.peers import free_ports
+
+__all__ = ["GAP_LIMIT_S", "MEMORY_LIMIT", "AccessControl", "Attack", "Found"]
+
+GAP_LIMIT_S = 0.2
+"""How long a loop may stand still by itself."""
+
+MEMORY_LIMIT = 1.5
+"""How many times as much memory as before a victim may take."""
+
+BEGIN_LIMIT_S = 20.0
+"""How long an attacker may take to begin."""
+
+END_LIMIT_S = 30.0
+"""How much longer than it is to last an attack may take."""
+
+COMMAND_LIMIT_S = 20.0
+"""How long a command may take beside an attack."""
+
+SETTLE_S = 1.0
+"""How long an attacker has been at it before a command starts."""
+
+CONTROLS = re.compile(
+    r"[\x00-\x08\x0b\x0c\x0e-\x1a\x1c-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]"
+    r"|\x1b(?!\[[0-9;]*m)|\r(?!\n)"
+)
+"""What aionode prints nowhere: control characters, but for colours, and signs that reorder text."""
+
+LOG_LINE = re.compile(r"\[(?:WARN|ERROR|FATAL)\].*|.*Traceback.*|.*panicked.*")
+
+CONFIGS = ROOT / "examples" / "security"
+
+VISITOR = (
+    '"id": "everything",',
+    (
+        '"id": "visit", "permission": "allow", "flows": ["ingress", "egress"],'
+        ' "messages": ["put", "declare_subscriber", "liveliness_token", "liveliness_query",'
+        ' "declare_liveliness_subscriber"],'
+        ' "key_exprs": ["42/scan/**", "@ros2_lv/**", "@aionode/**"]}, {"id": "everything",'
+    ),
+)
+"""What is put in place of what in the rules of the how-to, so that a visitor may publish /scan."""
+
+
+class Found(msgspec.Struct):
+    """What came of one attack.
+
+    Attributes:
+        outcome: What the processes report.
+        tries: How often the attacker tried.
+        memory_before_bytes: The memory of the victim that grew most, before the attack.
+        memory_most_bytes: The most that it took since.
+        said: The lines that the victims logged since.
+        problems: What else was wrong, such as a forged message that was heard.
+    """
+
+    outcome: Outcome
+    tries: int = 0
+    memory_before_bytes: int = 1
+    memory_most_bytes: int = 1
+    said: list[str] = []
+    problems: list[str] = []
+
+    def broken(
+        self, gap_limit_s: float = GAP_LIMIT_S, memory_limit: float = MEMORY_LIMIT
+    ) -> list[str]:
+        """Return why it was not held; nothing if it was."""
+        outcome = self.outcome
+        untold = outcome.lost - outcome.told
+        grown = self.memory_most_bytes / self.memory_before_bytes
+        told = [
+            (untold > 0, f"{untold} of {outcome.sent} true messages lost untold"),
+            (outcome.doubled > 0, f"{outcome.doubled} true messages doubled"),
+            (
+                outcome.own_gap_s > gap_limit_s + outcome.control_own_gap_s,
+                f"a loop stood still for {1000 * outcome.own_gap_s:.0f} ms",
+            ),
+            (grown > memory_limit, f"{grown:.1f} times the memory"),
+        ]
+        hung = [f"never again: {', '.join(outcome.hung)}"] if outcome.hung else []
+        return [*self.problems, *(text for is_so, text in told if is_so), *hung]
+
+
+class Attack(msgspec.Struct, frozen=True):
+    """An attack, and the processes that it strikes.
+
+    Attributes:
+        name: What happens, for the table.
+        who: Who attacks: ``outsider``, ``other user``, ``visitor`` or ``member``.
+        program: The attacker: a name of `programs.PROGRAMS`.
+        roles: The victims, and who talks with them.
+        seconds: How long it lasts.
+        item: What of the promises of docs/security.md it tries.
+        commands: Arguments of ``aionode``, run beside it; they end, and print no control character.
+        longer_s: How much longer than without it they may take.
+        replaced: A victim that ends and is replaced meanwhile.
+        issue: Why it is not held yet; empty if it is to be held.
+        short: Whether it is part of the ordinary tests.
+        around: What has to be there before its processes start.
+        env: Variables of the attacker's environment.
+    """
+
+    name: str
+    who: str
+    program: str
+    roles: tuple[Role, ...]
+    seconds: float = 4.0
+    commands: tuple[tuple[str, ...], ...] = ()
+    longer_s: float = 1.5
+    replaced: str = ""
+    issue: str = ""
+    short: bool = False
+    around: contextlib.AbstractContextManager[None] = contextlib.nullcontext()
+    env: dict[str, str] = {}
+
+    @property
+    def lasts_s(self) -> float:
+        """About how long it takes."""
+        return self.seconds
+
+    async def run(self, busy: asyncio.Semaphore) -> Sequence[tuple[Attack, Found | Exception]]:
+        """Run once."""
+        strike = Strike(self)
+        case = Case(self.name, self.roles, strike, around=self.around)
+        try:
+            outcome = await run_case(case, busy)
+        except Exception as error:  # noqa: BLE001 - it is told
+            return [(self, error)]
+        strike.found.outcome = outcome
+        return [(self, strike.found)]
+
+
+class Strike:
+    """One run of an attack, from the beginning of its process to the end."""
+
+    def __init__(self, attack: Attack) -> None:
+        self._attack = attack
+        self.found = Found(Outcome())
+
+    async def __call__(self, stage: Stage) -> None:
+        """Attack, and measure."""
+        attack = self._attack
+        victims = [child for child in stage.children.values() if not child.role.control]
+        before_s = [await self._command(stage, command) for command in attack.commands]
+        memory = {child.pid: memory_of(child.pid) for child in victims}
+        for pid in memory:
+            reset_peak(pid)
+        outputs = {child.role.name: len(child.whole_output()) for child in victims}
+
+        await stage.start(self._attacker([str(pid) for pid in memory]))
+        attacker = stage.children["attacker"]
+        async with asyncio.timeout(BEGIN_LIMIT_S):
+            while "begun" not in attacker.whole_output() and attacker.runs:  # noqa: ASYNC110 - a process writes it
+                await asyncio.sleep(0.05)
+        if attack.commands:
+            await asyncio.sleep(SETTLE_S)
+            for command, alone_s in zip(attack.commands, before_s, strict=True):
+                took_s = await self._command(stage, command)
+                if took_s > alone_s + attack.longer_s:
+                    self.found.problems.append(
+                        f"aionode {' '.join(command)}: {took_s:.1f} s, alone {alone_s:.1f} s"
+                    )
+        if attack.replaced:
+            await asyncio.sleep(SETTLE_S)
+            await replace(attack.replaced, number=signal.SIGTERM)(stage)
+        async with asyncio.timeout(attack.seconds + END_LIMIT_S):
+            status = await attacker.until_ended()
+        tries = re.search(r"^tries (\d+)$", attacker.whole_output(), re.MULTILINE)
+        if status or tries is None:
+            raise RuntimeError(f"the attacker failed: {attacker.output()}")
+        self.found.tries = int(tries[1])
+
+        grown = [(memory[pid], peak_of(pid)) for pid in memory if Path(f"/proc/{pid}").exists()]
+        both = max(grown, key=lambda each: each[1] / each[0])
+        self.found.memory_before_bytes, self.found.memory_most_bytes = both
+        for child in victims:
+            self._judge(child.role.name, child.whole_output()[outputs[child.role.name] :])
+            forged = stream_key("/chatter", FORGED, 0)
+            if number := child.last.heard.get(forged):
+                self.found.problems.append(
+                    f"{child.role.name} heard {count(number)} forged messages"
+                )
+
+    def _attacker(self, pids: Sequence[str]) -> Role:
+        attack = self._attack
+        words = ("-m", "tests.attacks.programs", attack.program, str(attack.seconds), *pids)
+        return Role("attacker", command=words, env=attack.env)
+
+    def _judge(self, name: str, output: str) -> None:
+        """Note what a process has logged."""
+        self.found.said += LOG_LINE.findall(output)
+        if found := CONTROLS.search(output):
+            self.found.problems.append(f"{name} printed {found[0]!r}")
+
+    async def _command(self, stage: Stage, command: Sequence[str]) -> float:
+        """Run a command, and return how long it took."""
+        env = {**os.environ, "PYTHONPATH": str(ROOT), **stage.env, **self._attack.roles[0].env}
+        began_s = time.monotonic()
+        process = await asyncio.create_subprocess_exec(
+            *(sys.executable, "-m", "aionode", *command),
+            stdout=asyncio.subprocess.PIPE,
+            stderr=asyncio.subprocess.STDOUT,
+            env=env,
+        )
+        try:
+            async with asyncio.timeout(COMMAND_LIMIT_S):
+                output, _ = await process.communicate()
+        except TimeoutError:
+            process.kill()
+            await process.wait()
+            self.found.problems.append(f"aionode {' '.join(command)} did not end")
+        else:
+            self._judge(f"aionode {' '.join(command)}", output.decode(errors="replace"))
+        return time.monotonic() - began_s
+
+
+def count(ranges: Iterable[tuple[int, int]]) -> int:
+    """Return how many numbers are in ranges."""
+    return sum(last - first + 1 for first, last in ranges)
+
+
+def status_of(pid: int, name: str) -> int:
+    """Return a line of /proc/PID/status in bytes."""
+    text = Path(f"/proc/{pid}/status").read_text(encoding="utf-8")
+    return int(re.findall(rf"^{name}:\s+(\d+) kB", text, re.MULTILINE)[0]) * 1024
+
+
+def memory_of(pid: int) -> int:
+    """Return how much memory a process takes, in bytes."""
+    return status_of(pid, "VmRSS")
+
+
+def peak_of(pid: int) -> int:
+    """Return how much it took at most since `reset_peak`, in bytes."""
+    return status_of(pid, "VmHWM")
+
+
+def reset_peak(pid: int) -> None:
+    """Forget how much memory a process took at most."""
+    with contextlib.suppress(OSError):  # a container may forbid it; then that is since its start
+        Path(f"/proc/{pid}/clear_refs").write_text("5", encoding="ascii")
+
+
+class AccessControl:
+    """A router with the rules of the how-to, and a visitor that may publish /scan.
+
+    Attributes:
+        robot: Variables of the environment of the robot's nodes.
+        visitor: Variables of that of a visitor.
+    """
+
+    def __init__(self) -> None:
+        self._stack = contextlib.ExitStack()
+        # Its path is in the environment of the nodes before it is there.
+        self._folder = Path(tempfile.gettempdir()) / f"attacks-{secrets.token_hex(8)}"
+        (self._port,) = free_ports(1)
+        self.robot, self.visitor = map(self._env, ("robot", "visitor"))
+
+    def _env(self, name: str) -> dict[str, str]:
+        path = self._folder / f"{name}.json5"
+        return {"ZENOH_SESSION_CONFIG_URI": str(path), "AIONODE_LINK": "off"}
+
+    def __enter__(self) -> None:
+        self._folder.mkdir(mode=0o700)
+        self._stack.callback(shutil.rmtree, self._folder)
+        authority = trustme.CA()
+        authority.cert_pem.write_to_path(self._folder / "ca.pem")
+        session = (CONFIGS / "session.json5").read_text(encoding="utf-8")
+        session = session.replace("router.local:7448", f"localhost:{self._port}")
+        for name in ("router", "robot", "visitor"):
+            made = authority.issue_cert("localhost", common_name=name)
+            made.private_key_pem.write_to_path(self._folder / f"{name}-key.pem")
+            made.cert_chain_pems[0].write_to_path(self._folder / f"{name}.pem")
+            text = session.replace("certs/robot", f"certs/{name}")
+            (self._folder / f"{name}.json5").write_text(
+                text.replace("certs/", f"{self._folder}/"), encoding="utf-8"
+            )
+        rules = (CONFIGS / "router.txt").read_text(encoding="utf-8").replace(*VISITOR)
+        rules = rules.replace(
+            '"subjects": [{', '"subjects": [{"id": "visitor", "cert_common_names": ["visitor"]}, {'
+        ).replace('"policies": [', '"policies": [{"rules": ["visit"], "subjects": ["visitor"]}, ')
+        words = ("-m", "aionode", "router", "--listen", f"tls/localhost:{self._port}")
+        env = {"ZENOH_CONFIG_OVERRIDE": rules.replace("certs/", f"{self._folder}/")}
+        self._stack.enter_context(Process(*words, env=env)).expect("Router is listening")
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()

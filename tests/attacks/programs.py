@@ -1,0 +1,423 @@
+"""What attackers do, each for some seconds; a function returns how often it tried.
+
+``python -m tests.attacks.programs NAME SECONDS PID…`` runs one in a process of its own, beside the
+processes with these ids. It prints ``begun`` when it has a session, and ``tries N`` at its end.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+import random
+import socket
+import sys
+import time
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack, suppress
+from dataclasses import replace
+
+import psutil
+import zenoh  # plays another participant, without aionode
+
+from aionode.graph import EndpointInfo, EndpointKind
+from aionode.interfaces.rcl_interfaces.srv import DescribeParameters, GetParameters
+from aionode.interfaces.std_msgs.msg import String
+from aionode.qos import DurabilityPolicy, HistoryPolicy, LivelinessPolicy, QoSProfile
+from aionode.transport._local_sessions import announce
+from aionode.transport.ipc import _protocol as protocol
+from aionode.wire import _attachment as attachment
+from aionode.wire import cdr
+from aionode.wire._acknack import SubmessageKind
+from tests.attacks.liar import Liar, lying, pace
+from tests.attacks.lies import LIES, describe, nested_type
+
+__all__ = ["FORGED", "PROGRAMS"]
+
+FORGED = "forged"
+"""Who has sent a message that pretends to be of another node."""
+
+FAR = 2**62
+
+LIES_PER_S = 100
+"""How many lies of a fuzzer there are in each second."""
+
+SIGNS = "\x1b\x9b\x07\r\x00\u202e"
+"""What a terminal, or a reader of a log, would take for something else than text."""
+
+Program = Callable[[float, Sequence[int]], int]
+
+
+def member(lie: Callable[[Liar, float], int]) -> Program:
+    """Return the program of an attacker with a session."""
+
+    def run(seconds: float, _: Sequence[int]) -> int:
+        with lying() as liar:
+            tries = lie(liar, seconds)
+            liar.drop()
+        return tries
+
+    return run
+
+
+def begun() -> None:
+    """Tell that the attack begins."""
+    print("begun", flush=True)  # noqa: T201 - a program
+
+
+def ends(liar: Liar) -> tuple[EndpointInfo, EndpointInfo]:
+    """Return the talker and the listener of the true messages."""
+    (talker,) = liar.endpoints(EndpointKind.PUBLISHER, "/chatter")
+    (listener,) = liar.endpoints(EndpointKind.SUBSCRIPTION, "/chatter")
+    return talker, listener
+
+
+def forged_text(number: int) -> str:
+    """Return what a forged message says, in the form of the true ones."""
+    return f"{FORGED} 0 {number} {time.monotonic()} "
+
+
+# Nobody, or another user of the host
+
+
+def wait(seconds: float, _: Sequence[int]) -> int:
+    """Do nothing."""
+    begun()
+    time.sleep(seconds)
+    return 0
+
+
+def send_garbage(seconds: float, pids: Sequence[int]) -> int:
+    """Send random bytes to each port on which the nodes listen."""
+    listening = [
+        each.laddr
+        for pid in pids
+        for each in psutil.Process(pid).net_connections(kind="tcp")
+        if each.status == psutil.CONN_LISTEN
+    ]
+    begun()
+    for number in pace(seconds, 200):
+        with suppress(OSError), socket.create_connection(listening[number % len(listening)]) as one:
+            one.sendall(os.urandom(random.choice((1, 30, 3000, 60_000))))
+    return number + 1
+
+
+def keep_connections(seconds: float, pids: Sequence[int]) -> int:
+    """Connect to each port on which the nodes listen, and say nothing."""
+    listening = [
+        each.laddr
+        for pid in pids
+        for each in psutil.Process(pid).net_connections(kind="tcp")
+        if each.status == psutil.CONN_LISTEN
+    ]
+    begun()
+    with ExitStack() as held:
+        for number in pace(seconds, 50):
+            with suppress(OSError):
+                held.enter_context(socket.create_connection(listening[number % len(listening)]))
+    return number + 1
+
+
+def pretend_sessions(seconds: float, _: Sequence[int]) -> int:
+    """Take all turns, and have the machine list 200 sessions that nobody has, as another user."""
+    os.setgid(65534)
+    os.setuid(65534)
+    ports = [int(port) for port in os.environ["AIONODE_MEETING_PORTS"].split(",")]
+    begun()
+    with ExitStack() as held:
+        for port in ports:
+            turn = held.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
+            with suppress(OSError):
+                turn.bind(("127.0.0.1", port))
+        for number in range(200):
+            held.enter_context(announce(ports[0], 20_000 + number))
+        time.sleep(seconds)
+    return 200 + len(ports)
+
+
+# Members: messages in the name of others
+
+
+def forge_data(liar: Liar, seconds: float) -> int:
+    """Send DATA in the talker's name on the key of the listener's acknowledgements."""
+    talker, listener = ends(liar)
+    begun()
+    # Whatever number the listener expects next is among them.
+    for number in pace(seconds, 5000):
+        payload = cdr.encode(String(data=forged_text(number)))
+        liar.submessage(SubmessageKind.DATA, talker, listener, number + 1, time.time_ns(), payload)
+    return number + 1
+
+
+def post_batch(liar: Liar, seconds: float) -> int:
+    """Send messages in the talker's name as what its link could not deliver."""
+    talker, listener = ends(liar)
+    begun()
+    for number in pace(seconds, 100):
+        payload = cdr.encode(String(data=forged_text(number)))
+        hello = protocol.Hello(talker.node.participant, protocol.VERSION, liar.domain).pack()
+        frame = protocol.pack(
+            protocol.Kind.DATA, number + 100_000, time.time_ns(), talker.gid, payload
+        )
+        liar.post(listener, [hello, frame, protocol.RetransmitDone().pack()])
+    return number + 1
+
+
+def move_reader(kind: SubmessageKind) -> Callable[[Liar, float], int]:
+    """Return what tells a reader that messages up to 2^62 were sent, or will not be."""
+
+    def lie(liar: Liar, seconds: float) -> int:
+        talker, listener = ends(liar)
+        begun()
+        rest = talker.node.participant.encode() if kind is SubmessageKind.HEARTBEAT else b""
+        for _ in pace(seconds, 1):
+            # Those before `first` are not for this reader, or those up to `last` are not sent.
+            first = FAR if kind is SubmessageKind.HEARTBEAT else 1
+            liar.submessage(kind, talker, listener, first, FAR, rest)
+        return int(seconds)
+
+    return lie
+
+
+def send_absurd_submessages(liar: Liar, seconds: float) -> int:
+    """Send ACKNACKs in the listener's name, and what is no submessage, in any number."""
+    talker, listener = ends(liar)
+    begun()
+    chance = random.Random(1)
+    tries = 0
+    for _ in pace(seconds, 1000):
+        tries += 2
+        first = chance.choice((-FAR, -1, 0, 1, FAR, 2**63 - 1))
+        rest = chance.randbytes(chance.choice((0, 7, 16, 160, 1600)))
+        liar.submessage(SubmessageKind.ACKNACK, talker, listener, first, 0, rest)
+        liar.put(
+            f"@aionode/{liar.domain}/{listener.node.participant}/reliable/1", chance.randbytes(64)
+        )
+    return tries
+
+
+def send_damaged(liar: Liar, seconds: float) -> int:
+    """Publish messages that are none, with attachments of others, of nobody, and of no form."""
+    ends(liar)
+    begun()
+    chance = random.Random(1)
+    for number in pace(seconds, 2000):
+        gid = chance.choice((chance.randbytes(16), bytes(16)))
+        extra = chance.choice((None, chance.randbytes(33), attachment.pack(number, 0, gid)))
+        size = chance.choice((0, 3, 4, 40, 4000))
+        liar.put(liar.key("/chatter", String), b"\x00\x01\x00\x00" + chance.randbytes(size), extra)
+    return number + 1
+
+
+# Members: what is asked of a node
+
+
+def ask_for_one_name(liar: Liar, seconds: float) -> int:
+    """Ask for a parameter of 100 kB by its name 40 000 times in one request, again and again."""
+    liar.endpoints(EndpointKind.SERVER, "/talker/get_parameters")
+    names = ["large"] * 40_000
+    begun()
+    for _ in pace(seconds, 2):
+        liar.ask("/talker/get_parameters", GetParameters, GetParameters.Request(names=names))
+        liar.ask(
+            "/talker/describe_parameters",
+            DescribeParameters,
+            DescribeParameters.Request(names=names),
+        )
+    return 4 * int(seconds)
+
+
+def send_damaged_requests(liar: Liar, seconds: float) -> int:
+    """Send requests that are none."""
+    liar.endpoints(EndpointKind.SERVER, "/talker/get_parameters")
+    begun()
+    chance = random.Random(1)
+    for number in pace(seconds, 200):
+        request = b"\x00\x01\x00\x00" + chance.randbytes(chance.choice((0, 3, 40, 4000)))
+        liar.ask("/talker/get_parameters", GetParameters, request)
+        if number % 100 == 99:
+            liar.drop()
+    return number + 1
+
+
+# Members: what is announced
+
+
+def like_text(size: int) -> str:
+    """Return a filter with a pattern of LIKE that costs much where it is searched naively."""
+    expression = f"data LIKE '%{'x' * (size * 3 // 4 - 100)}y%'"
+    return base64.urlsafe_b64encode(json.dumps([expression, []]).encode()).decode().rstrip("=")
+
+
+def filter_costly(liar: Liar, seconds: float) -> int:
+    """Subscribe 50 times to messages of 10 kB, each with a filter of 4 kB."""
+    liar.be_node()
+    begun()
+    for number in range(50):
+        gid = liar.announce(EndpointKind.SUBSCRIPTION, "/clouds", String)
+        liar.announce_filter(gid, like_text(4096 - number))
+    time.sleep(seconds)
+    return 50
+
+
+def filter_often(liar: Liar, seconds: float) -> int:
+    """Announce 10 000 filters of one subscription."""
+    liar.be_node()
+    begun()
+    gid = liar.announce(EndpointKind.SUBSCRIPTION, "/clouds", String)
+    for number in pace(seconds, 4000):
+        text = json.dumps([f"data LIKE '%{number}%'", []]).encode()
+        liar.announce_filter(gid, base64.urlsafe_b64encode(text).decode().rstrip("="))
+        if number == 9999:
+            break
+    return number + 1
+
+
+def subscribe_oddly(liar: Liar, seconds: float) -> int:
+    """Subscribe 2000 times to a topic with a QoS profile that does not fit."""
+    liar.be_node()
+    begun()
+    odd = QoSProfile(
+        depth=10,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL,
+        liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
+    )
+    return subscribe(liar, seconds, 2000, odd)
+
+
+def subscribe_often(liar: Liar, seconds: float) -> int:
+    """Subscribe 5000 times to a topic."""
+    liar.be_node()
+    begun()
+    return subscribe(liar, seconds, 5000, QoSProfile(depth=10))
+
+
+def subscribe(liar: Liar, seconds: float, most: int, qos: QoSProfile) -> int:
+    """Subscribe to the true messages, evenly over the time."""
+    for number in pace(seconds, most / (seconds - 1)):
+        if number == most:
+            break
+        liar.announce(EndpointKind.SUBSCRIPTION, "/chatter", String, qos)
+    return number
+
+
+def flood_graph(liar: Liar, seconds: float) -> int:
+    """Announce 10 000 publishers of as many topics, and take them back."""
+    liar.be_node()
+    begun()
+    for number in pace(seconds, 10_000 / (seconds - 1)):
+        if number == 10_000:
+            break
+        liar.announce(EndpointKind.PUBLISHER, f"/topic_{number}", String)
+    return number
+
+
+def announce_escapes(liar: Liar, seconds: float) -> int:
+    """Announce nodes, topics and types with escapes of terminals in their names."""
+    begun()
+    for number in range(200):
+        text = f"{SIGNS[number % len(SIGNS)]}]0;owned\n{number}"
+        liar.node = replace(liar.node, node_id=number)
+        for announce_one in (
+            lambda text=text: liar.be_node(f"node{text}"),
+            lambda text=text: liar.announce(EndpointKind.PUBLISHER, f"/chatter{text}", String),
+            lambda text=text: liar.hold(
+                liar.token(EndpointKind.PUBLISHER, "/chatter", f"p/msg/T{text}", hash_text="RIHS")
+            ),
+        ):
+            with suppress(zenoh.ZError):  # some signs Zenoh refuses itself
+                announce_one()
+    time.sleep(seconds)
+    return 600
+
+
+def never_acknowledge(liar: Liar, seconds: float) -> int:
+    """Subscribe with KEEP_ALL, as a context that acknowledges, and never acknowledge anything."""
+    liar.be_node()
+    begun()
+    keep_all = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+    liar.announce(EndpointKind.SUBSCRIPTION, "/clouds", String, keep_all)
+    time.sleep(seconds)
+    return 1
+
+
+def flood_topic(liar: Liar, seconds: float) -> int:
+    """Publish messages of 1 MB on a topic whose callback takes long."""
+    liar.be_node()
+    gid = liar.announce(EndpointKind.PUBLISHER, "/work", String)
+    begun()
+    filler = "x" * 1_000_000
+    for number in pace(seconds, 40):
+        liar.publish("/work", String(data=f"{forged_text(number)}{filler}"), number + 1, gid)
+    return number + 1
+
+
+# Members: types
+
+
+def describe_absurdly(levels: int, fields: int, capacity: int) -> Callable[[Liar, float], int]:
+    """Return what describes the type of a topic so."""
+
+    def lie(liar: Liar, seconds: float) -> int:
+        liar.be_node()
+        describe(liar, "/words", nested_type(levels, fields, capacity))
+        begun()
+        time.sleep(seconds)
+        return 1
+
+    return lie
+
+
+def lie_randomly(liar: Liar, seconds: float) -> int:
+    """Say well-formed lies of some kinds, with absurd values; the environment says which."""
+    ends(liar)
+    liar.be_node()
+    seed, *kinds = os.environ["AIONODE_LIES"].split()
+    chance = random.Random(int(seed))
+    begun()
+    lies = [LIES[chance.choice(kinds)](liar, chance) for _ in pace(seconds, LIES_PER_S)]
+    return len(lies)
+
+
+PROGRAMS: dict[str, Program] = {
+    "wait": wait,
+    "send_garbage": send_garbage,
+    "keep_connections": keep_connections,
+    "pretend_sessions": pretend_sessions,
+    "heartbeat": member(move_reader(SubmessageKind.HEARTBEAT)),
+    "gap": member(move_reader(SubmessageKind.GAP)),
+    "describe_deep": member(describe_absurdly(30, 2, 0)),
+    "describe_large": member(describe_absurdly(1, 1, 2**37)),
+    **{
+        each.__name__: member(each)
+        for each in (
+            forge_data,
+            post_batch,
+            send_absurd_submessages,
+            send_damaged,
+            ask_for_one_name,
+            send_damaged_requests,
+            filter_costly,
+            filter_often,
+            subscribe_oddly,
+            subscribe_often,
+            flood_graph,
+            announce_escapes,
+            never_acknowledge,
+            flood_topic,
+            lie_randomly,
+        )
+    },
+}
+
+
+def main() -> None:
+    """Run as a program."""
+    name, seconds, *pids = sys.argv[1:]
+    tries = PROGRAMS[name](float(seconds), [int(pid) for pid in pids])
+    print(f"tries {tries}", flush=True)  # noqa: T201 - a program
+    os._exit(0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,88 @@
+"""A short part of the attacks; `make attacks` runs all of them.
+
+They run side by side, once, as the short cases of the faults do; each is then a test of its own.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from functools import cache
+
+import msgspec
+import pytest
+
+from tests.attacks.__main__ import BEGIN, END, line_of, table
+from tests.attacks.cases import all_attacks, pair
+from tests.attacks.harness import Attack, Found
+from tests.faults.harness import Outcome, run_together
+
+STANDS_S = 0.5
+"""The longest stall of a loop beside other tests, in seconds."""
+
+SHORT_S = 2.0
+"""How long each attack lasts here."""
+
+SHORT = {
+    attack.name: msgspec.structs.replace(attack, seconds=SHORT_S)
+    for attack in all_attacks()
+    if attack.short
+}
+
+
+@cache
+def results() -> dict[str, Found | BaseException]:
+    """Return what came of each short attack."""
+    found: dict[str, Found | BaseException] = {}
+
+    def take(attack: Attack, result: Found | BaseException) -> None:
+        found[attack.name] = result
+
+    asyncio.run(run_together(list(SHORT.values()), len(SHORT), take))
+    return found
+
+
+@pytest.mark.timeout(120)
+@pytest.mark.parametrize("name", SHORT)
+def test_an_attack_is_held(name: str) -> None:
+    """Every true message is heard or counted, and the loop and the memory stay as they were."""
+    found = results()[name]
+    if isinstance(found, BaseException):
+        raise found
+
+    assert found.broken(STANDS_S) == []
+
+
+def test_the_table_says_why_an_attack_was_not_held() -> None:
+    """And what was said in the log first, and how many lines came after it."""
+    attack = Attack("shouts | loudly", "member", "wait", pair())
+    outcome = Outcome(sent=10, lost=3, told=1, own_gap_s=0.3)
+    found = Found(outcome, 7, 2**20, 2**21, ["[WARN] [1.2] [node]: too loud", "x"], ["heard it"])
+
+    line = line_of(attack, found)
+
+    assert "heard it; 2 of 10 true messages lost untold; a loop stood still for 300 ms" in line
+    assert "2.0 times the memory" in line
+    assert "`too loud` (and 1 more lines)" in line
+    assert line.count("|") == 8
+    assert table([line]).startswith(BEGIN)
+    assert table([line]).endswith(END)
+
+
+def test_names_of_attacks_are_unique() -> None:
+    """The table has one line for each."""
+    names = [attack.name for attack in all_attacks()]
+
+    assert len(set(names)) == len(names)
+
+
+@pytest.mark.stress
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize(
+    ("kind", "defect"), [("filters", "filters"), ("descriptions", "descriptions")]
+)
+def test_the_fuzzer_finds_a_planted_defect(kind: str, defect: str) -> None:
+    """Within a minute of lies of that kind; and finds nothing where it is mended."""
+    from tests.attacks.fuzz import fuzz
+
+    assert fuzz(60.0, [kind], (defect,))
+    assert not fuzz(10.0, [kind])
