@@ -148,6 +148,7 @@ class Node(NodeEndpoints, NodeGraphQueries):
             Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any] | None
         ) = None,
         result_timeout: float = 10.0,
+        max_goals: int = 1000,
         concurrent: bool | int = True,
         on_error: OnError = "log",
         offload: bool = False,
@@ -166,6 +167,7 @@ class Node(NodeEndpoints, NodeGraphQueries):
             handle_accepted_callback=handle_accepted_callback,
             cancel_callback=cancel_callback,
             result_timeout=result_timeout,
+            max_goals=max_goals,
             concurrent=concurrent,
             on_error=on_error,
             offload=offload,

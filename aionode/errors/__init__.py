@@ -287,8 +287,8 @@ class GoalRejectedError(GoalError):
         super().__init__(
             action,
             goal_id,
-            "was rejected by the server's goal_callback; ROS sends no reason, so have "
-            "goal_callback log one",
+            "was rejected by the server, by its goal_callback or because max_goals are active; "
+            "ROS sends no reason, so see the server's log, and have goal_callback log why",
         )
 
 

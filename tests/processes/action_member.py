@@ -77,7 +77,7 @@ class Counter(Node):
                 for part in server._parts
                 for announced in getattr(part, "_announcements", ())
             )
-            tell(word, len(server._goals), len(server._alarms), requests)
+            tell(word, len(server._goals), int(server._goals._alarm is not None), requests)
         loop.remove_reader(sys.stdin)
 
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from aionode.qos import QoSProfile
 
 __all__ = [
+    "REJECTED_SEC",
     "AbortReason",
     "ActionEntity",
     "awaited",
@@ -46,7 +47,7 @@ class ActionEntity(Entity):
     def __init__(self, subject: str, stage: EndStage = EndStage.CALLBACKS) -> None:
         super().__init__(subject, stage)
         self._parts: list[Entity] = []
-        self._goals: dict[bytes, Any] = {}  # those that are known, by id
+        self._goals: Any = {}  # those that are known, by id
 
     def _part(self, part: Any) -> Any:
         self._parts.append(part)

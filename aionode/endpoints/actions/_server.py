@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Coroutine
 from contextlib import suppress
-from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar, cast
 
 from aionode._concurrency import is_cancelled_task
@@ -16,6 +15,7 @@ from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints._core.node_tasks import create_own_task
 from aionode.endpoints.actions._client_watch import ClientWatch, announcing
 from aionode.endpoints.actions._common import (
+    REJECTED_SEC,
     AbortReason,
     ActionEntity,
     awaited,
@@ -27,6 +27,7 @@ from aionode.endpoints.actions._common import (
     tell_rejected,
 )
 from aionode.endpoints.actions._early_cancels import EarlyCancels
+from aionode.endpoints.actions._goal_store import GoalStore, StatusPace, checked_max_goals
 from aionode.endpoints.actions._server_goal import ServerGoalHandle
 from aionode.endpoints.actions.goal import (
     CancelCode,
@@ -48,7 +49,6 @@ from aionode.qos import (
 )
 
 if TYPE_CHECKING:
-    from aionode.clock._time_base import Alarm
     from aionode.endpoints._core.callback_runner import CallbackRunner, OnError
     from aionode.endpoints.actions._node import ActionNode
     from aionode.message import ActionClass
@@ -106,6 +106,9 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             `CancelResponse.ACCEPT` or ``REJECT``. Without it all are rejected. Sync or async.
         result_timeout: How long a result is kept after the end of its goal, in seconds. With 0 it
             is sent only to clients that asked before the end.
+        max_goals: How many goals may be active at once: those beyond are rejected before
+            `goal_callback` is asked, which is logged once a second at most. So many results are
+            kept, too: the oldest is forgotten first, even before `result_timeout`.
         concurrent: True executes all accepted goals at once, False one after the other, a number at
             most that many at once; the others wait as ACCEPTED.
         on_error: What to do with an exception in the other callbacks, once the client has been
@@ -133,7 +136,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
 
     Raises:
         TypeError: an argument has the wrong type, or a callback takes other arguments.
-        ValueError: `concurrent`, `on_error`, `result_timeout`, `on_client_lost` or
+        ValueError: `concurrent`, `on_error`, `result_timeout`, `max_goals`, `on_client_lost` or
             `client_lost_sec` has an invalid value.
         InvalidTopicNameException: `action_name` is invalid (a ValueError).
         EntityDestroyedError: the node was destroyed (a RuntimeError).
@@ -155,6 +158,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any] | None
         ) = None,
         result_timeout: float = 10.0,
+        max_goals: int = 1000,
         concurrent: bool | int = True,
         on_error: OnError = "log",
         offload: bool = False,
@@ -175,18 +179,17 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._time_base = node.context.time_base
         self._callbacks = node._callbacks
         self._logger = node.get_logger()
-        self._timeout_ns = seconds_to_ns(result_timeout, f"{self._subject}: result_timeout")
         lost_ns = checked_client_lost(on_client_lost, client_lost_sec, self._subject)
         self._concurrent = checked_concurrency(concurrent, self._subject)
         self._offload = offload
         self._checked_result: Callable[[ResultT], ResultT] = snapshotter(self.action_type.Result)
-        # By goal id: goals that are active or whose results are kept, and when these are dropped.
-        self._goals: dict[bytes, ServerGoalHandle[GoalT, ResultT, FeedbackT]] = {}
+        self._max_goals = checked_max_goals(max_goals, self._subject)
+        timeout_ns = seconds_to_ns(result_timeout, f"{self._subject}: result_timeout")
+        self._goals: GoalStore = GoalStore(self._time_base, self._max_goals, timeout_ns)
+        self._status_pace = StatusPace(self._send_status, self._goals)
         self._early_cancels = EarlyCancels(self._time_base)
-        self._alarms: dict[bytes, Alarm] = {}
         self._accepted: MessageQueue[Any] = MessageQueue(UNLIMITED, CallbackStats(), keep_all=True)
         self._waiting: MessageQueue[Any] = MessageQueue(UNLIMITED, self.stats, keep_all=True)
-        self._status_due = False
         self._hand_over = self._callbacks.make_runner(
             self._call_handle_accepted, self, CallbackStats(), on_error=on_error, offload=False
         )
@@ -249,7 +252,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         node._add_entity(self)
 
     def __repr__(self) -> str:
-        active = sum(goal.is_active for goal in self._goals.values())
+        active = self._goals.active
         return (
             f"<ActionServer {self.action_name} {type_name(self.action_type)} active={active} "
             f"kept={len(self._goals) - active} received={self.stats.received} "
@@ -306,7 +309,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     async def _on_goal(self, request: Any) -> Any:
         response = self.action_type.Impl.SendGoalService.Response()
         goal_id = request.goal_id.uuid.tobytes()
-        if self._is_refused(goal_id):
+        if self._is_refused(goal_id) or self._is_too_much():
             return response
         self._client_watch.add(goal_id, self._send_goal._client_gid)
         try:
@@ -329,6 +332,17 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     def _is_refused(self, goal_id: bytes) -> bool:
         """Return whether the goal is known already, or was cancelled before it came."""
         return goal_id in self._goals or goal_id in self._early_cancels
+
+    def _is_too_much(self) -> bool:
+        """Return whether `max_goals` are active; if so, say why another one is rejected."""
+        if not self._goals.is_full:
+            return False
+        self._logger.warning(
+            f"{self._subject}: rejected a goal, as {self._goals.active} are active: "
+            f"max_goals={self._max_goals}",
+            throttle_duration_sec=REJECTED_SEC,
+        )
+        return True
 
     async def _welcomes(self, goal: GoalT) -> bool:
         if self._goal_callback is None:
@@ -354,7 +368,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             GoalInfo(goal_id=request.goal_id, stamp=stamp),
             GoalKey(goal_id, stamp_ns(stamp)),
         )
-        self._goals[goal_id] = goal
+        self._goals.add(goal)
         self._publish_status()
         return goal
 
@@ -522,17 +536,10 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         """Keep the result of `goal`, which has ended, for `result_timeout`. For its handle."""
         goal_id = goal._key.goal_id
         self._client_watch.remove(goal_id)
-        if self.destroyed or goal_id not in self._goals:
-            return
-        if self._timeout_ns == 0:  # after the status, which is sent in the next iteration
-            asyncio.get_running_loop().call_soon(self._forget, goal_id)
-        else:
-            due_ns = self._time_base.steady_ns() + self._timeout_ns
-            self._alarms[goal_id] = self._time_base.call_at(due_ns, partial(self._forget, goal_id))
-
-    def _forget(self, goal_id: bytes) -> None:
-        self._goals.pop(goal_id, None)
-        self._alarms.pop(goal_id, None)
+        if not self.destroyed and goal_id in self._goals:
+            self._goals.keep(goal_id)
+            if not self._goals.kept_ns:
+                self._publish_status()  # then it is forgotten
 
     # Topics
 
@@ -551,19 +558,11 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
                 self._feedback.publish(message)
 
     def _publish_status(self) -> None:
-        """Send the states of all goals soon, once for all changes of one iteration of the loop.
-
-        The message lists every goal that is active or kept, so with many goals, sending it for
-        each change would cost more than the goals themselves. For goal handles.
-        """
-        if not (self._status_due or self.destroyed):
-            self._status_due = True
-            asyncio.get_running_loop().call_soon(self._send_status)
+        """Send the states of all goals soon. For goal handles."""
+        if not self.destroyed:
+            self._status_pace.note_change()
 
     def _send_status(self) -> None:
-        self._status_due = False
-        if self.destroyed:
-            return
         from aionode.interfaces.action_msgs.msg import GoalStatus as GoalStatusMessage
 
         message = self.action_type.Impl.GoalStatusMessage(
@@ -574,6 +573,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         )
         with suppress(QueueFullError):  # as above
             self._status.publish(message)
+        self._goals.forget_ended()
 
     def _warn(self, text: str) -> None:
         """Log a mistake of a callback. For goal handles."""
@@ -583,13 +583,10 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
 
     def _close(self) -> None:
         """Withdraw the server; clients learn at once that their goals are lost."""
+        self._status_pace.flush()
         self._close_parts()
         self._client_watch.stop()
-        for alarm in self._alarms.values():
-            alarm.cancel()
-        self._alarms.clear()
-        goals, self._goals = self._goals, {}
-        for goal in goals.values():
+        for goal in self._goals.close():
             if goal.status is GoalStatus.ACCEPTED:  # the others end with their callbacks
                 goal._stopped()
         self._accepted.discard()

@@ -807,7 +807,7 @@ async def test_a_result_is_kept_for_the_timeout_and_no_longer(
     assert (await client.result()).status == GoalStatus.SUCCEEDED
     await manual_clock.advance(0.001)
     assert (await client.result()).status == GoalStatus.UNKNOWN
-    assert (server._goals, server._alarms) == ({}, {})
+    assert (server._goals, server._goals._alarm) == ({}, None)
 
 
 async def test_results_are_kept_ten_seconds_by_default(
@@ -988,7 +988,7 @@ async def test_a_destroyed_server_leaves_nothing_behind(
     await settle()
     assert worker.cancelled == [goal]
     assert goal.status is GoalStatus.ABORTED
-    assert (server._goals, server._alarms, len(node._entities)) == ({}, {}, before)
+    assert (server._goals, server._goals._alarm, len(node._entities)) == ({}, None, before)
 
 
 async def test_a_stopping_node_aborts_its_goals() -> None:

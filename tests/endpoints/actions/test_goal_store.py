@@ -1,0 +1,204 @@
+"""How many goals a server takes and keeps, and how often it lists them."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from aionode.action import ActionServer, GoalResponse, GoalStatus
+from aionode.endpoints.actions._goal_store import StatusPace
+from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.testing import settle
+from tests.support.actions import PlainClient, Worker, uuid_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from aionode.node import Node
+    from aionode.testing import ManualClock
+
+MANY = [bytes([number]) for number in range(255)] * 100_000
+"""So many goals that the time between two lists is far longer than a test."""
+
+
+class Lists:
+    """Counts the lists that are sent, of so many goals."""
+
+    def __init__(self, goals: Sequence[bytes]) -> None:
+        self.sent = 0
+        self.has_sent = asyncio.Event()
+        self.pace = StatusPace(self._send, goals)
+
+    def _send(self) -> None:
+        self.sent += 1
+        self.has_sent.set()
+
+    async def change(self) -> int:
+        """Note a change, and return how many lists were sent by then."""
+        self.pace.note_change()
+        await settle()
+        return self.sent
+
+
+async def test_of_few_goals_each_change_is_sent_at_once() -> None:
+    """Most servers have one goal at a time, and tools show its state as it changes."""
+    lists = Lists(MANY[:10])
+
+    assert [await lists.change() for _ in range(3)] == [1, 2, 3]
+
+
+async def test_with_many_goals_the_list_is_not_sent_for_each_change() -> None:
+    """Otherwise lists of a thousand goals cost ten times what the goals do."""
+    lists = Lists(MANY)
+
+    assert [await lists.change() for _ in range(3)] == [1, 1, 1]
+    lists.pace.flush()
+
+
+async def test_the_last_change_of_many_goals_is_always_sent() -> None:
+    """The last list is what late subscriptions get, and what clients of ROS go by."""
+    lists = Lists(MANY[:11])
+    await lists.change()
+    lists.has_sent.clear()
+    lists.pace.note_change()
+
+    async with asyncio.timeout(5):
+        await lists.has_sent.wait()
+
+    lists.pace.flush()
+    assert lists.sent == 2
+
+
+async def test_a_server_that_ends_sends_the_changes_that_wait(node: Node) -> None:
+    """A result that was reached just before the end has been reached."""
+    client, worker = PlainClient(node), Worker()
+    worker.may_end.set()
+    server = node.create_action_server(Fibonacci, "fibonacci", worker)
+    await asyncio.gather(*(client.send(number) for number in range(1, 21)))
+    await client.send(21)
+    await client.result(21)
+
+    server.destroy()
+    await settle()
+
+    assert client.statuses[-1] == dict.fromkeys(range(1, 22), GoalStatus.SUCCEEDED)
+
+
+# How many
+
+
+def serve(
+    node: Node, worker: Worker, max_goals: int, **options: Any
+) -> ActionServer[Any, Any, Any]:
+    """Make a server with a limit."""
+    return node.create_action_server(Fibonacci, "fibonacci", worker, max_goals=max_goals, **options)
+
+
+async def test_goals_beyond_the_limit_are_rejected(node: Node) -> None:
+    """Clients that send goals which never end take no memory without bound."""
+    client = PlainClient(node)
+    server = serve(node, Worker(), 3)
+
+    answers = await asyncio.gather(*(client.send(number) for number in range(1, 101)))
+
+    assert [answer.accepted for answer in answers] == [True] * 3 + [False] * 97
+    assert len(server._goals) == 3
+
+
+async def test_the_limit_is_that_of_goals_which_are_active(node: Node) -> None:
+    """An ended goal makes room, though its result is kept."""
+    client, worker = PlainClient(node), Worker()
+    serve(node, worker, 1)
+    await client.send(1)
+    assert not (await client.send(2)).accepted
+
+    worker.may_end.set()
+    await client.result(1)
+
+    assert (await client.send(3)).accepted
+
+
+async def test_a_full_server_says_why_it_rejects_once_a_second(
+    node: Node, caplog: pytest.LogCaptureFixture
+) -> None:
+    """ROS sends the client no reason; and what clients send does not fill the log."""
+    client, asked = PlainClient(node), []
+
+    def decide(goal: Fibonacci.Goal) -> GoalResponse:
+        asked.append(goal)
+        return GoalResponse.ACCEPT
+
+    serve(node, Worker(), 1, goal_callback=decide)
+
+    for number in range(1, 5):
+        await client.send(number)
+
+    (line,) = [each for each in caplog.records if "rejected" in each.message]
+    assert (line.levelno, line.message) == (
+        logging.WARNING,
+        "action server /fibonacci: rejected a goal, as 1 are active: max_goals=1",
+    )
+    assert len(asked) == 1
+
+
+async def test_of_too_many_results_the_oldest_is_forgotten(node: Node) -> None:
+    """A client that sends a thousand short goals a second would fill the memory with results."""
+    client, worker = PlainClient(node), Worker()
+    worker.may_end.set()
+    server = serve(node, worker, 2)
+    for number in (1, 2, 3):
+        await client.send(number)
+        await client.result(number)
+
+    assert [*server._goals] == [bytes(uuid_of(number).uuid) for number in (2, 3)]
+    assert (await client.result(1)).status == GoalStatus.UNKNOWN
+
+
+async def test_a_result_is_forgotten_ten_seconds_after_its_own_end(
+    manual_clock: ManualClock, node: Node
+) -> None:
+    """One alarm serves all, so each has to be set for the next."""
+    client, worker = PlainClient(node), Worker()
+    worker.may_end.set()
+    server = serve(node, worker, 10, result_timeout=10)
+    for number in (1, 2):
+        await client.send(number)
+        await client.result(number)
+        await manual_clock.advance(4)
+
+    await manual_clock.advance(2)
+    assert [*server._goals] == [bytes(uuid_of(2).uuid)]
+    await manual_clock.advance(4)
+    assert [*server._goals] == []
+
+
+async def test_without_a_timeout_a_callback_that_returns_late_leaves_nothing(node: Node) -> None:
+    """Its last state was published before, so that nothing else would forget the goal."""
+    client, may_return = PlainClient(node), asyncio.Event()
+
+    async def execute(goal: Any) -> Fibonacci.Result:
+        goal.succeed()
+        await may_return.wait()
+        return Fibonacci.Result()
+
+    server = node.create_action_server(Fibonacci, "fibonacci", execute, result_timeout=0)
+    await client.send()
+    await settle()
+    may_return.set()
+    await settle()
+
+    assert len(server._goals) == 0
+
+
+@pytest.mark.parametrize(
+    ("wrong", "error"), [(0, ValueError), (-1, ValueError), (1.5, TypeError), (True, TypeError)]
+)
+async def test_a_limit_that_is_no_number_of_goals_is_refused(
+    node: Node, wrong: Any, error: type[Exception]
+) -> None:
+    """With none at all, the server would reject everything."""
+    with pytest.raises(error, match=r"action server /fibonacci: max_goals="):
+        serve(node, Worker(), wrong)
