@@ -135,6 +135,7 @@ class Reporter:
         self.endpoints: list[Any] = []
         self.nodes: Callable[[], list[str]] = list
         self.given_up = GivenUp()
+        self.core_wait: CoreWait | None = None
 
     def hear(self, topic: str, data: str) -> None:
         """Take a message."""
@@ -149,15 +150,15 @@ class Reporter:
         """Measure for how long the event loop does not turn, from now on."""
         loop = asyncio.get_running_loop()
         last_s = time.monotonic()
-        self.core_wait = CoreWait()
+        core_wait = self.core_wait = CoreWait()
 
         def tick() -> None:
             nonlocal last_s
             now_s = time.monotonic()
             gap_s = now_s - last_s - TICK_S
-            own_gap_s = gap_s - self.core_wait.own()
+            own_gap_s = gap_s - core_wait.own()
             if own_gap_s > LONG_S:
-                own_gap_s -= self.core_wait.largest_of_others()
+                own_gap_s -= core_wait.largest_of_others()
             self.report.gap_s = max(self.report.gap_s, gap_s)
             self.report.own_gap_s = max(self.report.own_gap_s, own_gap_s)
             last_s = now_s
@@ -178,7 +179,8 @@ class Reporter:
         """Print reports until cancelled."""
         while True:
             self.tell()
-            self.core_wait.largest_of_others()  # what was before this belongs to no later gap
+            if self.core_wait is not None:
+                self.core_wait.largest_of_others()  # what was before belongs to no later gap
             await asyncio.sleep(REPORT_S)
 
 
@@ -197,7 +199,8 @@ class Process:
         """Play the role until SIGTERM."""
         os.set_blocking(sys.stdin.fileno(), False)
         asyncio.get_running_loop().add_reader(sys.stdin, self.obey)
-        self.reporter.watch()
+        if not (self.role.wheels or self.role.moves):  # of those, other times are measured
+            self.reporter.watch()
         async with asyncio.TaskGroup() as tasks:
             tasks.create_task(self.reporter.go_on())
             if self.role.control:

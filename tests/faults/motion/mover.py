@@ -162,12 +162,6 @@ def once(callback: Callable[[], Any]) -> Callable[[], Any]:
 # Programs
 
 
-async def reported(reporter: Reporter) -> None:
-    """Report until cancelled."""
-    reporter.watch()
-    await reporter.go_on()
-
-
 def by_run(role: Role, reporter: Reporter) -> None:
     """Move in a callback of a node that `aionode.run` runs."""
 
@@ -177,7 +171,7 @@ def by_run(role: Role, reporter: Reporter) -> None:
             node.create_timer(0.0, once(node.move_when_told))
             await node.run()
 
-    aionode.run(move, lambda: reported(reporter), args=[])
+    aionode.run(move, reporter.go_on, args=[])
 
 
 def by_asyncio(role: Role, reporter: Reporter) -> None:
@@ -185,7 +179,7 @@ def by_asyncio(role: Role, reporter: Reporter) -> None:
 
     async def main() -> None:
         async with asyncio.TaskGroup() as tasks:
-            tasks.create_task(reported(reporter))
+            tasks.create_task(reporter.go_on())
             async with Context() as context, MoverNode(role, reporter, context) as node:
                 await node.move_when_told()
 
@@ -223,7 +217,7 @@ def main() -> None:
     if role.mover.program == "uvicorn":
         from tests.faults.motion.web import serve  # what it imports is not everywhere
 
-        serve(role.mover, lambda context: MoverNode(role, reporter, context), reported(reporter))
+        serve(role.mover, lambda context: MoverNode(role, reporter, context), reporter.go_on())
     else:
         {"run": by_run, "asyncio": by_asyncio}[role.mover.program](role, reporter)
 
