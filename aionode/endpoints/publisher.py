@@ -21,7 +21,7 @@ from aionode.errors import (
     QueueFullError,
 )
 from aionode.message import Message, checker, snapshot
-from aionode.qos import KEEP_ALL_DEPTH, keeps_all
+from aionode.qos import KEEP_ALL_DEPTH, DurabilityPolicy, depth_of, keeps_all
 from aionode.transport.base import Writer
 
 if TYPE_CHECKING:
@@ -209,8 +209,9 @@ class Publisher(Endpoint, Generic[MsgT]):
                 `ttl_sec` of steady time ends the lease as well.
 
         Raises:
-            InvalidQoSProfileException: the publisher is KEEP_ALL, whose stop might have to wait (a
-                ValueError).
+            InvalidQoSProfileException: the publisher is KEEP_ALL, whose stop might have to wait, or
+                transient local with a depth above 1, which gives a late subscription old commands
+                before the stop (a ValueError).
             TypeError: `ttl_sec` is not a number, or `clock` not a clock.
             ValueError: `ttl_sec` is not positive and finite.
         """
@@ -228,6 +229,13 @@ class Publisher(Endpoint, Generic[MsgT]):
             raise InvalidQoSProfileException(
                 f"a lease of {self.topic_name} needs a KEEP_LAST publisher: the stop must not wait "
                 "for slow readers, as messages of a KEEP_ALL one do"
+            )
+        qos = self.qos_profile
+        depth = depth_of(qos)
+        if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL and depth > 1:
+            raise InvalidQoSProfileException(
+                f"a lease of {self.topic_name} needs depth 1 with TRANSIENT_LOCAL, not {depth}: a "
+                "late subscription would get old commands before the stop"
             )
         return CommandLease(self, stop, ttl_sec, clock, self._time_base, refuse)
 

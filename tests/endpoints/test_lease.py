@@ -23,7 +23,7 @@ from aionode.errors import (
 )
 from aionode.interfaces.std_msgs.msg import Int8, String
 from aionode.lifecycle import LifecycleNode
-from aionode.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
+from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from aionode.testing import FaultyTransport, ManualClock, local_context, settle
 from aionode.transport.local import LocalTransport
 from aionode.wire import cdr
@@ -581,6 +581,18 @@ async def test_a_keep_all_publisher_has_no_leases(robot: Robot) -> None:
     keep_all = QoSProfile(history=HistoryPolicy.KEEP_ALL, reliability=ReliabilityPolicy.RELIABLE)
     with pytest.raises(InvalidQoSProfileException):
         robot.node.create_publisher(Int8, "all", keep_all).lease(stop=STOP)
+
+
+async def test_a_transient_local_publisher_of_a_lease_keeps_one_message(robot: Robot) -> None:
+    """A late subscription would get old commands before the stop."""
+    latched = [
+        QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL) for depth in (1, 2)
+    ]
+    one, two = (robot.node.create_publisher(Int8, f"kept{qos.depth}", qos) for qos in latched)
+
+    assert not one.lease(stop=STOP).held
+    with pytest.raises(InvalidQoSProfileException, match="needs depth 1 with TRANSIENT_LOCAL"):
+        two.lease(stop=STOP)
 
 
 async def test_a_full_keep_all_subscription_gets_the_stop(robot: Robot) -> None:
