@@ -23,7 +23,7 @@ from aionode.interfaces.std_msgs.msg import String
 from aionode.message import to_json
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator
+    from collections.abc import AsyncGenerator, AsyncIterator
 
 PAGE = """<!doctype html>
 <title>aionode</title>
@@ -43,7 +43,7 @@ def make_app(context: Context | None = None) -> FastAPI:
     """Return the application; its node runs as long as the application."""
 
     @asynccontextmanager
-    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+    async def lifespan(app: FastAPI) -> AsyncGenerator[None, None]:
         async with Node("web", context=context) as node:
             app.state.node = node
             app.state.adder = node.create_client(AddTwoInts, "/add_two_ints")

@@ -27,17 +27,12 @@ class ReverseString(ServiceType, typename="tutorial_interfaces/srv/ReverseString
 
 
 class ReverseStringService(Node):
-    """A server of /reverse_string, or a client that calls it once."""
+    """Serves /reverse_string."""
 
     def __init__(self) -> None:
         super().__init__("reverse_string_service")
-        if self.declare_parameter("mode", "server").value == "client":
-            self.text = self.declare_parameter("text", "hello").value
-            self.client = self.create_client(ReverseString, "/reverse_string")
-            self.timer = self.create_timer(0.0, self.call)
-        else:
-            self.service = self.create_service(ReverseString, "/reverse_string", self.reverse)
-            self.get_logger().info("Service server ready: /reverse_string")
+        self.service = self.create_service(ReverseString, "/reverse_string", self.reverse)
+        self.get_logger().info("Service server ready: /reverse_string")
 
     def reverse(
         self, request: ReverseString.Request, response: ReverseString.Response
@@ -47,14 +42,22 @@ class ReverseStringService(Node):
         self.get_logger().info(f'Request: "{request.text}" -> "{response.reversed}"')
         return response
 
-    async def call(self) -> None:
-        """Call the service once, log the response, and end."""
-        self.timer.cancel()
-        await self.client.wait_for_service()
-        response = await self.client.call(ReverseString.Request(text=self.text))
-        self.get_logger().info(f'Response: "{response.reversed}"')
-        self.destroy_node()
+
+async def main() -> None:
+    """Run the server, or with the parameter `mode` set to `client`, call it once."""
+    reader = Node("param_reader")
+    mode = reader.declare_parameter("mode", "server").value
+    text = reader.declare_parameter("text", "hello").value
+    reader.destroy_node()
+    if mode == "client":
+        async with Node("reverse_string_client") as node:
+            client = node.create_client(ReverseString, "/reverse_string")
+            await client.wait_for_service()
+            response = await client.call(ReverseString.Request(text=text))
+            node.get_logger().info(f'Response: "{response.reversed}"')
+    else:
+        await ReverseStringService().run()
 
 
 if __name__ == "__main__":
-    aionode.run(ReverseStringService)
+    aionode.run(main)

@@ -108,7 +108,7 @@ def make_app(context: Context | None = None) -> FastAPI:
     """Return the application; its node runs as long as the application."""
 
     @contextlib.asynccontextmanager
-    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+    async def lifespan(app: FastAPI) -> AsyncGenerator[None, None]:
         async with Supervisor(lambda: Operator(context)) as supervisor:
             app.state.supervisor = supervisor
             yield

@@ -458,6 +458,22 @@ def test_a_service_of_a_type_of_its_own_reverses_a_string(domain: int) -> None:
     assert response.endswith(': Response: "tobor"')
 
 
+def test_the_server_that_reverses_strings_and_its_client_have_names_of_their_own(
+    domain: int,
+) -> None:
+    """The reader of the tutorial sees no warning about two nodes with one name."""
+    program = "examples/reverse_string_service.py"
+    with running(program, domain=domain) as server:
+        server.wait_until_running()
+        with running(program, "--ros-args", "-p", "mode:=client", domain=domain) as client:
+            asked = client.rest()
+        _, answered = server.end_with(signal.SIGINT)
+
+    assert "olleh" in asked
+    assert "olleh" in answered
+    assert "two nodes" not in asked + answered
+
+
 def test_the_word_counter_counts_what_the_publisher_says(domain: int) -> None:
     """One topic in, another one out."""
     with (

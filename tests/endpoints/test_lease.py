@@ -447,7 +447,7 @@ async def test_all_stops_can_be_sent_from_a_thread(robot: Robot) -> None:
         assert await asyncio.to_thread(send_stops, 0)
         await asyncio.Event().wait()
 
-    with pytest.raises(LeaseExpiredError, match="the process was told to end"):
+    with pytest.raises(LeaseExpiredError, match="the process was about to end"):
         await hold(robot.speed, wait_for_thread)
     assert await robot.took() == [1, 0]
 

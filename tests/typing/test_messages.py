@@ -1,4 +1,7 @@
-"""What mypy --strict and pyright say of code that uses messages, and of the page about them."""
+"""What mypy --strict and pyright say of code that uses messages, the page about them, and examples.
+
+`make check` has mypy read the examples; pyright reads them here.
+"""
 
 from __future__ import annotations
 
@@ -18,6 +21,7 @@ ROOT = HERE.parents[1]
 PYTHON = f"{sys.version_info.major}.{sys.version_info.minor}"
 PAGE = ROOT / "docs" / "howto" / "messages.md"
 ACCEPTED, REJECTED = HERE / "accepted.py", HERE / "rejected.py"
+EXAMPLES = ROOT / "examples"
 
 
 def marked(file: Path) -> set[int]:
@@ -58,7 +62,7 @@ def pyright(folder: Path, page: Path) -> dict[Path, set[int]]:
     (folder / "pyrightconfig.json").write_text(json.dumps(settings))
     command = [sys.executable, "-m", "basedpyright", "--outputjson", "--project", str(folder)]
     done = subprocess.run(
-        [*command, "--pythonpath", sys.executable, str(ACCEPTED), str(REJECTED), str(page)],
+        [*command, "--pythonpath", sys.executable, *map(str, (ACCEPTED, REJECTED, page, EXAMPLES))],
         check=False,
         capture_output=True,
         text=True,

@@ -28,7 +28,7 @@ AGAIN_S: Final = 0.01
 REPEAT_S: Final = 0.2
 """How long a stop is put again while the loop does not take over."""
 
-STOPPED: Final = "the process was told to end, or to stand still"
+STOPPED: Final = "the process was about to end or to be suspended"
 
 
 class Watched(Protocol):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack
@@ -317,6 +318,19 @@ async def test_a_server_logs_rejected_goals_once_a_second(
 
     (line,) = [text for text in caplog.messages if "rejected" in text]
     assert line == "action server /fibonacci: goal_callback rejected a goal"
+
+
+async def test_a_goal_without_a_server_names_the_wait_that_action_clients_have(
+    ends: Ends, caplog: pytest.LogCaptureFixture
+) -> None:
+    """An action client has no `wait_for_service`."""
+    client = ends.asking.create_action_client(Fibonacci, "unserved")
+    with contextlib.suppress(TimeoutError):
+        async with asyncio.timeout(0.01):
+            await client.send_goal(Fibonacci.Goal())
+
+    (line,) = [text for text in caplog.messages if "no server is matched" in text]
+    assert "`wait_for_server()` of an action client" in line
 
 
 async def test_an_id_of_the_caller_is_used_and_rejected_the_second_time(ends: Ends) -> None:
