@@ -7,6 +7,7 @@ import functools
 import gc
 import inspect
 import os
+import signal
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -38,6 +39,10 @@ settings.register_profile("fuzz", settings.get_profile("tests"), max_examples=20
 
 # Collecting makes half a million objects that all stay: looking for garbage takes half of its time.
 gc.disable()
+
+# What runs the tests may ignore SIGHUP, as nohup does, and every process that they start would too.
+if hasattr(signal, "SIGHUP"):
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 # Hundreds of processes would each compile aionode where Python is told to write no bytecode. What
 # they share is not written beside the sources then.

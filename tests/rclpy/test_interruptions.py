@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 
+from aionode.rclpy._impl import uninterrupted
 from tests.support.peers import isolated_environment
 
 PROGRAM = Path(__file__).parent / "interruptions.py"
@@ -50,6 +51,20 @@ def test_a_handler_publishes_while_the_main_thread_publishes() -> None:
 def test_a_handler_asks_while_the_main_thread_publishes_or_spins() -> None:
     """The answer comes over a link, which some thread has to read."""
     assert run("asks") == {"answers": True}
+
+
+def test_a_handler_that_interrupts_the_look_at_handlers_may_wait(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The main thread looks whether it may do work; what it does then has not begun yet."""
+
+    def interrupted_look() -> bool:
+        uninterrupted.refuse_to_wait()
+        return False
+
+    monkeypatch.setattr(uninterrupted, "handlers_are_harmless", interrupted_look)
+
+    assert not uninterrupted.begin()
 
 
 def test_a_handler_creates_and_destroys_entities_while_the_main_thread_does() -> None:

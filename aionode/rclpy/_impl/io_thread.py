@@ -182,7 +182,7 @@ class IoThread:
                         self._send(action)
             finally:
                 uninterrupted.end()
-        elif uninterrupted.current.active:
+        elif uninterrupted.current.begun:
             self.post(partial(self.deliver, work, arg))
         else:
             self.call(self.deliver, work, arg)
@@ -239,7 +239,7 @@ class IoThread:
         if (
             len(self._work) >= MOST_WAITING
             and not self.is_current
-            and not uninterrupted.current.active
+            and not uninterrupted.current.begun
         ):
             turn = Wakeup()
             self.post(turn.wake)

@@ -35,11 +35,13 @@ class Uninterrupted(local):
     """Such work of this thread.
 
     Attributes:
-        active: Whether it does any.
+        active: Whether it does any, or looks whether it may.
+        begun: Whether it does any.
         rouse: Ends the wait that is part of it, if one is.
     """
 
     active = False
+    begun = False
     rouse: Callable[[], None] | None = None
 
 
@@ -75,6 +77,8 @@ def begin() -> bool:
     try:
         alone = get_ident() != main_thread().ident or handlers_are_harmless()
     finally:
+        # A handler of the program that interrupts the look may wait: the work does not begin then.
+        current.begun = alone
         if not alone:
             current.active = False
     if not alone and postponed:
@@ -85,7 +89,7 @@ def begin() -> bool:
 def end() -> None:
     """End it, and call what was put off meanwhile."""
     current.rouse = None
-    current.active = False
+    current.begun = current.active = False
     if postponed:
         call_postponed()
 
@@ -127,7 +131,7 @@ def refuse_to_wait() -> None:
     Raises:
         RCLError: it is under way in this thread: a finalizer has interrupted it.
     """
-    if current.active:
+    if current.begun:
         raise RCLError(
             "a finalizer interrupted a thread that sends or receives, and cannot wait for an "
             "answer; publish there, or ask later, in a callback"
