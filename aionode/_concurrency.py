@@ -83,13 +83,20 @@ def is_cancelled_task() -> bool:
     return task is not None and task.cancelling() > 0
 
 
-async def to_the_end(work: Coroutine[Any, Any, T]) -> T:
+async def to_the_end(work: Coroutine[Any, Any, T], raising: BaseException | None = None) -> T:
     """Return the result of `work`, which goes on even if the caller is cancelled.
 
     For what has to finish however a task ends, such as closing connections.
 
+    Args:
+        work: What is run.
+        raising: The exception that the caller raises afterwards. A cancellation does not take its
+            place: a TaskGroup of Python 3.13 that raises the errors of its tasks in a cancelled
+            task cancels this task once more, so that the next ``await`` would lose these errors.
+
     Raises:
-        CancelledError: the caller was cancelled; raised after `work` has finished.
+        CancelledError: the caller was cancelled, and `raising` is None or a CancelledError; raised
+            after `work` has finished.
         Exception: what `work` raised.
     """
     cancelled: asyncio.CancelledError | None = None
@@ -109,7 +116,7 @@ async def to_the_end(work: Coroutine[Any, Any, T]) -> T:
             except asyncio.CancelledError as error:
                 cancelled = error
     result = outcome.result()
-    if cancelled is not None:
+    if cancelled is not None and (raising is None or isinstance(raising, asyncio.CancelledError)):
         raise cancelled
     return result
 

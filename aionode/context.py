@@ -307,7 +307,7 @@ class Context:
     ) -> None:
         """Destroy the nodes, wait until they have ended, and close the transports."""
         self.shutdown()
-        await to_the_end(self._release())
+        await to_the_end(self._release(), exc)
         if self._users:
             await self._closed.wait()
 

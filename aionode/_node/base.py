@@ -159,14 +159,16 @@ class NodeBase:
             except asyncio.CancelledError as cancelled:
                 if exc is None:
                     exc_type, exc, traceback = type(cancelled), cancelled, cancelled.__traceback__
+            raising = exc
             try:
                 await tasks.__aexit__(exc_type, exc, traceback)
             except BaseExceptionGroup as group:
                 if group.exceptions != (exc,):
+                    raising = group
                     raise
             finally:
                 self._running = False
-                await to_the_end(self.context._release())
+                await to_the_end(self.context._release(), raising)
 
     async def run(self) -> None:
         """Run until `destroy_node` is called, which any callback may do.

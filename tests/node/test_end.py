@@ -254,6 +254,28 @@ async def test_what_runs_to_the_end_gives_its_result_and_its_error() -> None:
         await to_the_end(fail())
 
 
+async def test_an_error_of_a_cleanup_comes_before_the_cancellation(context: Context) -> None:
+    """A TaskGroup of Python 3.13 cancels its task once more when it raises: the error was lost."""
+    begun = asyncio.Event()
+
+    async def fail_at_the_end() -> None:
+        begun.set()
+        try:
+            await asyncio.Event().wait()
+        finally:
+            raise LookupError("lost")
+
+    node = Node("robot", context=context)
+    node.create_timer(1e-3, fail_at_the_end)
+    running = asyncio.create_task(node.run())
+    await begun.wait()
+    running.cancel()
+
+    with pytest.raises(ExceptionGroup) as caught:
+        await running
+    assert caught.group_contains(LookupError)
+
+
 # Nodes that cannot be made
 
 
