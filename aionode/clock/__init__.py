@@ -13,7 +13,7 @@ from aionode.clock._clocks import (
     TimeJump,
 )
 from aionode.clock._silence import SilenceAlarm
-from aionode.clock._time_base import Alarm, MachineTime, TimeBase, perf_ns
+from aionode.clock._time_base import Alarm, MachineTime, TimeBase, perf_ns, thread_ns
 from aionode.clock._values import CONST_INFINITE_NS, S_TO_NS, ClockType, Duration, Infinite, Time
 
 __all__ = [
@@ -35,4 +35,5 @@ __all__ = [
     "TimeBase",
     "TimeJump",
     "perf_ns",
+    "thread_ns",
 ]

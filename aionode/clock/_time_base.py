@@ -19,9 +19,10 @@ if TYPE_CHECKING:
 
     from aionode.clock._timerfd import KernelAlarms
 
-__all__ = ["Alarm", "MachineTime", "TimeBase", "perf_ns"]
+__all__ = ["Alarm", "MachineTime", "TimeBase", "perf_ns", "thread_ns"]
 
 perf_ns = time.perf_counter_ns  # for statistics only: a manual clock does not drive it
+thread_ns = time.thread_time_ns  # likewise; the time for which the current thread has run
 
 # uvloop rounds a wait to the nearest millisecond, so half of them end early; selector loops are
 # early by at most the 1 ns they add for rounding. The rest is spent in turns of the loop if it is

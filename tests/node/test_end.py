@@ -267,7 +267,7 @@ async def test_an_error_of_a_cleanup_comes_before_the_cancellation(context: Cont
 
     node = Node("robot", context=context)
     node.create_timer(1e-3, fail_at_the_end)
-    running = asyncio.create_task(node.run())
+    running = asyncio.get_running_loop().create_task(node.run())
     await begun.wait()
     running.cancel()
 

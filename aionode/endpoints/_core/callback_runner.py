@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import functools
 import inspect
+import os
 from collections.abc import Awaitable, Callable, Coroutine, Generator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
@@ -17,6 +18,7 @@ from aionode._concurrency import SLICE_NS, checkpoint, is_cancelled_task, run_in
 from aionode._tracebacks import traceback_text
 from aionode.clock import perf_ns
 from aionode.endpoints._core.node_tasks import create_own_task
+from aionode.endpoints._core.thread_time import ThreadTime
 from aionode.errors import (
     CallbackCancelledError,
     CallbackSignatureError,
@@ -89,6 +91,7 @@ class CallbackRunner:
         is_sync: Whether a call is expected to finish at once, in the loop's own thread.
         budget_ns: How long a callback may block the loop before that is reported.
         waiting: The callbacks of the node that have started and are suspended; shared with it.
+        thread_time: For how long the node's thread has run; read after callbacks.
     """
 
     def __init__(
@@ -126,6 +129,7 @@ class CallbackRunner:
         self.is_sync = not offload and not _is_async(callback)
         self.budget_ns = callbacks.budget_ns
         self.waiting = callbacks.waiting
+        self.thread_time = callbacks.thread_time
         self._last_report_ns = -REPORT_INTERVAL_NS
 
     @property
@@ -166,6 +170,8 @@ class CallbackRunner:
         if outcome is not None or took_ns > self.budget_ns:
             return self.conclude(waited_ns, took_ns, outcome)
         self.stats._record_call(waited_ns, took_ns)
+        if began_ns >= self.thread_time.due_ns:
+            self.thread_time.read(began_ns)
         return None
 
     def conclude(
@@ -224,13 +230,15 @@ class CallbackRunner:
         try:
             outcome = self.callback(*args)
         except BaseException as error:
-            self._record_sync(perf_ns() - began_ns)
+            ended_ns = perf_ns()
+            self._record_sync(ended_ns - began_ns, ended_ns)
             if isinstance(error, asyncio.CancelledError):
                 raise self._cancelled(error) from error
             raise
         if outcome is not None and isinstance(outcome, Awaitable):
             return _Measured(self, outcome)
-        self._record_sync(perf_ns() - began_ns)
+        ended_ns = perf_ns()
+        self._record_sync(ended_ns - began_ns, ended_ns)
         return outcome
 
     async def outcome(self, entered: Any) -> Any:
@@ -277,10 +285,13 @@ class CallbackRunner:
             except asyncio.CancelledError as cause:
                 raise self._cancelled(cause) from cause
 
-    def _record_sync(self, took_ns: int) -> None:
+    def _record_sync(self, took_ns: int, ended_ns: int = 0) -> None:
         self.stats._record_took(took_ns)
         if took_ns > self.budget_ns:
             self.report_blocking(took_ns)
+            self.thread_time.read(perf_ns())
+        elif ended_ns >= self.thread_time.due_ns:
+            self.thread_time.read(ended_ns)
 
     def report_blocking(self, took_ns: int) -> None:
         """Warn that the loop was blocked for too long, at most once per second."""
@@ -290,9 +301,8 @@ class CallbackRunner:
         self._last_report_ns = now_ns
         self._callbacks.logger.warning(
             f"{self.subject} blocked the event loop for {took_ns / 1e6:.1f} ms "
-            f"(budget {self.budget_ns / 1e6:g} ms): nothing else could run. Move the work off the "
-            "loop: offload=True runs a sync callback in a thread, a coroutine can await "
-            "asyncio.to_thread(...)"
+            f"(budget {self.budget_ns / 1e6:g} ms): nothing else could run. "
+            f"{advice(took_ns, self.thread_time.ran_ns())}"
         )
 
 
@@ -306,12 +316,14 @@ class Callbacks:
         budget_ns: How long a callback may block the loop before that is reported.
         waiting: The callbacks that have started and are suspended; ``str()`` of each names it.
             Each adds itself when it starts and removes itself when it ends.
+        thread_time: For how long the node's thread has run.
     """
 
     node: str
     logger: RcutilsLogger
     budget_ns: int
     waiting: set[object] = field(default_factory=set)
+    thread_time: ThreadTime = field(default_factory=ThreadTime)
 
     def make_runner(
         self,
@@ -376,10 +388,13 @@ class _Measured:
             return stop.value
         finally:
             runner.waiting.discard(self)
-            runner.stats.run_time.record(perf_ns() - began_ns)
+            ended_ns = perf_ns()
+            runner.stats.run_time.record(ended_ns - began_ns)
             runner.stats.blocking.record(longest_ns)
             if longest_ns > runner.budget_ns:
                 runner.report_blocking(longest_ns)
+            if ended_ns >= runner.thread_time.due_ns:
+                runner.thread_time.read(ended_ns)
 
 
 class _Offloaded:
@@ -470,6 +485,31 @@ async def _consume_concurrently(
             if perf_ns() >= turn_ends_ns:
                 await checkpoint()
                 turn_ends_ns = perf_ns() + SLICE_NS
+
+
+# Reports
+
+
+def advice(took_ns: int, ran_ns: int | None) -> str:
+    """Return what a report of a slow callback says of its time, and what helps.
+
+    Args:
+        took_ns: How long the callback blocked the loop.
+        ran_ns: For how long its thread ran meanwhile, None if unknown.
+    """
+    move = (
+        "Move the work off the loop: offload=True runs a sync callback in a thread, a coroutine "
+        "can await asyncio.to_thread(...)"
+    )
+    if ran_ns is None or 2 * ran_ns > took_ns:
+        return move
+    waited_for = "a lock, I/O or a sleep"
+    load, cores = os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0, os.cpu_count() or 1
+    if load > cores:
+        waited_for += f", or for a processor: the load is {load:.1f} on {cores} cores"
+    return (
+        f"Its thread ran for {ran_ns / 1e6:.1f} ms and waited for the rest ({waited_for}). {move}"
+    )
 
 
 # Arguments

@@ -116,7 +116,7 @@ class SubscriptionReader(MessageQueue[Any]):
         self._last_sequences: dict[bytes, int] = {}
         self._reception_sequence = 0
 
-    def deliver(  # noqa: C901  # fewer calls for each message, see below
+    def deliver(  # noqa: C901, PLR0912  # fewer calls for each message, see below
         self,
         msg: Any,
         gid: bytes,
@@ -154,6 +154,8 @@ class SubscriptionReader(MessageQueue[Any]):
                     noted.append(took_ns)
                     if len(noted) >= NOTED_CALLS:
                         stats._record_noted()
+                    if began_ns >= runner.thread_time.due_ns:
+                        runner.thread_time.read(began_ns)
                     return
                 done = self.run(runner.conclude, 0, took_ns, outcome)
             except BaseException as error:  # noqa: BLE001  # handled as if the task had called
@@ -208,8 +210,10 @@ class SubscriptionReader(MessageQueue[Any]):
             if len(took) >= NOTED_CALLS:
                 stats._record_noted()
             if ended_ns >= turn_ends_ns:
-                return None
+                break
             began_ns = ended_ns
+        if began_ns >= runner.thread_time.due_ns:
+            runner.thread_time.read(began_ns)
         return None
 
     def _deliver_with(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int) -> None:

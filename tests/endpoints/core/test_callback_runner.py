@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import functools
+import re
 import threading
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ from aionode._concurrency import checkpoint
 from aionode.clock import perf_ns
 from aionode.endpoints._core import callback_runner, message_queue
 from aionode.endpoints._core.callback_runner import CallbackContext
+from aionode.endpoints._core.thread_time import ThreadTime
 from aionode.endpoints.stats import Distribution
 from aionode.errors import CallbackCancelledError
 from aionode.interfaces.std_msgs.msg import Int32, String
@@ -252,6 +254,59 @@ async def test_a_callback_that_blocks_the_loop_is_reported_once_a_second(
     assert len(lines) == 1
     for part in ("slow_callback", "/numbers", "budget 2 ms", "offload=True", "[WARN]", "[node]"):
         assert part in lines[0]
+
+
+@pytest.mark.parametrize("kind", ["sync", "async"])
+@pytest.mark.parametrize(
+    ("load", "said"),
+    [
+        (
+            0.5,
+            r"Its thread ran for \d\.\d ms and waited for the rest \(a lock, I/O or a sleep\)\. ",
+        ),
+        (99.0, r"a sleep, or for a processor: the load is 99\.0 on \d+ cores\)\. Move the work"),
+    ],
+)
+async def test_a_report_says_if_the_thread_did_not_run(
+    context: Context,
+    capfd: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    kind: str,
+    load: float,
+    said: str,
+) -> None:
+    """A callback that others kept from the processor is not slow itself."""
+    monkeypatch.setattr("os.getloadavg", lambda: (load, load, load))
+
+    def wait(msg: Int32) -> None:
+        threading.Event().wait(0.02)
+
+    async def wait_async(msg: Int32) -> None:
+        wait(msg)
+
+    async with Node("node", context=context, callback_budget_ms=10) as node:
+        listen(node, wait if kind == "sync" else wait_async)
+        send(node)
+        await settle()
+
+    assert re.search(said, capfd.readouterr().err)
+
+
+async def test_a_report_of_a_computation_does_not_speak_of_waiting() -> None:
+    """It had the processor: only moving the work helps; nor does one without a reading."""
+    assert callback_runner.advice(10_000_000, 9_000_000).startswith("Move the work off the loop")
+    assert callback_runner.advice(10_000_000, None).startswith("Move the work off the loop")
+
+
+def test_a_reading_of_another_thread_says_nothing() -> None:
+    """A node that was created in one thread and runs in another."""
+    readings: list[ThreadTime] = []
+    thread = threading.Thread(target=lambda: readings.append(ThreadTime()))
+    thread.start()
+    thread.join()
+    assert readings[0].ran_ns() is None
+    readings[0].read(perf_ns())
+    assert readings[0].ran_ns() is not None
 
 
 async def test_an_async_callback_is_measured_between_its_waits(

@@ -1,0 +1,44 @@
+"""The time for which a thread really ran: what a blocked loop did with its wall time."""
+
+from __future__ import annotations
+
+import threading
+
+from aionode.clock import perf_ns, thread_ns
+
+__all__ = ["ThreadTime"]
+
+INTERVAL_NS = 5_000_000
+"""How old a reading may be: a reading costs about a microsecond, too much for each callback."""
+
+
+class ThreadTime:
+    """Says for how long the thread of an event loop ran since shortly before a callback.
+
+    The time is read after a callback, never before it, so that no message waits for the reading.
+    The loop sleeps between the reading and the next callback, which takes no thread time.
+
+    Attributes:
+        due_ns: The `perf_ns` time from which on the next reading is due; compared by the callers,
+            since a call for each callback would cost as much as the reading saves.
+    """
+
+    __slots__ = ("_read_ns", "_thread", "due_ns")
+
+    def __init__(self) -> None:
+        self.read(perf_ns())
+
+    def read(self, now_ns: int) -> None:
+        """Read the time of the current thread at the `perf_ns` time `now_ns`."""
+        self._thread = threading.get_ident()
+        self._read_ns = thread_ns()
+        self.due_ns = now_ns + INTERVAL_NS
+
+    def ran_ns(self) -> int | None:
+        """Return for how long the current thread ran since the reading, in nanoseconds.
+
+        None if the reading is of another thread: the node was created there.
+        """
+        if threading.get_ident() != self._thread:
+            return None
+        return thread_ns() - self._read_ns
