@@ -314,13 +314,17 @@ class Recovery:
         keys = participants(self._state)
         connected = {str(transport.zid) for transport in session.info.transports()}
         common = {token for token in known if participant_of(token) in connected - lost}
-        there = seen_at(self._network, connection, *keys, expected=common)
+        # An answer may lack nothing but the tokens of this context: it is asked for them, too.
+        own = {token for token in known if participant_of(token) == self._state.participant}
+        there = seen_at(self._network, connection, *keys, expected=common | own)
         here = tokens(session, *keys, expected=known)
         if not known <= here:
             raise TimeoutError(f"{len(known - here)} tokens that are known were not named")
-        own = {token for token in here if participant_of(token) == self._state.participant}
-        one_sided = {participant_of(token) for token in (there - here) | (own - there)}
-        missing = one_sided | ({participant_of(token) for token in there} & (lost - connected))
+        # A session sees all tokens of its own: one that is named only there was just undeclared, or
+        # the answer here lacks it.
+        unseen = {participant_of(token) for token in there - here} - {self._state.participant}
+        unconnected = {participant_of(token) for token in there} & (lost - connected)
+        missing = unseen | unconnected | {participant_of(token) for token in own - there}
         return missing, common <= there
 
     def _take_look(self, missing: set[str] | None) -> None:
