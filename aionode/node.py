@@ -118,17 +118,17 @@ class Node(NodeEndpoints, NodeGraphQueries):
         shared, own = self._shared_arguments, self._own_arguments
         if enable_rosout and shared.rosout_logs and own.rosout_logs:
             self._stop_rosout = builtin_services.publish_log(self, rosout_qos_profile)
-        self._parameters.publish = builtin_services.publish_parameter_events(self)
+        self._parameter_store.publish = builtin_services.publish_parameter_events(self)
         for usage in self._usages:
             if not usage.is_over:
-                usage.note_parameters(self._parameters)
+                usage.note_parameters(self._parameter_store)
         if automatically_declare_parameters_from_overrides:
             dynamic = ParameterDescriptor(dynamic_typing=True)
-            for name in self._parameters.overrides:
+            for name in self._parameter_store.overrides:
                 self.declare_parameter(name, descriptor=dynamic)
         TimeSource(self, self._clock)
         if start_parameter_services:
-            builtin_services.serve_parameters(self, self._parameters)
+            builtin_services.serve_parameters(self, self._parameter_store)
         builtin_services.serve_type_descriptions(self)
         if enable_logger_service:
             builtin_services.serve_logger_levels(self)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from typing import Any
 
+from aionode.errors import brief
+from aionode.interfaces.rcl_interfaces import msg as rcl_msg
 from aionode.interfaces.rcl_interfaces.msg import SetParametersResult
 from aionode.parameter._value import Parameter, expect
 
@@ -15,7 +18,13 @@ PostSetCallback = Callable[[list[Parameter]], None]
 
 
 class ParameterCallbacks:
-    """The callbacks of a node for parameter changes; the newest of each kind runs first."""
+    """The callbacks of a node for parameter changes; the newest of each kind runs first.
+
+    Attributes:
+        messages: Has the message classes, by name; on-set callbacks return a `SetParametersResult`.
+    """
+
+    messages: Any = rcl_msg
 
     def __init__(self) -> None:
         self._pre: list[PreSetCallback] = []
@@ -23,16 +32,28 @@ class ParameterCallbacks:
         self._post: list[PostSetCallback] = []
 
     def add_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
-        """Call `callback` before a change is checked; it returns the parameters to set instead."""
-        self._pre.insert(0, callback)
+        """Call `callback` before a change is checked; it returns the parameters to set instead.
+
+        Raises:
+            TypeError: it is not callable.
+        """
+        self._pre.insert(0, expect_callable(callback))
 
     def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
-        """Call `callback` to check a change; the first that rejects it decides."""
-        self._on.insert(0, callback)
+        """Call `callback` to check a change; the first that rejects it decides.
+
+        Raises:
+            TypeError: it is not callable.
+        """
+        self._on.insert(0, expect_callable(callback))
 
     def add_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
-        """Call `callback` after a change."""
-        self._post.insert(0, callback)
+        """Call `callback` after a change.
+
+        Raises:
+            TypeError: it is not callable.
+        """
+        self._post.insert(0, expect_callable(callback))
 
     def remove_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
         """Remove a callback; a ValueError if it was not added."""
@@ -53,14 +74,35 @@ class ParameterCallbacks:
         result: list[Parameter] = []
         for callback in self._pre:
             returned = callback(parameters)
-            expect(returned, list, f"what the pre-set callback {callback!r} returns")
+            expect(returned, Iterable, f"what the pre-set callback {callback!r} returns")
             result.extend(returned)
         return result
 
     def _rejection(self, parameters: list[Parameter]) -> SetParametersResult | None:
         for callback in self._on:
-            result = callback(parameters)
-            expect(result, SetParametersResult, f"what the on-set callback {callback!r} returns")
+            result = self._checked_result(callback, callback(parameters))
             if not result.successful:
                 return result
         return None
+
+    def _checked_result(self, callback: OnSetCallback, result: Any) -> SetParametersResult:
+        """Return what an on-set callback has returned.
+
+        Raises:
+            TypeError: it is no `SetParametersResult`.
+        """
+        wanted = self.messages.SetParametersResult
+        expect(result, wanted, f"what the on-set callback {callback!r} returns")
+        checked: SetParametersResult = result
+        return checked
+
+
+def expect_callable(callback: Any) -> Any:
+    """Return `callback`.
+
+    Raises:
+        TypeError: it is not callable.
+    """
+    if not callable(callback):
+        raise TypeError(f"Callback must be callable, got {brief(callback)}")
+    return callback

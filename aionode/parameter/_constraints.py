@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from aionode.interfaces.rcl_interfaces.msg import (
     FloatingPointRange,
@@ -18,25 +19,29 @@ REL_TOL = 1e-6  # how close to a step or to an end of its range a float must be
 
 def descriptor_violation(parameter: Parameter, descriptor: ParameterDescriptor) -> str | None:
     """Return why a value is outside the descriptor's range, or None if it is inside."""
-    if parameter.type_ is ParameterType.INTEGER and descriptor.integer_range:
+    if parameter.type_ == ParameterType.INTEGER and descriptor.integer_range:
         return integer_violation(parameter, descriptor.integer_range[0])
-    if parameter.type_ is ParameterType.DOUBLE and descriptor.floating_point_range:
+    if parameter.type_ == ParameterType.DOUBLE and descriptor.floating_point_range:
         return float_violation(parameter, descriptor.floating_point_range[0])
     return None
 
 
 def type_violation(
-    parameter: Parameter, descriptor: ParameterDescriptor, *, declared: bool
+    parameter: Parameter,
+    descriptor: ParameterDescriptor,
+    *,
+    declared: bool,
+    text_of: Callable[[ParameterType], str] = str,
 ) -> str | None:
     """Return why a value's type is not the descriptor's, or None if it is."""
     if descriptor.dynamic_typing:
         return None
-    if parameter.type_ is ParameterType.NOT_SET:
+    if parameter.type_ == ParameterType.NOT_SET:
         return "Static parameter cannot be undeclared" if declared else None
     if parameter.type_ == descriptor.type:
         return None
-    expected = ParameterType(descriptor.type).name
-    return f"Wrong parameter type, expected 'Type.{expected}' got 'Type.{parameter.type_.name}'"
+    expected = text_of(ParameterType(descriptor.type))
+    return f"Wrong parameter type, expected '{expected}' got '{text_of(parameter.type_)}'"
 
 
 def integer_violation(parameter: Parameter, limits: IntegerRange) -> str | None:

@@ -5,11 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 from aionode.errors import InvalidParameterException
-from aionode.interfaces.rcl_interfaces.msg import Parameter as ParameterMsg
-from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor, ParameterValue
+from aionode.interfaces.rcl_interfaces import msg as rcl_msg
+from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.parameter._value import Parameter, ParameterType, expect
 
-__all__ = ["adapted", "first_value", "split_entry", "validate_parameter_name"]
+__all__ = [
+    "adapted",
+    "first_value",
+    "refuse_many_ranges",
+    "split_entry",
+    "validate_parameter_name",
+]
 
 
 def validate_parameter_name(name: str) -> bool:
@@ -23,8 +29,12 @@ def validate_parameter_name(name: str) -> bool:
     return True
 
 
-def split_entry(entry: tuple[Any, ...], index: int) -> tuple[str, Any, ParameterDescriptor]:
-    """Return the name, value and descriptor of one entry of `declare_parameters`."""
+def split_entry(entry: tuple[Any, ...], index: int) -> tuple[str, Any, Any]:
+    """Return the name, value and descriptor, or None, of one entry of `declare_parameters`.
+
+    Raises:
+        TypeError: it has another form, or its name is no text.
+    """
     if not 1 <= len(entry) <= 3:
         message = (
             f"Invalid parameter tuple length at index {index} in parameters list: {entry}; "
@@ -32,25 +42,39 @@ def split_entry(entry: tuple[Any, ...], index: int) -> tuple[str, Any, Parameter
         )
         raise TypeError(message)
     name, value, descriptor = (*entry, *(None, None))[:3]
-    if descriptor is None:
-        descriptor = ParameterDescriptor()
     expect(name, str, f"First element at index {index} in parameters list")
-    expect(descriptor, ParameterDescriptor, f"Third element at index {index} in parameters list")
+    return name, value, descriptor
+
+
+def refuse_many_ranges(name: str, descriptor: ParameterDescriptor) -> None:
+    """Raise ValueError if a descriptor has more than one range."""
     for ranges in (descriptor.integer_range, descriptor.floating_point_range):
         if len(ranges) > 1:
             message = f"{name}: the descriptor has {len(ranges)} ranges; at most one is allowed"
             raise ValueError(message)
-    return name, value, descriptor
 
 
-def first_value(name: str, value: Any, descriptor: ParameterDescriptor) -> Parameter:
+def first_value(
+    name: str,
+    value: Any,
+    descriptor: ParameterDescriptor,
+    parameter_class: type[Parameter] = Parameter,
+    messages: Any = rcl_msg,
+) -> Parameter:
     """Return the parameter as declared, and set the type in its descriptor.
+
+    Args:
+        name: Its name.
+        value: Its value, as itself or as a message, or its type.
+        descriptor: Its descriptor.
+        parameter_class: The class of the result.
+        messages: Has the class of a message with a value, by name.
 
     Raises:
         ValueError: The type cannot be determined.
     """
-    if isinstance(value, ParameterType):
-        if value is ParameterType.NOT_SET:
+    if isinstance(value, parameter_class.Type):
+        if value == ParameterType.NOT_SET:
             message = f"Cannot declare parameter '{name}' as statically typed of type NOT_SET"
             raise ValueError(message)
         if descriptor.dynamic_typing:
@@ -60,12 +84,12 @@ def first_value(name: str, value: Any, descriptor: ParameterDescriptor) -> Param
             )
             raise ValueError(message)
         descriptor.type = int(value)
-        return Parameter(name)
-    if isinstance(value, ParameterValue):
-        parameter = Parameter.from_parameter_msg(ParameterMsg(name=name, value=value))
+        return parameter_class(name)
+    if isinstance(value, messages.ParameterValue):
+        parameter = parameter_class.from_parameter_msg(messages.Parameter(name=name, value=value))
     else:
-        parameter = Parameter(name, value=value)
-    if not descriptor.dynamic_typing and parameter.type_ is ParameterType.NOT_SET:
+        parameter = parameter_class(name, value=value)
+    if not descriptor.dynamic_typing and parameter.type_ == ParameterType.NOT_SET:
         message = (
             f"Cannot declare the statically typed parameter '{name}' with a default value of type "
             "PARAMETER_NOT_SET: give a value, a Parameter.Type, or dynamic_typing=True"

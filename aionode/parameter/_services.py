@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence, Sized
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, Protocol
 
 from aionode.errors import (
     ParameterNotDeclaredException,
@@ -11,9 +11,8 @@ from aionode.errors import (
     RequestRefusedError,
 )
 from aionode.interfaces.rcl_interfaces import srv
+from aionode.interfaces.rcl_interfaces.msg import ListParametersResult, SetParametersResult
 from aionode.interfaces.rcl_interfaces.msg import Parameter as ParameterMsg
-from aionode.interfaces.rcl_interfaces.msg import SetParametersResult
-from aionode.parameter._store import ParameterStore
 from aionode.parameter._value import Parameter
 
 __all__ = ["ParameterService", "parameter_services"]
@@ -39,17 +38,41 @@ class ParameterService(NamedTuple):
     callback: Callable[[Any, Any], Any]
 
 
-def parameter_services(store: ParameterStore) -> list[ParameterService]:
-    """Return the services through which other nodes read and set the parameters of a node."""
-    answers = Answers(store)
+class Parameters(Protocol):
+    """What the services need: a `ParameterStore`, or a node with its methods."""
+
+    def describe_parameters(self, names: Any) -> list[Any]: ...
+    def get_parameters(self, names: Any) -> list[Any]: ...
+    def get_parameter_types(self, names: Any) -> list[Any]: ...
+    def list_parameters(self, prefixes: Any, depth: int) -> ListParametersResult: ...
+    def set_parameters_atomically(self, parameter_list: Any) -> SetParametersResult: ...
+
+
+def parameter_services(
+    parameters: Parameters,
+    parameter_class: type[Parameter] = Parameter,
+    services: Any = srv,
+    result_class: Any = SetParametersResult,
+    refusals: tuple[type[Exception], ...] = (ParameterNotDeclaredException,),
+) -> list[ParameterService]:
+    """Return the services through which other nodes read and set the parameters of a node.
+
+    Args:
+        parameters: The parameters.
+        parameter_class: Their class.
+        services: Has the service classes, by name.
+        result_class: The class of SetParametersResult.
+        refusals: The errors that change nothing, whose texts the caller gets as reasons.
+    """
+    answers = Answers(parameters, parameter_class, result_class, refusals)
     return [
-        ParameterService("describe_parameters", srv.DescribeParameters, answers.describe),
-        ParameterService("get_parameters", srv.GetParameters, answers.get_values),
-        ParameterService("get_parameter_types", srv.GetParameterTypes, answers.get_types),
-        ParameterService("list_parameters", srv.ListParameters, answers.list_names),
-        ParameterService("set_parameters", srv.SetParameters, answers.set_each),
+        ParameterService("describe_parameters", services.DescribeParameters, answers.describe),
+        ParameterService("get_parameters", services.GetParameters, answers.get_values),
+        ParameterService("get_parameter_types", services.GetParameterTypes, answers.get_types),
+        ParameterService("list_parameters", services.ListParameters, answers.list_names),
+        ParameterService("set_parameters", services.SetParameters, answers.set_each),
         ParameterService(
-            "set_parameters_atomically", srv.SetParametersAtomically, answers.set_atomically
+            "set_parameters_atomically", services.SetParametersAtomically, answers.set_atomically
         ),
     ]
 
@@ -63,8 +86,17 @@ class Answers:
     Each of them raises `RequestRefusedError` for a request or an answer beyond the limits above.
     """
 
-    def __init__(self, store: ParameterStore) -> None:
-        self.store = store
+    def __init__(
+        self,
+        parameters: Parameters,
+        parameter_class: type[Parameter],
+        result_class: Any,
+        refusals: tuple[type[Exception], ...],
+    ) -> None:
+        self.parameters = parameters
+        self.parameter_class = parameter_class
+        self.result_class = result_class
+        self.refusals = refusals
 
     def describe(
         self, request: srv.DescribeParameters.Request, response: srv.DescribeParameters.Response
@@ -72,7 +104,7 @@ class Answers:
         """Answer describe_parameters."""
         refuse_many(request.names)
         try:
-            response.descriptors = self.store.describe_parameters(request.names)
+            response.descriptors = self.parameters.describe_parameters(list(request.names))
         except ParameterNotDeclaredException:
             response.descriptors = []
         return response
@@ -83,7 +115,7 @@ class Answers:
         """Answer get_parameters."""
         refuse_many(request.names)
         try:
-            parameters = self.store.get_parameters(request.names)
+            parameters = self.parameters.get_parameters(list(request.names))
         except (ParameterNotDeclaredException, ParameterUninitializedException):
             parameters = []
         size_bytes = sum(size_of(parameter.value) for parameter in parameters)
@@ -101,7 +133,7 @@ class Answers:
         """Answer get_parameter_types."""
         refuse_many(request.names)
         try:
-            response.types = bytes(self.store.get_parameter_types(request.names))
+            response.types = bytes(self.parameters.get_parameter_types(list(request.names)))
         except ParameterNotDeclaredException:
             response.types = b""
         return response
@@ -111,7 +143,7 @@ class Answers:
     ) -> srv.ListParameters.Response:
         """Answer list_parameters."""
         refuse_many(request.prefixes)
-        response.result = self.store.list_parameters(request.prefixes, request.depth)
+        response.result = self.parameters.list_parameters(list(request.prefixes), request.depth)
         return response
 
     def set_each(
@@ -134,13 +166,17 @@ class Answers:
 
     def _set(self, messages: list[ParameterMsg]) -> SetParametersResult:
         try:
-            parameters = [Parameter.from_parameter_msg(message) for message in messages]
+            parameters = [self.parameter_class.from_parameter_msg(each) for each in messages]
         except ValueError as error:  # an unknown type
-            return SetParametersResult(successful=False, reason=str(error))
+            return self._failure(error)
         try:
-            return self.store.set_parameters_atomically(parameters)
-        except ParameterNotDeclaredException as error:
-            return SetParametersResult(successful=False, reason=str(error))
+            return self.parameters.set_parameters_atomically(parameters)
+        except self.refusals as error:
+            return self._failure(error)
+
+    def _failure(self, error: Exception) -> SetParametersResult:
+        result: SetParametersResult = self.result_class(reason=str(error))
+        return result
 
 
 def refuse_many(items: Sequence[object]) -> None:

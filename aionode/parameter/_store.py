@@ -34,12 +34,12 @@ from aionode.interfaces.rcl_interfaces.msg import (
     ParameterValue,
     SetParametersResult,
 )
-from aionode.interfaces.rcl_interfaces.msg import Parameter as ParameterMsg
 from aionode.parameter._callbacks import ParameterCallbacks
 from aionode.parameter._constraints import descriptor_violation, type_violation
 from aionode.parameter._declaration import (
     adapted,
     first_value,
+    refuse_many_ranges,
     split_entry,
     validate_parameter_name,
 )
@@ -48,7 +48,6 @@ from aionode.parameter._value import (
     Parameter,
     ParameterType,
     expect,
-    parameter_value_to_python,
 )
 
 __all__ = ["ParameterStore"]
@@ -62,6 +61,8 @@ EMPTY_LIST = (
 class ParameterStore(ParameterCallbacks):
     """The parameters of one node.
 
+    An API with classes of its own derives from it, and sets `parameter_class` and `messages`.
+
     Args:
         node_name: Full name of the node, for its events.
         overrides: Values that take precedence over those given when declaring.
@@ -73,7 +74,13 @@ class ParameterStore(ParameterCallbacks):
         overrides: The overrides, by name.
         asked: Names of the overrides whose parameters have been declared.
         publish: As given; may be replaced.
+        parameter_class: The class of the parameters.
+        messages: Has the message classes, by name.
+        type_text: Returns a type as texts show it.
     """
+
+    parameter_class: type[Parameter] = Parameter
+    type_text: Callable[[ParameterType], str] = staticmethod("Type.{0.name}".format)
 
     def __init__(
         self,
@@ -124,7 +131,9 @@ class ParameterStore(ParameterCallbacks):
         """
         if value is None and descriptor is None:
             return self.declare_parameters("", [(name,)], ignore_override)[0]
-        entry = (name, value, ParameterDescriptor() if descriptor is None else descriptor)
+        if descriptor is None:
+            descriptor = self.messages.ParameterDescriptor()
+        entry = (name, value, descriptor)
         return self.declare_parameters("", [entry], ignore_override)[0]
 
     def declare_parameters(
@@ -163,7 +172,8 @@ class ParameterStore(ParameterCallbacks):
         if namespace:
             name = f"{namespace}{PARAMETER_SEPARATOR_STRING}{name}"
         validate_parameter_name(name)
-        descriptor = copy.deepcopy(given)
+        descriptor = self._own_descriptor(given, index)
+        refuse_many_ranges(name, descriptor)
         descriptor.name = name
         if len(entry) == 1:
             warnings.warn(
@@ -178,10 +188,23 @@ class ParameterStore(ParameterCallbacks):
             descriptor.dynamic_typing = True
         if name in self.overrides:
             self.asked.add(name)
-        parameter = first_value(name, value, descriptor)
+        parameter = first_value(name, value, descriptor, self.parameter_class, self.messages)
         if not ignore_override and name in self.overrides:
-            parameter = adapted(self.overrides[name], descriptor)
+            (parameter,) = self._prepared([self.overrides[name]], {name: descriptor})
         return parameter, descriptor
+
+    def _own_descriptor(self, given: Any, index: int) -> ParameterDescriptor:
+        """Return a copy of the descriptor at `index` of a declaration, an empty one for None.
+
+        Raises:
+            TypeError: it is no descriptor.
+        """
+        wanted = self.messages.ParameterDescriptor
+        if given is None:
+            given = wanted()
+        expect(given, wanted, f"Third element at index {index} in parameters list")
+        copied: ParameterDescriptor = copy.deepcopy(given)
+        return copied
 
     def _declare(self, parameter: Parameter, descriptor: ParameterDescriptor) -> None:
         if type_violation(parameter, descriptor, declared=False):
@@ -230,9 +253,9 @@ class ParameterStore(ParameterCallbacks):
         parameter = self._parameters.get(name)
         if parameter is None:
             if self.allow_undeclared:
-                return Parameter(name)
+                return self.parameter_class(name)
             raise ParameterNotDeclaredException(name)
-        if parameter.type_ is ParameterType.NOT_SET and not self._descriptors[name].dynamic_typing:
+        if parameter.type_ == ParameterType.NOT_SET and not self._descriptors[name].dynamic_typing:
             raise ParameterUninitializedException(name)
         return parameter
 
@@ -247,9 +270,9 @@ class ParameterStore(ParameterCallbacks):
     def get_parameter_or(self, name: str, alternative_value: Parameter | None = None) -> Parameter:
         """Return a parameter, or the alternative if it is undeclared or not set."""
         parameter = self._parameters.get(name)
-        if parameter is not None and parameter.type_ is not ParameterType.NOT_SET:
+        if parameter is not None and parameter.type_ != ParameterType.NOT_SET:
             return parameter
-        return Parameter(name) if alternative_value is None else alternative_value
+        return self.parameter_class(name) if alternative_value is None else alternative_value
 
     def get_parameter_type(self, name: str) -> ParameterType:
         """Return the type of a parameter; NOT_SET if it is undeclared and that is allowed.
@@ -261,7 +284,7 @@ class ParameterStore(ParameterCallbacks):
         if name in self._parameters:
             return self._parameters[name].type_
         if self.allow_undeclared:
-            return ParameterType.NOT_SET
+            return self.parameter_class.Type.NOT_SET
         raise ParameterNotDeclaredException(name)
 
     def get_parameter_types(self, names: Iterable[str]) -> list[ParameterType]:
@@ -298,7 +321,7 @@ class ParameterStore(ParameterCallbacks):
         if depth < 0:
             message = f"The depth must be greater than or equal to zero, not {depth}"
             raise ValueError(message)
-        result = ListParametersResult(names=[], prefixes=[])
+        result: ListParametersResult = self.messages.ListParametersResult(names=[], prefixes=[])
         wanted = frozenset(prefixes)
         for name in self._parameters:
             if is_listed(name, wanted, depth):
@@ -330,21 +353,36 @@ class ParameterStore(ParameterCallbacks):
         """
         parameters = self._modified(list(parameter_list))
         for parameter in parameters:
-            expect(parameter, Parameter, "parameter")
+            expect(parameter, self.parameter_class, "parameter")
         if self._pre and not parameters:
-            return SetParametersResult(successful=False, reason=EMPTY_LIST)
-        # If a name occurs several times, as with several pre callbacks, the last value counts.
-        parameters = list({parameter.name: parameter for parameter in parameters}.values())
-        parameters = [adapted(each, self._descriptors.get(each.name)) for each in parameters]
+            return self._failure(EMPTY_LIST)
+        parameters = self._prepared(parameters, self._descriptors)
         undeclared = [each.name for each in parameters if each.name not in self._parameters]
         if undeclared and not self.allow_undeclared:
             raise ParameterNotDeclaredException(undeclared)
         if reason := self._violation(parameters):
-            return SetParametersResult(successful=False, reason=reason)
+            return self._failure(reason)
         if rejected := self._rejection(parameters):
             return rejected
         self._store(parameters)
-        return SetParametersResult(successful=True, reason="")
+        success: SetParametersResult = self.messages.SetParametersResult(successful=True)
+        return success
+
+    def _failure(self, reason: str) -> SetParametersResult:
+        """Return the result of a change that is rejected."""
+        result: SetParametersResult = self.messages.SetParametersResult(reason=reason)
+        return result
+
+    def _prepared(
+        self, parameters: list[Parameter], descriptors: Mapping[str, ParameterDescriptor]
+    ) -> list[Parameter]:
+        """Return parameters as they are checked and stored.
+
+        If a name occurs several times, as with several pre callbacks, the last value counts. An
+        empty list gets the type that was declared.
+        """
+        last = {parameter.name: parameter for parameter in parameters}
+        return [adapted(each, descriptors.get(name)) for name, each in last.items()]
 
     def _violation(self, parameters: list[Parameter]) -> str | None:
         for parameter in parameters:
@@ -353,35 +391,40 @@ class ParameterStore(ParameterCallbacks):
                 continue
             if descriptor.read_only:
                 return f"Trying to set a read-only parameter: {parameter.name}."
-            reason = type_violation(parameter, descriptor, declared=True)
-            if reason := reason or descriptor_violation(parameter, descriptor):
+            reason = self._misfit(parameter, descriptor)
+            if reason is not None:
                 return reason
         return None
 
+    def _misfit(self, parameter: Parameter, descriptor: ParameterDescriptor) -> str | None:
+        """Return why a value does not fit the descriptor of its parameter, or None if it does."""
+        reason = type_violation(parameter, descriptor, declared=True, text_of=self.type_text)
+        return reason or descriptor_violation(parameter, descriptor)
+
     def _store(self, parameters: list[Parameter], *, keep_not_set: bool = False) -> None:
-        new: list[ParameterMsg] = []
-        changed: list[ParameterMsg] = []
-        deleted: list[ParameterMsg] = []
+        new: list[Any] = []
+        changed: list[Any] = []
+        deleted: list[Any] = []
         for parameter in parameters:
             name = parameter.name
-            if parameter.type_ is ParameterType.NOT_SET and not keep_not_set:
+            if parameter.type_ == ParameterType.NOT_SET and not keep_not_set:
                 deleted.append(parameter.to_parameter_msg())
                 self._parameters.pop(name, None)
                 self._descriptors.pop(name, None)
                 continue
             before = self.get_parameter_or(name).type_
-            (new if before is ParameterType.NOT_SET else changed).append(
+            (new if before == ParameterType.NOT_SET else changed).append(
                 parameter.to_parameter_msg()
             )
             descriptor = self._descriptors.setdefault(
-                name, ParameterDescriptor(name=name, dynamic_typing=True)
+                name, self.messages.ParameterDescriptor(name=name, dynamic_typing=True)
             )
             if descriptor.dynamic_typing:
                 descriptor.type = int(parameter.type_)
             self._parameters[name] = parameter
         if self.publish is not None:
             self.publish(
-                ParameterEvent(
+                self.messages.ParameterEvent(
                     node=self.node_name,
                     new_parameters=new,
                     changed_parameters=changed,
@@ -404,7 +447,8 @@ class ParameterStore(ParameterCallbacks):
         if descriptor is not None:
             return copy.deepcopy(descriptor)
         if self.allow_undeclared:
-            return ParameterDescriptor()
+            empty: ParameterDescriptor = self.messages.ParameterDescriptor()
+            return empty
         raise ParameterNotDeclaredException(name)
 
     def describe_parameters(self, names: Iterable[str]) -> list[ParameterDescriptor]:
@@ -438,14 +482,11 @@ class ParameterStore(ParameterCallbacks):
         new.name = name
         candidates = [self.get_parameter(name)]
         if alternative_value is not None:
-            candidates.append(Parameter(name, value=parameter_value_to_python(alternative_value)))
+            message = self.messages.Parameter(name=name, value=alternative_value)
+            candidates.append(self.parameter_class.from_parameter_msg(message))
         reason = ""
         for parameter in candidates:
-            reason = (
-                type_violation(parameter, new, declared=True)
-                or descriptor_violation(parameter, new)
-                or ""
-            )
+            reason = self._misfit(parameter, new) or ""
             if not reason:
                 if new.dynamic_typing:
                     new.type = int(parameter.type_)

@@ -154,8 +154,8 @@ class Parameter:
         if type(value).__module__ == "numpy":
             value = value.tolist()
         if type_ is None:
-            type_ = ParameterType.from_parameter_value(value)
-        expect(type_, ParameterType, "type")
+            type_ = self.Type.from_parameter_value(value)
+        expect(type_, self.Type, "type")
         if not type_.check(value):
             message = f"Type '{type_.name}' and value '{value}' do not agree"
             raise ValueError(message)

@@ -12,7 +12,7 @@ from aionode.rclpy._impl.node import NodeHandle
 from aionode.rclpy._impl.services import ClientHandle, ServiceHandle
 from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle
 from aionode.rclpy._node_graph import NodeGraph
-from aionode.rclpy._node_parameters import NodeParameters
+from aionode.rclpy._node_parameters import NodeParameters, ParameterEvents
 from aionode.rclpy.callback_groups import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
@@ -105,7 +105,6 @@ class Node(NodeParameters, NodeGraph):
         automatically_declare_parameters_from_overrides: bool = False,
         enable_logger_service: bool = False,
     ) -> None:
-        super().__init__(allow_undeclared_parameters=allow_undeclared_parameters)
         self._context = get_default_context() if context is None else context
         self._publishers: list[Publisher[Any]] = []
         self._subscriptions: list[Subscription[Any]] = []
@@ -117,7 +116,6 @@ class Node(NodeParameters, NodeGraph):
         self._default_callback_group: CallbackGroup = MutuallyExclusiveCallbackGroup()
         self._rate_group = ReentrantCallbackGroup()
         self._executor_weakref: weakref.ref[Executor] | None = None
-        self._parameter_event_publisher = None
         if self._context.handle is None or not self._context.ok():
             raise NotInitializedException("cannot create node")
         with self._context.handle:
@@ -132,12 +130,15 @@ class Node(NodeParameters, NodeGraph):
             )
         self._logger = get_logger(self._handle.logger_name())
         self._clock = self._make_clock()
-        self._parameter_event_publisher = self.create_publisher(
+        self._init_parameters(
+            self._handle.get_fully_qualified_name(),
+            [*self._handle.get_parameters(Parameter).values(), *(parameter_overrides or ())],
+            allow_undeclared=allow_undeclared_parameters,
+        )
+        events = self.create_publisher(
             msg.ParameterEvent, "/parameter_events", qos_profile_parameter_events
         )
-        self._parameter_overrides = self._handle.get_parameters(Parameter)
-        if parameter_overrides is not None:
-            self._parameter_overrides.update({each.name: each for each in parameter_overrides})
+        self._parameter_store.publish = ParameterEvents(events, self._clock)
         if automatically_declare_parameters_from_overrides:
             self.declare_parameters(
                 "",
@@ -532,7 +533,7 @@ class Node(NodeParameters, NodeGraph):
     def destroy_node(self) -> None:
         """Destroy its entities, and leave the graph. Calling it again has no effect."""
         self._context.untrack_node(self)
-        self._parameter_event_publisher = None
+        self._parameter_store.publish = None
         ends: tuple[tuple[list[Any], Callable[[Any], bool]], ...] = (
             (self._publishers, self.destroy_publisher),
             (self._subscriptions, self.destroy_subscription),

@@ -9,6 +9,7 @@ from typing import Any, Generic, TypeVar
 
 import yaml
 
+from aionode import parameter as core
 from aionode.rclpy._impl import messages as msg
 
 __all__ = [
@@ -79,8 +80,6 @@ class Type(IntEnum):
         )
 
 
-ParameterType = Type  # `Parameter.Type` hides the name in the class
-
 # bool before int, as True is an int to Python
 SINGLE: tuple[tuple[type, Type], ...] = (
     (bool, Type.BOOL),
@@ -97,12 +96,12 @@ ELEMENTS: tuple[tuple[type, Type], ...] = (
 )
 
 
-def field_of(type_: Type) -> str:
+def field_of(type_: IntEnum) -> str:
     """Return the field of a ParameterValue that has the value of a type."""
     return f"{type_.name.lower()}_value"
 
 
-class Parameter(Generic[AllowableParameterValueT]):
+class Parameter(core.Parameter, Generic[AllowableParameterValueT]):
     """A parameter: its name, its type and its value.
 
     Args:
@@ -115,18 +114,7 @@ class Parameter(Generic[AllowableParameterValueT]):
         ValueError: the value is not of the given type.
     """
 
-    Type = Type
-
-    def __init__(self, name: str, type_: ParameterType | None = None, value: Any = None) -> None:
-        if type_ is None:
-            type_ = Type.from_parameter_value(value)
-        if not isinstance(type_, Type):
-            raise TypeError(f"type must be an instance of '{Type!r}'")
-        if not type_.check(value):
-            raise ValueError(f"Type '{type_}' and value '{value}' do not agree")
-        self._type_ = type_
-        self._name = name
-        self._value = value
+    Type = Type  # type: ignore[assignment] # another enumeration of the same numbers
 
     @classmethod
     def from_parameter_msg(cls, param_msg: Any) -> Parameter[Any]:
@@ -137,33 +125,23 @@ class Parameter(Generic[AllowableParameterValueT]):
         """
         type_ = Type(param_msg.value.type)
         value = None if type_ is Type.NOT_SET else getattr(param_msg.value, field_of(type_))
-        return cls(param_msg.name, type_, value)
+        return cls(param_msg.name, type_, value)  # type: ignore[arg-type] # as above
 
     @property
-    def name(self) -> str:
-        """The name."""
-        return self._name
-
-    @property
-    def type_(self) -> ParameterType:
+    def type_(self) -> Any:
         """The type."""
-        return self._type_
-
-    @property
-    def value(self) -> Any:
-        """The value; None if it is not set."""
-        return self._value
+        return self._type
 
     def get_parameter_value(self) -> Any:
         """Return type and value as a message."""
-        message = msg.ParameterValue(type=int(self._type_))
-        if self._type_ is not Type.NOT_SET:
-            setattr(message, field_of(self._type_), self._value)
+        message = msg.ParameterValue(type=int(self.type_))
+        if self.type_ != Type.NOT_SET:
+            setattr(message, field_of(self.type_), self.value)
         return message
 
     def to_parameter_msg(self) -> Any:
         """Return the parameter as a message."""
-        return msg.Parameter(name=self._name, value=self.get_parameter_value())
+        return msg.Parameter(name=self.name, value=self.get_parameter_value())
 
 
 def get_parameter_value(string_value: str) -> Any:

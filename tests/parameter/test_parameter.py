@@ -722,6 +722,13 @@ def test_a_callback_that_returns_nothing_is_a_type_error(kind: str) -> None:
         set_one(parameters, "a", 2)
 
 
+@pytest.mark.parametrize("kind", ["pre", "on", "post"])
+def test_what_cannot_be_called_is_no_callback(kind: str) -> None:
+    """The mistake shows where it is made, not at the first change."""
+    with pytest.raises(TypeError, match="Callback must be callable, got 3"):
+        getattr(store(), f"add_{kind}_set_parameters_callback")(3)
+
+
 def test_a_removed_callback_is_not_called() -> None:
     """And cannot be removed twice."""
     parameters = store()

@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from aionode import rclpy
+from aionode.interfaces.rcl_interfaces.msg import IntegerRange, ParameterDescriptor
 from aionode.interfaces.std_msgs.msg import String as OwnString
 from aionode.rclpy._rosidl import action_class, message_class, service_class
 from aionode.rclpy.action import ActionClient, ActionServer, CancelResponse
 from aionode.rclpy.executors import SingleThreadedExecutor
 from aionode.rclpy.experimental.asyncio import AsyncNode
 from aionode.rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
+from aionode.rclpy.parameter import Parameter
 from aionode.rclpy.task import Future
 from tests.support.peers import isolated_environment
 
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
 
 String = message_class("std_msgs/msg/String")
 AddTwoInts = service_class("example_interfaces/srv/AddTwoInts")
+GetParameters = service_class("rcl_interfaces/srv/GetParameters")
 Fibonacci = action_class("example_interfaces/action/Fibonacci")
 
 LIMIT_S = 20.0
@@ -162,6 +165,30 @@ def test_a_goal_that_waits_is_cancelled() -> None:
     answer = spin_until(node, handle.cancel_goal_async())
     assert len(answer.goals_canceling) == 1
     assert spin_until(node, result).status == 5
+
+
+@pytest.mark.usefixtures("initialised")
+def test_a_descriptor_of_the_other_family_keeps_its_ranges() -> None:
+    """A program may describe its parameters with aionode's messages, too."""
+    node = rclpy.create_node("described")
+    limits = IntegerRange(from_value=0, to_value=10, step=2)
+
+    node.declare_parameter("speed", 4, ParameterDescriptor(integer_range=[limits]))
+
+    (odd, even) = node.set_parameters([Parameter("speed", value=5), Parameter("speed", value=6)])
+    assert (odd.successful, even.successful) == (False, True)
+
+
+@pytest.mark.usefixtures("initialised")
+def test_a_request_for_too_many_parameters_gets_an_empty_answer() -> None:
+    """No peer is believed, and what it sends must not come out of the program's spin."""
+    node = rclpy.create_node("asked")
+    client = node.create_client(GetParameters, "asked/get_parameters")
+    assert client.wait_for_service(LIMIT_S)
+
+    future = client.call_async(GetParameters.Request(names=["use_sim_time"] * 10_001))
+
+    assert list(spin_until(node, future).values) == []
 
 
 @pytest.mark.usefixtures("initialised")
