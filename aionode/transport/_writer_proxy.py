@@ -1,6 +1,11 @@
 """The reader's end of reliable delivery over a lossy transport. A state machine without I/O.
 
 The writer's end is `_reliability`, which describes both.
+
+Whoever may publish on the topic can send a HEARTBEAT or GAP in the name of a writer. So neither
+moves a reader further past the messages that have come than a writer may send ahead. What says more
+is a claim: the reader asks for its last message, and believes it when a message has come so far. A
+message that was said not to come, and comes, is taken.
 """
 
 from __future__ import annotations
@@ -8,7 +13,13 @@ from __future__ import annotations
 from collections import deque
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
-from aionode.transport._reliability import NEVER, QUIET_NS, WINDOW_BYTES, WINDOW_MESSAGES
+from aionode.transport._reliability import (
+    NEVER,
+    OVERHEAD_BYTES,
+    QUIET_NS,
+    WINDOW_BYTES,
+    WINDOW_MESSAGES,
+)
 from aionode.wire._acknack import MAX_RANGES
 
 if TYPE_CHECKING:
@@ -35,6 +46,15 @@ HELD_BYTES: Final = 2 * WINDOW_BYTES
 MAX_GAPS: Final = 1_000
 """How many gaps a reader notes ahead of the next message; it asks again for more."""
 
+BELIEVED: Final = WINDOW_BYTES // OVERHEAD_BYTES
+"""How many messages beyond those that have come a HEARTBEAT or GAP is believed: a full window of
+empty ones."""
+
+ANEW_AFTER: Final = 16
+ANEW_NS: Final = 1_000_000_000
+"""A reader to which so many messages in a row, and for so long, come far below `next` starts anew:
+a wrong number has moved it. What was only overtaken comes in less time."""
+
 NOT_NOW: Final = -1
 
 
@@ -47,6 +67,12 @@ class ReaderSide(Protocol):
     def acknack(self, proxy: WriterProxy, first: int, ranges: list[tuple[int, int]]) -> None:
         """Send an ACKNACK to the writer."""
 
+    def refused(self, proxy: WriterProxy, last: int) -> None:
+        """Take note of a HEARTBEAT or GAP up to `last` that the writer cannot have sent."""
+
+    def started_anew(self, proxy: WriterProxy, first: int) -> None:
+        """Take note that messages from `first` on are taken that were said not to come."""
+
 
 class WriterProxy:
     """A writer, as one of its readers sees it.
@@ -54,11 +80,12 @@ class WriterProxy:
     Args:
         gid: Its id.
         participant: Its context.
-        first: The sequence number of the first message for this reader.
+        first: The sequence number of the first message for this reader, as the writer says.
         side: The output; each message is given to it once and in order.
         now_ns: A monotonic clock with any zero.
         span: How many messages later ones wait for at most; more are skipped, as a KEEP_LAST reader
             would drop them anyway.
+        taken: The last message of this writer that the reader has taken already.
 
     Attributes:
         participant: Its context.
@@ -70,13 +97,19 @@ class WriterProxy:
     """
 
     __slots__ = (
+        "_claim",
+        "_claimed",
         "_gaps",
         "_held",
         "_held_bytes",
         "_nacked_ns",
         "_now_ns",
+        "_old",
+        "_reached",
+        "_seen",
         "_side",
         "_span",
+        "_taken",
         "_unacked_bytes",
         "_waiting",
         "absent_ticks",
@@ -96,6 +129,7 @@ class WriterProxy:
         side: ReaderSide,
         now_ns: Callable[[], int],
         span: int = NEVER,
+        taken: int = 0,
     ) -> None:
         self.gid = gid
         self.participant = participant
@@ -115,6 +149,23 @@ class WriterProxy:
         self._waiting: deque[int] = deque()
         self._unacked_bytes = 0
         self._nacked_ns = 0
+        # How far messages have come, and the last one that was given on. `note_in_order` leaves
+        # both to `_catch_up`, which sees by `_seen` that it has moved `next`.
+        self._reached = first - 1
+        self._taken = taken
+        self._seen = first
+        # Up to where the writer has said that nothing will come, and the last claim beyond what is
+        # believed: a range that will not come, and the last message that was sent.
+        self._claimed = first
+        self._claim: tuple[int, int, int] | None = None
+        # Messages far below `next`, in ascending order: how many, the last, and since when.
+        self._old = 0, 0, 0
+
+    @property
+    def taken(self) -> int:
+        """The last message that was given on."""
+        self._catch_up()
+        return self._taken
 
     @property
     def lacks(self) -> bool:
@@ -128,23 +179,82 @@ class WriterProxy:
         if unacked >= ACK_BYTES:
             self.acknowledge()
 
-    def take(self, sequence: int, item: Any, size: int) -> None:
-        """Handle a message, whether it is new or was sent again."""
+    def take(self, sequence: int, item: Any, size: int, *, is_resent: bool = False) -> None:
+        """Handle a message, whether it is new or was sent again.
+
+        Args:
+            sequence: Its number.
+            item: The message.
+            size: How many bytes it has.
+            is_resent: Whether it was sent to this reader alone.
+        """
+        self._catch_up()
+        if self._taken < sequence < self.next:
+            self._start_anew(sequence)
         if sequence == self.next:
             self.next = sequence + 1
             self._accept(sequence, item, size)
+            self._note_reached(sequence)
             if self._held or self._gaps:
                 self._release()
-        elif sequence > self.next:
+        elif self.next < sequence < NEVER:
             if sequence not in self._held and self._may_hold(size):
                 self._held[sequence] = item, size
                 self._held_bytes += size
             self.last = max(self.last, sequence)
+            self._note_reached(sequence)
             if sequence - self.next >= self._span:
                 self._skip(sequence - self._span + 1)
             if self.lacks:
                 self._nack_soon()
+        elif not is_resent and 0 < sequence < self.next - BELIEVED and self._is_anew(sequence):
+            self._start_anew(sequence)
+            self.take(sequence, item, size)
         self._update_expected()
+
+    def _catch_up(self) -> None:
+        """Take into account what `note_in_order` has counted."""
+        if self.next > self._seen:
+            self._taken = self.next - 1
+            self._reached = max(self._reached, self._taken)
+            self._old = 0, 0, 0
+
+    def _note_reached(self, sequence: int) -> None:
+        """Note how far messages have come, and believe a claim that is no more than that."""
+        self._old = 0, 0, 0
+        self._reached = max(self._reached, sequence)
+        claim = self._claim
+        if claim is not None and claim[2] <= self._limit:
+            self._claim = None
+            self.last = max(self.last, claim[2])
+            self._add_gap(*claim[:2])
+
+    def _start_anew(self, sequence: int) -> None:
+        """Go back to a message that came although it is below `next`."""
+        if self._claimed - sequence >= ANEW_AFTER:  # fewer were perhaps overtaken
+            self._side.started_anew(self, sequence)
+        self._start_at(sequence)
+
+    def _start_at(self, sequence: int) -> None:
+        """Expect a message below `next`; none after it was given on."""
+        self._claimed = self.next = self._seen = sequence
+        self._gaps.clear()
+        for held in [number for number in self._held if number > sequence + BELIEVED]:
+            self._unhold(held)
+        self.last = max(self._held, default=sequence - 1)
+        self._reached = max(self.last, sequence - 1)
+
+    def _is_anew(self, sequence: int) -> bool:
+        """Return whether a message far below `next` ends a row of such ones, and forget the row."""
+        count, last, since_ns = self._old
+        now_ns = self._now_ns()
+        if sequence <= last:
+            count = 0
+        self._old = count + 1, sequence, since_ns if count else now_ns
+        if count + 1 < ANEW_AFTER or now_ns - self._old[2] < ANEW_NS:
+            return False
+        self._taken, self._claimed = sequence - 1, self.next
+        return True
 
     def _may_hold(self, size: int) -> bool:
         """Return whether one more message can be held; what is not will be sent again."""
@@ -161,10 +271,12 @@ class WriterProxy:
         return message
 
     def _update_expected(self) -> None:
+        self._seen = self.next
         is_steady = not (self._held or self._gaps or self._waiting)
         self.expected = self.next if is_steady else NOT_NOW
 
     def _accept(self, sequence: int, item: Any, size: int) -> None:
+        self._taken = sequence
         if self._side.accept(item, self):
             self._note_used(size)
         else:
@@ -183,7 +295,7 @@ class WriterProxy:
                 self.next += 1
                 self._accept(self.next - 1, *message)
             elif self._gaps and (end := self._gap_end()):
-                self.next = end + 1
+                self._pass(end + 1)
             else:
                 break
         if self.lacks:
@@ -209,49 +321,86 @@ class WriterProxy:
             ask: Whether to ask for missing messages. Without it they may be here, unhandled.
         """
         self.heard_ns = self._now_ns()
-        self._skip(first)
-        self.last = max(self.last, last)
+        self._catch_up()
+        claim, limit = self._claim, self._limit
+        if claim is not None and last < claim[2]:  # a writer has never sent less than before
+            self._claim = None
+            self._side.refused(self, claim[2])
+        if first > limit + 1 or last > limit:
+            self._claim = 0, first - 1, max(first - 1, last)
+        if self._taken <= last and last + 1 < self.next:  # nor did it say what moved `next`
+            self._start_at(max(self._taken + 1, min(first, last + 1)))
+        if first <= limit + 1:
+            self._claimed = max(self._claimed, first)
+            self._skip(first)
+        if last <= limit:
+            self.last = max(self.last, last)
         if self.last - self.next >= self._span and ask:
             self._skip(self.last - self._span + 1)
         self._update_expected()
-        self.acknowledge(ask=ask)
+        self.acknowledge(ask=ask, claimed=last if last > limit else 0)
+
+    @property
+    def _limit(self) -> int:
+        """Up to which message a HEARTBEAT or GAP is believed."""
+        return self._reached + BELIEVED
 
     def gap(self, first: int, last: int) -> None:
         """Handle a GAP: a range that will not be sent."""
         self.heard_ns = self._now_ns()
-        self.last = max(self.last, last)
-        if last >= self.next and len(self._gaps) < MAX_GAPS:
+        self._catch_up()
+        if last > self._limit:
+            self._claim = first, last, last
+            last = self._limit
+        self._add_gap(first, last)
+        self._update_expected()
+
+    def _add_gap(self, first: int, last: int) -> None:
+        """Wait no longer for a range, if it is one and goes beyond `next`."""
+        if first <= last and last >= self.next and len(self._gaps) < MAX_GAPS:
+            self.last = max(self.last, last)
+            self._claimed = max(self._claimed, last + 1)
             self._gaps.append((first, last))
             self._release()
-        self._update_expected()
 
     def _skip(self, number: int) -> None:
         """Stop waiting for messages before `number`."""
         if number > self.next:
-            for held in sorted(n for n in self._held if n < number):
-                self.next = held + 1
-                message = self._unhold(held)
-                if message is not None:
-                    self._accept(held, *message)
-            self.next = number
+            self._pass(number)
             self._release()
+
+    def _pass(self, number: int) -> None:
+        """Accept what is held before `number`, which is next then."""
+        for held in sorted(n for n in self._held if n < number):
+            self.next = held + 1
+            message = self._unhold(held)
+            if message is not None:
+                self._accept(held, *message)
+        self.next = number
 
     def _nack_soon(self) -> None:
         now_ns = self._now_ns()
         if now_ns - self._nacked_ns >= NACK_NS:
             self.acknowledge()
 
-    def acknowledge(self, *, ask: bool = True) -> None:
-        """Send an ACKNACK that names what is here and, with `ask`, what is missing."""
+    def acknowledge(self, *, ask: bool = True, claimed: int = 0) -> None:
+        """Send an ACKNACK that names what is here and, with `ask`, what is missing.
+
+        Args:
+            ask: Whether to ask for what is missing.
+            claimed: The last message of a claim, to ask for as well; 0 for none.
+        """
         self._unacked_bytes = 0
         missing: list[tuple[int, int]] = []
-        if ask and self.lacks:
+        if ask and (self.lacks or claimed):
             self._nacked_ns = self._now_ns()
-            missing = self._missing()
+            missing = self._missing(claimed)
         self._side.acknack(self, self._waiting[0] if self._waiting else self.next, missing)
 
-    def _missing(self) -> list[tuple[int, int]]:
-        ranges: list[tuple[int, int]] = []
+    def _missing(self, claimed: int) -> list[tuple[int, int]]:
+        # The end of a claim first: it alone shows whether that is true.
+        ranges = [(claimed, claimed)] if claimed else []
+        known = max(self.last, self._limit) if claimed else self.last
         begin = self.next
         present = [(number, number) for number in self._held]
         for first, last in sorted(present + self._gaps):
@@ -260,8 +409,8 @@ class WriterProxy:
                 if len(ranges) == MAX_RANGES:
                     return ranges
             begin = max(begin, last + 1)
-        if begin <= self.last:
-            ranges.append((begin, self.last))
+        if begin <= known:
+            ranges.append((begin, known))
         return ranges
 
     def remind(self) -> None:
@@ -271,5 +420,6 @@ class WriterProxy:
 
     def give_up(self) -> None:
         """Accept what is held, with its gaps: the writer is gone."""
+        self._catch_up()
         self._skip(self.last + 1)
         self._update_expected()

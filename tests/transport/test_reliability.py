@@ -40,6 +40,8 @@ class Wire:
         control: The rest under way, as calls.
         heard: What each reader was given.
         lost: How many the writer says were dropped.
+        refusals: The ends of claims that were refused.
+        beginnings: With which numbers readers started anew.
     """
 
     def __init__(
@@ -57,6 +59,8 @@ class Wire:
         self.full: dict[bytes, list[tuple[int, WriterProxy]]] = {name: [] for name in self.names}
         self.room = dict.fromkeys(self.names, True)
         self.lost_count = 0
+        self.refusals: list[int] = []
+        self.beginnings: list[int] = []
         self.number = 0
         for name in self.names:
             self.history.add(name, name.hex())
@@ -107,6 +111,14 @@ class Wire:
         """Answer."""
         self.control.append(("acknack", proxy.gid, (first, ranges)))
 
+    def refused(self, proxy: WriterProxy, last: int) -> None:
+        """Count."""
+        self.refusals.append(last)
+
+    def started_anew(self, proxy: WriterProxy, first: int) -> None:
+        """Count."""
+        self.beginnings.append(first)
+
     def make_room(self, name: bytes) -> None:
         """Use what waits."""
         self.room[name] = True
@@ -147,7 +159,8 @@ class Wire:
             if kind == "gap":
                 self.proxies[name].gap(*what)
             else:
-                self.proxies[name].take(what.sequence, what.sequence, len(what.payload))
+                proxy = self.proxies[name]
+                proxy.take(what.sequence, what.sequence, len(what.payload), is_resent=True)
 
     def settle(self) -> None:
         """Bring everything, and let time pass, until nothing happens any more."""
@@ -544,3 +557,180 @@ def test_a_stop_that_was_sent_already_is_sent_again_only_to_those_who_lack_it() 
     wire.publish()
     wire.settle()
     assert wire.heard[name] == [1, 2, 3]
+
+
+# HEARTBEAT and GAP in the writer's name
+
+FAR = 2**62
+
+
+def hear(wire: Wire, count: int) -> None:
+    """Publish some messages, which arrive at the only reader."""
+    for _ in range(count):
+        wire.publish()
+        wire.bring_topic(wire.names[0])
+
+
+@pytest.mark.parametrize("ahead", [1, 50, 4_000, 5_000, FAR])
+@pytest.mark.parametrize("kind", ["heartbeat", "gap"])
+def test_what_is_said_in_a_writers_name_makes_its_reader_miss_nothing(
+    kind: str, ahead: int
+) -> None:
+    """Neither a little ahead of what has come, nor so far that the topic were silent for good."""
+    wire = Wire(1, keep_all=False, depth=10)
+    (name,) = wire.names
+    wire.bring_control()
+    hear(wire, 10)
+    for _ in range(3):
+        lie = {"heartbeat": (10 + ahead, FAR), "gap": (1, 10 + ahead)}[kind]
+        wire.control.append((kind, name, lie))
+        wire.bring_control(-1)
+        hear(wire, 10)
+    wire.settle()
+
+    assert wire.heard[name] == list(range(1, 41))
+    assert wire.history.done
+    assert wire.proxies[name].expected == 41
+
+
+@given(
+    moves=st.lists(
+        st.tuples(st.integers(0, 5), st.integers(-3, 8), st.sampled_from([0, 5, 4_000, 5_000])),
+        max_size=60,
+    )
+)
+def test_whatever_is_said_in_a_writers_name_each_message_that_comes_is_taken_in_order(
+    moves: list[tuple[int, int, int]],
+) -> None:
+    """Lies beside a stream of which nothing is lost on the way."""
+    wire = Wire(1, keep_all=True, depth=100_000)
+    (name,) = wire.names
+    wire.bring_control()
+    for move, near, far in moves:
+        number = wire.number + near + far
+        if move <= 1:
+            wire.publish()
+        elif move == 2:
+            wire.bring_topic(name)
+        elif move == 3:
+            wire.control.append(("heartbeat", name, (number, number + near)))
+        elif move == 4:
+            wire.control.append(("gap", name, (number - 10, number)))
+        else:
+            wire.bring_control()
+    wire.settle()
+
+    assert wire.heard[name] == list(range(1, wire.number + 1))
+    assert wire.lost_count == 0
+
+
+def test_a_claim_beyond_what_was_sent_is_refused_and_told() -> None:
+    """The next true HEARTBEAT contradicts it."""
+    wire = Wire(1, keep_all=False, depth=10)
+    (name,) = wire.names
+    wire.bring_control()
+    hear(wire, 3)
+    wire.proxies[name].heartbeat(FAR, FAR)
+    wire.control.clear()
+    wire.publish()
+    wire.settle()
+
+    assert wire.refusals == [FAR]
+    assert wire.heard[name] == [1, 2, 3, 4]
+
+
+def test_a_reader_believes_how_far_its_writer_came_while_it_was_stopped() -> None:
+    """A true claim: the message at its end is sent when it is asked for."""
+    wire = Wire(2, keep_all=False, depth=10)
+    slow, quick = wire.names
+    for _ in range(20_000):
+        wire.publish()
+        wire.bring_topic(quick)
+        while any(each[1] == quick for each in wire.control):
+            wire.bring_control([each[1] for each in wire.control].index(quick))
+    wire.topic[slow].clear()
+    wire.settle()
+
+    assert wire.heard[slow] == list(range(19_991, 20_001))
+    assert wire.lost_count == 19_990
+    assert wire.refusals == []
+    assert wire.beginnings == []
+
+
+@pytest.mark.parametrize("far", [1, 5_000])
+def test_a_gap_of_numbers_that_went_another_way_needs_no_answer(far: int) -> None:
+    """The message after it shows that it is true; a filter may hold back very many."""
+    wire = Wire(1, keep_all=True, depth=100)
+    (name,) = wire.names
+    wire.bring_control()
+    hear(wire, 1)
+    wire.control.clear()
+    wire.number += far
+    wire.publish()
+    wire.bring_control()
+    wire.bring_topic(name)
+
+    assert wire.heard[name] == [1, far + 2]
+
+
+def test_a_lie_does_not_keep_a_writer_from_learning_that_everything_arrived() -> None:
+    """It would wait at its end for an acknowledgement of no more than it has sent."""
+    wire = Wire(1, keep_all=True, depth=10)
+    (name,) = wire.names
+    wire.bring_control()
+    hear(wire, 1)
+    wire.control.append(("heartbeat", name, (10, 14)))
+    wire.settle()
+
+    assert wire.history.done
+
+
+def test_a_first_heartbeat_that_lies_costs_no_message() -> None:
+    """Nothing else says where a stream begins for a reader, so it is believed until one comes."""
+    wire = Wire(1, keep_all=False, depth=10)
+    (name,) = wire.names
+    wire.control.insert(0, ("heartbeat", name, (FAR, FAR)))
+    wire.bring_control()
+    hear(wire, 5)
+    wire.settle()
+
+    assert wire.heard[name] == [1, 2, 3, 4, 5]
+    assert wire.beginnings == [1]
+
+
+def test_a_reader_that_gets_only_messages_far_below_what_it_expects_starts_anew() -> None:
+    """Whoever may publish the topic can send a wrong number as a message; that heals as well."""
+    wire = Wire(1, keep_all=False, depth=10)
+    (name,) = wire.names
+    wire.bring_control()
+    hear(wire, 5)
+    proxy = wire.proxies[name]
+    for number in range(1_000_000, 1_000_002):
+        proxy.heartbeat(number, number)
+        proxy.take(number, number, 10)
+    for _ in range(30):
+        hear(wire, 1)
+        wire.clock.ns += 100_000_000
+
+    assert wire.heard[name] == [1, 2, 3, 4, 5, 1_000_000, 1_000_001, *range(21, 36)]
+    assert wire.beginnings == [21]
+
+
+def test_messages_that_were_only_overtaken_do_not_begin_a_stream_anew() -> None:
+    """A burst of old ones, or those that were sent again, would be heard out of order."""
+    wire = Wire(1, keep_all=False, depth=10)
+    (name,) = wire.names
+    wire.bring_control()
+    hear(wire, 5)
+    proxy = wire.proxies[name]
+    proxy.take(1_000_000, 1_000_000, 10)
+    proxy.heartbeat(1_000_000, 1_000_000)
+    proxy.take(1_000_001, 1_000_001, 10)
+    heard = list(wire.heard[name])
+    for number in range(6, 100):
+        proxy.take(number, number, 10)
+    for number in range(100, 200):
+        wire.clock.ns += 100_000_000
+        proxy.take(number, number, 10, is_resent=True)
+
+    assert wire.heard[name] == heard

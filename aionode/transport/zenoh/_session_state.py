@@ -98,6 +98,7 @@ class SessionState:
         acknowledgements: The acknowledgements between contexts of aionode.
         lingering: Destroyed publishers with messages that are not acknowledged; an ordered set.
         malformed: How many malformed samples came on each key.
+        lies: How often something was said in the name of another, by topic or context.
         own_gids: The gids of this context's publishers, lingering ones included.
         cancellations: The requests that clients have given up.
         assertions: The liveliness that publishers assert.
@@ -133,6 +134,7 @@ class SessionState:
         )
         self.lingering: dict[LingeringWriter, None] = {}
         self.malformed: Counter[str] = Counter()
+        self.lies: Counter[str] = Counter()
         self.own_gids: set[bytes] = set()
         self.cancellations = Cancellations(participant, domain_id, self.waker, self.note_malformed)
         self.assertions = Assertions(participant, domain_id, self.waker, self.note_malformed)
@@ -306,6 +308,17 @@ class SessionState:
                 "more of it is only counted. Does the sender have another definition of the type?",
                 key,
                 escaped(problem),
+            )
+
+    def note_lie(self, subject: str, problem: str) -> None:
+        """Count what was said in the name of another; the first about each subject is logged."""
+        self.lies[subject] += 1
+        if self.lies[subject] == 1:
+            logger.warning(
+                "%s: someone speaks in the name of another: %s; more of it is only counted. Rules "
+                "of a router say who may speak for what: docs/howto/security.md",
+                subject,
+                problem,
             )
 
 

@@ -262,8 +262,16 @@ class ZenohReader(Declaration, ReaderRegistration):
         fits = not waiting or (waiting + 1) * self._largest_bytes <= self.state.queue_bytes
         return fits and self._reader.has_room()
 
-    def _take_in_order(self, proxy: WriterProxy, payload: bytes, sample_info: SampleInfo) -> None:
-        proxy.take(sample_info.sequence, (payload, sample_info), len(payload) + OVERHEAD_BYTES)
+    def _take_in_order(
+        self,
+        proxy: WriterProxy,
+        payload: bytes,
+        sample_info: SampleInfo,
+        *,
+        is_resent: bool = False,
+    ) -> None:
+        item, size = (payload, sample_info), len(payload) + OVERHEAD_BYTES
+        proxy.take(sample_info.sequence, item, size, is_resent=is_resent)
         if proxy.next <= proxy.last:
             self.state.acknowledgements.watch(self)
 
@@ -367,7 +375,7 @@ class ZenohReader(Declaration, ReaderRegistration):
             proxy.gap(submessage.first, submessage.last)
         else:
             sample_info = self._held(submessage.writer, submessage.first, submessage.last)
-            self._take_in_order(proxy, submessage.rest, sample_info)
+            self._take_in_order(proxy, submessage.rest, sample_info, is_resent=True)
             return
         if proxy.next <= proxy.last:
             self.state.acknowledgements.watch(self)
@@ -382,7 +390,7 @@ class ZenohReader(Declaration, ReaderRegistration):
         if proxy is None or proxy.next >= heartbeat.first or proxy.lacks:
             return proxy
         del self._proxies[proxy.gid]
-        self._note_last(proxy.gid, proxy.next - 1)
+        self._note_last(proxy.gid, proxy.taken)
         return None
 
     def _add_proxy(self, heartbeat: Submessage) -> WriterProxy | None:
@@ -396,8 +404,9 @@ class ZenohReader(Declaration, ReaderRegistration):
         if len(self._proxies) >= REMEMBERED_WRITERS:  # forget the one that was silent for longest
             del self._proxies[min(self._proxies, key=lambda gid: self._proxies[gid].heard_ns)]
         gid = heartbeat.writer
-        first = max(heartbeat.first, self._last.pop(gid, 0) + 1)
-        proxy = WriterProxy(gid, participant, first, self, perf_ns, self._span)
+        taken = self._last.pop(gid, 0)
+        first = max(heartbeat.first, taken + 1)
+        proxy = WriterProxy(gid, participant, first, self, perf_ns, self._span, taken)
         self._proxies[gid] = proxy
         return proxy
 
@@ -424,6 +433,22 @@ class ZenohReader(Declaration, ReaderRegistration):
     def _is_in_graph(self, graph: Graph, proxy: WriterProxy) -> bool:
         publishers = graph.endpoints(EndpointKind.PUBLISHER, name=self.endpoint.name)
         return any(publisher.gid == proxy.gid for publisher in publishers)
+
+    def refused(self, proxy: WriterProxy, last: int) -> None:  # noqa: ARG002  # of the protocol
+        """Say once that something was said in a publisher's name that it cannot have said."""
+        self.state.note_lie(
+            self.endpoint.name,
+            f"a HEARTBEAT or GAP up to message {last} was refused, as the publisher has not sent "
+            "so many",
+        )
+
+    def started_anew(self, proxy: WriterProxy, first: int) -> None:  # noqa: ARG002  # as above
+        """Say once that messages come that should not have come."""
+        self.state.note_lie(
+            self.endpoint.name,
+            f"messages from number {first} on are taken, although it was said that they would not "
+            "come",
+        )
 
     def acknack(self, proxy: WriterProxy, first: int, ranges: list[tuple[int, int]]) -> None:
         """Send a writer an ACKNACK."""
