@@ -80,8 +80,8 @@ def all_attacks() -> list[Attack]:
             replaced="talker",
             issue=OPEN,
         ),
-        Attack("HEARTBEAT up to 2^62", "member", "heartbeat", pair(), issue=OPEN),
-        Attack("GAP up to 2^62", "member", "gap", pair(), issue=OPEN),
+        Attack("HEARTBEAT up to 2^62", "member", "heartbeat", pair()),
+        Attack("GAP up to 2^62", "member", "gap", pair()),
         Attack("ACKNACK of any numbers", "member", "send_absurd_submessages", pair()),
         Attack("messages that are none", "member", "send_damaged", pair(), short=True),
         Attack(

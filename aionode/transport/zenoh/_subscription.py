@@ -208,7 +208,9 @@ class ZenohReader(Declaration, ReaderRegistration):
         ):
             proxy.note_in_order(len(payload))
         else:
-            self._take_in_order(proxy, payload, self._held(gid, sequence, source_ns))
+            sample_info = self._held(gid, sequence, source_ns)
+            # The history of a transient local publisher may come again.
+            self._take_in_order(proxy, payload, sample_info, is_resent=self._transient)
             return
         # As `_hand_over`, which would be one more call for each message.
         decode = self._decode
