@@ -72,8 +72,9 @@ that ends the connection waits too, and with it everything that it does for othe
 BATCHES: Final = 16
 """How many batches of 64 kB wait for a peer that is busy, of each priority in `BURSTING`."""
 
-BURSTING: Final = ("control", "interactive_low", "data_high")
-"""The priorities of what the loop sends: tokens, requests and replies, messages."""
+BURSTING: Final = ("control", "interactive_low", "data_high", "data_low")
+"""The priorities of what the loop sends, tokens, requests and replies, messages, and that of
+messages which late readers get, too."""
 
 
 OPEN_MS: Final = 30_000

@@ -42,6 +42,11 @@ def clouds(**options: Any) -> tuple[Publish, ...]:
     return (Publish("/clouds", period_s=0.02, size=10_000, readers=0, **options),)
 
 
+def kept() -> tuple[Publish, ...]:
+    """Return a publisher that keeps 10 MB for late readers, of which the true nodes are none."""
+    return (Publish("/kept", depth=200, transient=True, period_s=0.01, size=50_000, readers=0),)
+
+
 SMALL_QUEUES = {"AIONODE_LINK": "off", "AIONODE_QUEUE_BYTES": str(4 << 20)}
 LISTS = (("node", "list"), ("topic", "list", "-t"), ("topic", "info", "-v", "/chatter"))
 
@@ -92,6 +97,14 @@ def all_attacks() -> list[Attack]:
         ),
         Attack(
             "requests that are none", "member", "send_damaged_requests", pair(parameter_size=10)
+        ),
+        Attack(
+            "asks for what is kept for late readers, and reads nothing (queues of 4 MiB)",
+            "member",
+            "ask_and_read_nothing",
+            pair(env=SMALL_QUEUES, publish=kept()),
+            10.0,
+            short=True,
         ),
         Attack(
             "50 content filters of 4 kB with LIKE",

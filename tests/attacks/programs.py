@@ -31,6 +31,7 @@ from aionode.wire import cdr
 from aionode.wire._acknack import SubmessageKind
 from tests.attacks.liar import Liar, lying, pace
 from tests.attacks.lies import LIES, describe, nested_type
+from tests.support.peers import raw_session
 
 __all__ = ["FORGED", "PROGRAMS"]
 
@@ -38,6 +39,9 @@ FORGED = "forged"
 """Who has sent a message that pretends to be of another node."""
 
 FAR = 2**62
+
+FILLED_S = 4.0
+"""After so long a publisher has as much for late readers as it keeps."""
 
 LIES_PER_S = 100
 """How many lies of a fuzzer there are in each second."""
@@ -240,6 +244,27 @@ def send_damaged_requests(liar: Liar, seconds: float) -> int:
     return number + 1
 
 
+def ask_and_read_nothing(liar: Liar, seconds: float) -> int:
+    """Ask four times for what a publisher keeps for late readers, 10 MB, and read no answer."""
+    liar.endpoints(EndpointKind.PUBLISHER, "/kept")
+    time.sleep(FILLED_S)
+    begun()
+    ends_s = time.monotonic() + seconds
+
+    def read_nothing(_: zenoh.Reply) -> None:
+        time.sleep(max(0.0, ends_s - time.monotonic()))  # in the thread that reads
+
+    with ExitStack() as sessions:
+        for number in range(4):
+            session = sessions.enter_context(raw_session())
+            time.sleep(0.2)  # until it is connected
+            unread = zenoh.handlers.Callback(read_nothing, indirect=False)
+            session.get(f"{liar.key('/kept', String)}/@adv/**?_anyke", unread, timeout=60.0)
+            if number == 3:
+                time.sleep(max(0.0, ends_s - time.monotonic()))
+    return 4
+
+
 # Members: what is announced
 
 
@@ -397,6 +422,7 @@ PROGRAMS: dict[str, Program] = {
             send_damaged,
             ask_for_one_name,
             send_damaged_requests,
+            ask_and_read_nothing,
             filter_costly,
             filter_often,
             subscribe_oddly,

@@ -198,6 +198,7 @@ async def test_a_late_reader_of_a_kept_topic_gets_the_last_ones_once(pair: Pair)
     writer = pair.left.create_publisher(Int32, "map", profile)
     for number in range(4):
         writer.publish(Int32(data=number))
+    await writer.drain()  # a thread puts them where late readers find them
     late = pair.right.create_subscription(Int32, "map", None, profile)
     volatile = pair.right.create_subscription(Int32, "map", None, 10)
     assert await numbers(late, 2) == [2, 3]

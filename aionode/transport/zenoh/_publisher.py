@@ -59,6 +59,10 @@ __all__ = ["ZenohWriter"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 
+LATE = 1_000
+"""How many messages of a KEEP_LAST publisher, or as many as its depth, wait for Zenoh while that
+answers a late reader; without one they do not wait."""
+
 MORE_DEPTH = "A greater depth keeps more of them, KEEP_ALL and `await drain()` all"
 DRAIN = "`await drain()` before the end waits for readers that still take them"
 
@@ -67,8 +71,9 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
     """A publisher for the subscriptions of other contexts.
 
     A message is sent in one of three ways, each with a priority and so a queue of its own in Zenoh:
-    by the event loop, which never waits; by the thread for large messages; or, for readers that do
-    not acknowledge and must not lose it, by a thread of this publisher that waits for them.
+    by the event loop, which never waits; by the thread for large messages; or by a thread of this
+    publisher, which waits: for readers that do not acknowledge and must not lose it, or, of a
+    transient local one, for Zenoh, which answers a late reader with the history locked.
     """
 
     recovers: ClassVar[bool] = True  # whether its readers ask again for what they miss
@@ -117,8 +122,7 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
             )
             state.acknowledgements.writers[self.gid] = self
         # Large messages, and small ones after them to keep the order.
-        self._large = self._send_queue(state.bulk, keep_all=False)
-        self._bulk_only = self._transient and not self.bounded and cdr.has_buffers(msg_type)
+        self._large = self._send_queue(state.bulk, self._depth, keep_all=False)
         # Whether any reader wants a message; None if one wants all, or may be there unseen.
         self._wants: Callable[[Any], bool] | None = None
         self._filtered = 0
@@ -139,10 +143,9 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         state.on_reader.setdefault(endpoint.name, {})[self._update] = None
         state.add(self)
 
-    def _send_queue(self, send_thread: SendThread, *, keep_all: bool) -> SendQueue:
+    def _send_queue(self, send_thread: SendThread, limit: int, *, keep_all: bool) -> SendQueue:
         lost = self.lost if self._reliable else self._count_lost
-        limits = self._depth, self.state.queue_bytes
-        return send_thread.send_queue(*limits, keep_all=keep_all, lost=lost)
+        return send_thread.send_queue(limit, self.state.queue_bytes, keep_all=keep_all, lost=lost)
 
     def declare_data(self, session: zenoh.Session) -> None:
         """Declare the publisher, and send what was published before."""
@@ -156,8 +159,6 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
                 sequence, payload, extra = self._early.popleft()
                 put = self.put if history is None else partial(history.write, sequence)
                 self._unless_expired(extra, partial(put, payload, extra))()
-                if self._expiry is not None:
-                    self._expiry.note()
         else:
             self._publisher = declare_plain(
                 session, self._key, LOOP_PRIORITY, reliable=self._reliable, waits=False
@@ -171,12 +172,11 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         self._update()
 
     def _declare_keeping(self, session: zenoh.Session) -> ext.AdvancedPublisher:
-        priority = BULK_PRIORITY if self._bulk_only else LOOP_PRIORITY
         return declare_keeping(
             session,
             self._key,
             self._depth,
-            PATIENT_PRIORITY if self.bounded else priority,
+            PATIENT_PRIORITY if self.bounded else BULK_PRIORITY,
             reliable=self._reliable,
             waits=self.bounded,
             numbered=self.recovers,
@@ -188,10 +188,7 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
             if not self.is_done():
                 return True  # once more, after another lifespan
             before, self._publisher = self._publisher, self._declare_keeping(self.state.session)
-            if self._patient is None:
-                withdraw(before)
-            else:
-                self._patient_sender.submit(partial(withdraw, before))
+            self._patient_sender.submit(partial(withdraw, before))
         return False
 
     def undeclare_data(self) -> None:
@@ -337,8 +334,6 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
             self._keep_early(sequence, payload, extra)
         elif history is None:
             self.put(payload, extra)
-            if self._expiry is not None:
-                self._expiry.note()
         else:
             history.write(sequence, payload, extra)
             if not self._is_watched and history.entries:
@@ -373,49 +368,52 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         publisher = self._publisher
         if publisher is None:
             return
-        if len(payload) < BULK_BYTES and self._is_direct and not self._is_large_used:
+        if (
+            len(payload) < BULK_BYTES and self._is_direct and not self._is_large_used
+        ) or not self._put_in_thread(publisher, payload, extra):
             try:
                 publisher.put(payload, attachment=extra)
             except zenoh.ZError as error:
                 raise TransportError(f"{self._key}: {reason(error)}") from error
-        else:
-            self._put_otherwise(publisher, payload, extra)
 
-    def _put_otherwise(
+    def _put_in_thread(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
-    ) -> None:
-        """Send a message that is large, or follows a large one, or must not be dropped by Zenoh."""
+    ) -> bool:
+        """Have a thread send what may wait for Zenoh, is large, or follows such a message.
+
+        Returns whether one does; else the loop may put it at once.
+        """
         size = len(payload)
         self.used_bulk = self.used_bulk or size >= BULK_BYTES
         self._is_large_used = bool(len(self._large))
-        may_not_drop = not self._is_direct and self._reliable and not self._bulk_only
-        if self._patient is not None or (
-            may_not_drop
-            and (self.bounded or (size < BULK_BYTES and not self.state.burst.spend(size)))
+        may_not_drop = not self._is_direct and self._reliable
+        if (
+            self._transient
+            or self._patient is not None
+            or (
+                may_not_drop
+                and (self.bounded or (size < BULK_BYTES and not self.state.burst.spend(size)))
+            )
         ):
             self._put_patiently(publisher, payload, extra)
-        elif size >= BULK_BYTES or self._bulk_only or self._is_large_used:
+        elif size >= BULK_BYTES or self._is_large_used:
             self._is_large_used = True
             send = partial(self._send, publisher, payload, extra)
             self._large.put(self._unless_expired(extra, send), size)
         else:
-            try:
-                publisher.put(payload, attachment=extra)
-            except zenoh.ZError as error:
-                raise TransportError(f"{self._key}: {reason(error)}") from error
+            return False
+        return True
 
     def _update_route(self) -> None:
         """Find out whether small messages may be put at once, and dropped by Zenoh if need be.
 
         Not if a reader may lose none of them and does not acknowledge: then a thread sends them
-        when they are many, and always for KEEP_ALL. A transient local publisher is declared before
-        there are readers, so it counts as having such a one.
+        when they are many, and always for KEEP_ALL. Never if late readers may ask Zenoh for them:
+        while Zenoh waits for one to read the answer, it lets nobody add to it.
         """
-        others = self._transient or self._history is None or self._history.has_other_readers
+        others = self._history is None or self._history.has_other_readers
         self._is_direct = (
-            self._patient is None
-            and not self._bulk_only
-            and not (others and self._reliable and (self.bounded or not self._transient))
+            self._patient is None and not self._transient and not (others and self._reliable)
         )
 
     def _put_patiently(
@@ -424,7 +422,8 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         """Send from the thread that waits for slow readers."""
         if self._patient is None:
             self.state.send_threads.add(self._patient_sender)
-            self._patient = self._send_queue(self._patient_sender, keep_all=self.bounded)
+            limit = max(self._depth, LATE) if self._transient else self._depth
+            self._patient = self._send_queue(self._patient_sender, limit, keep_all=self.bounded)
             self._update_route()
             if not self._transient and self.state.session is not None:
                 self._patient_publisher = declare_plain(
@@ -448,7 +447,8 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
             publisher.put(payload, attachment=extra)
         except zenoh.ZError as error:
             logger.debug("%s: not sent: %s", self._key, reason(error))
-        if perf_ns() - began_ns >= GIVEN_UP_NS:
+        waits = self.bounded or not self._transient
+        if waits and perf_ns() - began_ns >= GIVEN_UP_NS:
             self._given_up.put(1)
 
     def _send(
@@ -457,7 +457,7 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         """Send from a thread. No caller waits, so an error, after the session closed, is logged."""
         session = self.state.session
         try:
-            if session is None or self._transient:
+            if session is None:
                 publisher.put(payload, attachment=extra)
             else:
                 session.put(

@@ -40,6 +40,7 @@ class StoppableWriter(Protocol):
     gid: bytes
     active: bool
     used_bulk: bool
+    _transient: bool
     _stop: ZenohStop | None
     _key: str
     _publisher: zenoh.Publisher | ext.AdvancedPublisher | None
@@ -101,7 +102,8 @@ class ZenohStop(StopSender):
             writer._keep_early(sequence, self._payload, self._extra)
             return
         writer._abandon_queues()
-        put = self._no_more if is_past else self._put
+        # Past the loop, it was put past what is kept for late readers.
+        put = self._no_more if is_past and not writer._transient else self._put
         if history is None:
             put(self._payload, self._extra)
         else:
@@ -130,9 +132,9 @@ class ZenohStop(StopSender):
         """Put it where the last message was put."""
         writer = self._writer
         patient, publisher = writer._patient, writer._publisher
-        if patient is not None and publisher is not None:
-            if len(patient):  # its thread waits for a slow reader, the others do not
-                self.repeat()
+        if (patient is not None or writer._transient) and publisher is not None:
+            if patient is not None and len(patient):
+                self.repeat()  # its thread waits for a slow reader, the others do not
             writer._put_patiently(publisher, payload, extra)
         elif writer.used_bulk and publisher is not None:
             writer._large.put(partial(writer._send, publisher, payload, extra), len(payload))
@@ -160,7 +162,7 @@ class ZenohStop(StopSender):
         if publisher is None:
             return
         try:
-            if writer.used_bulk:
+            if writer.used_bulk or writer._transient:
                 writer._send(publisher, self._payload, self._extra)
             else:
                 publisher.put(self._payload, attachment=self._extra)

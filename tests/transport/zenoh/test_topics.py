@@ -207,6 +207,7 @@ async def test_a_late_reader_gets_the_last_messages_once_and_in_order(
         publisher = a.create_publisher(Int32, "n", kept(kept_by))
         for msg in numbers(8):
             publisher.publish(msg)
+        await publisher.drain()  # else it is not late yet
         late = b.create_subscription(Int32, "n", None, kept(asked_for))
         count = min(kept_by, asked_for, 8)
         assert await first_numbers(late, count) == list(range(8 - count, 8))
@@ -235,6 +236,7 @@ async def test_a_late_volatile_reader_gets_nothing_old() -> None:
     ):
         publisher = a.create_publisher(Int32, "n", kept(10))
         publisher.publish(Int32(data=1))
+        await publisher.drain()  # else it is not late yet
         late = b.create_subscription(Int32, "n", None, 10)
         await publisher.wait_for_subscribers()
         publisher.publish(Int32(data=2))
