@@ -14,6 +14,7 @@
 #   make motion    robots whose movers go in every way, MOTION_TIMES times: writes docs/motion.md
 #   make ros-test  aionode over DDS, beside rclpy of PyPI; Linux x86-64
 #   make live      aionode beside a real ROS 2 on rmw_zenoh, where one is sourced
+#   make tf-differential TF2=<folder>   transforms beside those of geometry2's sources, compiled here
 #   make crowd     300 nodes come and go beside a router, which has to answer all the while
 #   make soak      everything at once, for SOAK_SECONDS seconds: nothing may grow
 #   make quotes    brings the code and the docstrings that the documentation shows up to date
@@ -32,10 +33,10 @@ WORKERS ?= auto
 
 .DEFAULT_GOAL := help
 .PHONY: help demo test stress check coverage bench profile docs fuzz faults attacks motion live ros-test crowd \
-	soak quotes clean
+	tf-differential soak quotes clean
 
 help:
-	@sed -n '3,20s/^# *//p' Makefile
+	@sed -n '3,21s/^# *//p' Makefile
 
 demo: .venv/installed
 	$(BIN)/python -m aionode.examples.pubsub
@@ -92,6 +93,9 @@ motion: .venv/installed-dev
 ros-test: .venv/installed-dev
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[ros]'
 	$(BIN)/python -m pytest -q -rs tests/transport/rcl tests/transport/test_contract.py
+
+tf-differential: .venv/installed-dev
+	$(BIN)/python -m tests.tf.differential $(TF2)
 
 live: .venv/installed-dev
 	$(BIN)/python -m pytest -q -rs tests/live

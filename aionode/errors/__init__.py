@@ -55,6 +55,15 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
     ├── RequestRefusedError (ValueError)
     ├── RequestTimeoutError (TimeoutError)
     ├── TimeSourceChangedError (RuntimeError)
+    ├── TransformException (RuntimeError)
+    │   ├── ConnectivityException
+    │   ├── ExtrapolationException
+    │   │   ├── BackwardExtrapolationException
+    │   │   ├── ForwardExtrapolationException
+    │   │   └── NoDataForExtrapolationException
+    │   ├── InvalidArgumentException (ValueError)
+    │   ├── LookupException (LookupError)
+    │   └── TimeoutException (TimeoutError)
     ├── TransitionError (RuntimeError)
     ├── TransportError (ConnectionError)
     │   └── FrameError
@@ -66,7 +75,18 @@ from __future__ import annotations
 from aionode.errors import _values
 from aionode.errors._values import (
     AionodeError,
+    BackwardExtrapolationException,
+    ConnectivityException,
     DecodeError,
+    ExtrapolationException,
+    ForwardExtrapolationException,
+    GoalAbortedError,
+    GoalCanceledError,
+    GoalError,
+    GoalLostError,
+    GoalRejectedError,
+    GoalTransitionError,
+    InvalidArgumentException,
     InvalidLogLevelError,
     InvalidNamespaceException,
     InvalidNodeNameException,
@@ -81,8 +101,10 @@ from aionode.errors._values import (
     InvalidTopicNameException,
     LeaseExpiredError,
     LeaseHeldError,
+    LookupException,
     MessageError,
     NameValidationException,
+    NoDataForExtrapolationException,
     ParameterAlreadyDeclaredException,
     ParameterException,
     ParameterFileError,
@@ -90,20 +112,26 @@ from aionode.errors._values import (
     ParameterNotDeclaredException,
     ParameterUninitializedException,
     QueueFullError,
+    TimeoutException,
+    TransformException,
     UnknownROSArgsError,
 )
 
 __all__ = [
     "AionodeError",
+    "BackwardExtrapolationException",
     "CallbackCancelledError",
     "CallbackSignatureError",
     "CommandError",
     "ConfigurationError",
+    "ConnectivityException",
     "ContentFilterError",
     "DecodeError",
     "EntityDestroyedError",
     "EntityInactiveError",
+    "ExtrapolationException",
     "ForkedProcessError",
+    "ForwardExtrapolationException",
     "FrameError",
     "GoalAbortedError",
     "GoalCanceledError",
@@ -113,6 +141,7 @@ __all__ = [
     "GoalTransitionError",
     "IdlError",
     "InterfaceNotFoundError",
+    "InvalidArgumentException",
     "InvalidLogLevelError",
     "InvalidNamespaceException",
     "InvalidNodeNameException",
@@ -127,8 +156,10 @@ __all__ = [
     "InvalidTopicNameException",
     "LeaseExpiredError",
     "LeaseHeldError",
+    "LookupException",
     "MessageError",
     "NameValidationException",
+    "NoDataForExtrapolationException",
     "NodeNameNonExistentError",
     "NodeNotRunningError",
     "ParameterAlreadyDeclaredException",
@@ -143,6 +174,8 @@ __all__ = [
     "ServiceError",
     "ServiceUnavailableError",
     "TimeSourceChangedError",
+    "TimeoutException",
+    "TransformException",
     "TransitionError",
     "TransportError",
     "TypeDescriptionError",
@@ -264,96 +297,6 @@ class RequestTimeoutError(AionodeError, TimeoutError):
         self.servers = servers
         hint = f": {caveat}" if caveat else ""
         super().__init__(f"{service}: no reply in {timeout_sec:g} s; {silence(servers)}{hint}")
-
-
-class GoalError(AionodeError, RuntimeError):
-    """An action goal did not succeed.
-
-    Attributes:
-        action: Name of the action.
-        goal_id: Id of the goal, in 32 hexadecimal digits.
-    """
-
-    def __init__(self, action: str, goal_id: str, what: str) -> None:
-        self.action = action
-        self.goal_id = goal_id
-        super().__init__(f"{action}: goal {goal_id} {what}")
-
-
-class GoalRejectedError(GoalError):
-    """The action server rejected a goal."""
-
-    def __init__(self, action: str, goal_id: str) -> None:
-        super().__init__(
-            action,
-            goal_id,
-            "was rejected by the server, by its goal_callback or because max_goals are active; "
-            "ROS sends no reason, so see the server's log, and have goal_callback log why",
-        )
-
-
-class GoalAbortedError(GoalError):
-    """The action server aborted a goal.
-
-    Attributes:
-        result: The result message, as far as the server filled it in.
-        error_text: Type and text of the exception that ended the goal; empty if there was none, or
-            if the server does not send it.
-    """
-
-    def __init__(self, action: str, goal_id: str, result: object, error_text: str = "") -> None:
-        self.result = result
-        self.error_text = error_text
-        reason = f": {error_text}" if error_text else "; the server gave no reason"
-        super().__init__(action, goal_id, f"was aborted{reason}")
-
-
-class GoalCanceledError(GoalError):
-    """A goal was canceled: by this client, by another, or by a server that had lost this one.
-
-    Attributes:
-        result: The result message, as far as the server filled it in.
-        error_text: Why the server canceled it by itself; empty if a client asked for it.
-    """
-
-    def __init__(self, action: str, goal_id: str, result: object, error_text: str = "") -> None:
-        self.result = result
-        self.error_text = error_text
-        reason = f": {error_text}" if error_text else ""
-        super().__init__(action, goal_id, f"was canceled{reason}")
-
-
-class GoalLostError(GoalError):
-    """The outcome of a goal cannot be known: its server went away, or no longer knows the goal.
-
-    Attributes:
-        problem: What happened.
-    """
-
-    def __init__(self, action: str, goal_id: str, problem: str) -> None:
-        self.problem = problem
-        super().__init__(
-            action, goal_id, f"was lost: {problem}; await wait_for_server() and send it again"
-        )
-
-
-class GoalTransitionError(AionodeError, RuntimeError):
-    """The state of a goal does not allow the requested transition.
-
-    Attributes:
-        goal_id: Id of the goal, in 32 hexadecimal digits.
-        status: The state of the goal.
-        event: The event that was requested.
-        fits: The events that are allowed in that state.
-    """
-
-    def __init__(self, goal_id: str, status: str, event: str, fits: list[str]) -> None:
-        self.goal_id = goal_id
-        self.status = status
-        self.event = event
-        self.fits = fits
-        allowed = f"only {', '.join(fits)} is allowed" if fits else "no event is allowed"
-        super().__init__(f"goal {goal_id}: cannot {event} while {status}; {allowed}")
 
 
 class CallbackSignatureError(AionodeError, TypeError, RuntimeError):

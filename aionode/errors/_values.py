@@ -1,4 +1,4 @@
-"""The base class of all errors, and errors about names, arguments, parameters and publishing."""
+"""The base of all errors, and those about names, parameters, publishing, goals, transforms."""
 
 from __future__ import annotations
 
@@ -6,7 +6,18 @@ import re
 
 __all__ = [
     "AionodeError",
+    "BackwardExtrapolationException",
+    "ConnectivityException",
     "DecodeError",
+    "ExtrapolationException",
+    "ForwardExtrapolationException",
+    "GoalAbortedError",
+    "GoalCanceledError",
+    "GoalError",
+    "GoalLostError",
+    "GoalRejectedError",
+    "GoalTransitionError",
+    "InvalidArgumentException",
     "InvalidLogLevelError",
     "InvalidNamespaceException",
     "InvalidNodeNameException",
@@ -21,8 +32,10 @@ __all__ = [
     "InvalidTopicNameException",
     "LeaseExpiredError",
     "LeaseHeldError",
+    "LookupException",
     "MessageError",
     "NameValidationException",
+    "NoDataForExtrapolationException",
     "ParameterAlreadyDeclaredException",
     "ParameterException",
     "ParameterFileError",
@@ -30,6 +43,8 @@ __all__ = [
     "ParameterNotDeclaredException",
     "ParameterUninitializedException",
     "QueueFullError",
+    "TimeoutException",
+    "TransformException",
     "UnknownROSArgsError",
 ]
 
@@ -414,3 +429,129 @@ class LeaseHeldError(AionodeError, RuntimeError):
             f"{topic}: a lease of this publisher is held; only its holder publishes, with "
             "lease.publish(), until the block of the lease ends"
         )
+
+
+class GoalError(AionodeError, RuntimeError):
+    """An action goal did not succeed.
+
+    Attributes:
+        action: Name of the action.
+        goal_id: Id of the goal, in 32 hexadecimal digits.
+    """
+
+    def __init__(self, action: str, goal_id: str, what: str) -> None:
+        self.action = action
+        self.goal_id = goal_id
+        super().__init__(f"{action}: goal {goal_id} {what}")
+
+
+class GoalRejectedError(GoalError):
+    """The action server rejected a goal."""
+
+    def __init__(self, action: str, goal_id: str) -> None:
+        super().__init__(
+            action,
+            goal_id,
+            "was rejected by the server, by its goal_callback or because max_goals are active; "
+            "ROS sends no reason, so see the server's log, and have goal_callback log why",
+        )
+
+
+class GoalAbortedError(GoalError):
+    """The action server aborted a goal.
+
+    Attributes:
+        result: The result message, as far as the server filled it in.
+        error_text: Type and text of the exception that ended the goal; empty if there was none, or
+            if the server does not send it.
+    """
+
+    def __init__(self, action: str, goal_id: str, result: object, error_text: str = "") -> None:
+        self.result = result
+        self.error_text = error_text
+        reason = f": {error_text}" if error_text else "; the server gave no reason"
+        super().__init__(action, goal_id, f"was aborted{reason}")
+
+
+class GoalCanceledError(GoalError):
+    """A goal was canceled: by this client, by another, or by a server that had lost this one.
+
+    Attributes:
+        result: The result message, as far as the server filled it in.
+        error_text: Why the server canceled it by itself; empty if a client asked for it.
+    """
+
+    def __init__(self, action: str, goal_id: str, result: object, error_text: str = "") -> None:
+        self.result = result
+        self.error_text = error_text
+        reason = f": {error_text}" if error_text else ""
+        super().__init__(action, goal_id, f"was canceled{reason}")
+
+
+class GoalLostError(GoalError):
+    """The outcome of a goal cannot be known: its server went away, or no longer knows the goal.
+
+    Attributes:
+        problem: What happened.
+    """
+
+    def __init__(self, action: str, goal_id: str, problem: str) -> None:
+        self.problem = problem
+        super().__init__(
+            action, goal_id, f"was lost: {problem}; await wait_for_server() and send it again"
+        )
+
+
+class GoalTransitionError(AionodeError, RuntimeError):
+    """The state of a goal does not allow the requested transition.
+
+    Attributes:
+        goal_id: Id of the goal, in 32 hexadecimal digits.
+        status: The state of the goal.
+        event: The event that was requested.
+        fits: The events that are allowed in that state.
+    """
+
+    def __init__(self, goal_id: str, status: str, event: str, fits: list[str]) -> None:
+        self.goal_id = goal_id
+        self.status = status
+        self.event = event
+        self.fits = fits
+        allowed = f"only {', '.join(fits)} is allowed" if fits else "no event is allowed"
+        super().__init__(f"goal {goal_id}: cannot {event} while {status}; {allowed}")
+
+
+class TransformException(AionodeError, RuntimeError):
+    """A transform between two frames is not available, or cannot be used."""
+
+
+class ConnectivityException(TransformException):
+    """The two frames are not part of one tree."""
+
+
+class LookupException(TransformException, LookupError):
+    """A frame does not exist, or the tree has a loop."""
+
+
+class ExtrapolationException(TransformException):
+    """The time lies outside of the data that the buffer holds."""
+
+
+class BackwardExtrapolationException(ExtrapolationException):
+    """The time is earlier than the oldest data."""
+
+
+class ForwardExtrapolationException(ExtrapolationException):
+    """The time is later than the newest data; waiting may help."""
+
+
+class NoDataForExtrapolationException(ExtrapolationException):
+    """A frame has at most one transform, and not at this time."""
+
+
+class InvalidArgumentException(TransformException, ValueError):
+    """The name of a frame is empty, or begins with a slash."""
+
+
+class TimeoutException(TransformException, TimeoutError):
+    """A transform did not become available in time; the text says why."""

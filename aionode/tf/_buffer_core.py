@@ -1,0 +1,520 @@
+"""The tree of frames and its history: tf2's BufferCore, without input or output."""
+
+from __future__ import annotations
+
+from math import isnan
+from typing import TYPE_CHECKING, Any
+
+from aionode.clock import S_TO_NS, Duration, Time
+from aionode.errors import (
+    InvalidArgumentException,
+    LookupException,
+    TransformException,
+    escaped,
+    shortened,
+)
+from aionode.interfaces.builtin_interfaces.msg import Time as TimeMsg
+from aionode.interfaces.geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
+from aionode.interfaces.std_msgs.msg import Header
+from aionode.logging import get_logger
+from aionode.tf import _texts
+from aionode.tf._arithmetic import Pose, composed, unit
+from aionode.tf._chain import chain
+from aionode.tf._frames import DynamicFrame, Frame, Room, StaticFrame, Tree
+from aionode.tf._refusals import (
+    TOLERANCE,
+    mistakes,
+    old_data,
+    too_long,
+    too_many,
+    two_broadcasters,
+)
+from aionode.tf._routes import Routes
+from aionode.tf._velocity import velocity
+from aionode.tf._walk import Failure, Walk, latest_common_ns, walk
+
+if TYPE_CHECKING:
+    from aionode.tf._velocity import Vector, Velocity
+
+__all__ = ["CACHE_TIME_SEC", "MAX_FRAMES", "MAX_NAME", "BufferCore", "duration_ns", "time_ns_of"]
+
+CACHE_TIME_SEC = 10.0
+"""How long transforms are kept by default, in seconds."""
+
+MAX_FRAMES = 10_000
+"""How many frames a buffer takes; tf2 has no limit, but its memory has."""
+
+MAX_NAME = 1_000
+"""How long the name of a frame may be, in characters."""
+
+MAX_REPORTS = 1_000
+"""How many refusals are logged; further ones of the same kind and sender are not."""
+
+ROUNDING = 1e-12
+"""Up to this excess, a quaternion is not divided by its length: that would only round again."""
+
+
+def time_ns_of(time: Any) -> int:
+    """Return a time in nanoseconds: anything with `sec` and `nanosec`, or `nanoseconds`.
+
+    Raises:
+        TypeError: it has neither.
+    """
+    if isinstance(time, TimeMsg):
+        return time.sec * S_TO_NS + time.nanosec
+    if hasattr(time, "nanoseconds"):
+        return int(time.nanoseconds)
+    if hasattr(time, "sec") and hasattr(time, "nanosec"):
+        return int(time.sec) * S_TO_NS + int(time.nanosec)
+    raise TypeError("time must have sec and nanosec, or nanoseconds.")
+
+
+def duration_ns(duration: Any) -> int:
+    """Return a duration in nanoseconds: seconds, or what `time_ns_of` takes.
+
+    Raises:
+        TypeError: it is none of these.
+    """
+    if isinstance(duration, int | float):
+        return round(duration * S_TO_NS)
+    try:
+        return time_ns_of(duration)
+    except TypeError:
+        raise TypeError("duration must have sec and nanosec, or nanoseconds.") from None
+
+
+class BufferCore:
+    """Keeps the transforms between frames for some time, and answers for any two of them.
+
+    The methods have the names of tf2's Python class, and their rules and texts are tf2's. Times are
+    `Time`, messages of builtin_interfaces, or anything with `nanoseconds`; 0 means the latest
+    common time.
+
+    Memory is bounded: `MAX_FRAMES` frames, and `MAX_SAMPLES` poses of all frames together.
+
+    Args:
+        cache_time: How long transforms are kept: a Duration, or seconds.
+
+    Raises:
+        TypeError: `cache_time` is neither.
+        ValueError: it is negative.
+    """
+
+    def __init__(self, cache_time: Duration | float = CACHE_TIME_SEC) -> None:
+        cache_ns = duration_ns(cache_time)
+        if cache_ns < 0:
+            raise ValueError(f"cache_time is {cache_ns / S_TO_NS:g} s; it must not be negative")
+        self._cache_ns = cache_ns
+        self._room = Room()
+        self._frames = Tree()
+        self._routes = Routes(self._frames)
+        self._authorities: dict[str, str] = {}
+        self._rivals: dict[str, str] = {}  # for each frame, who has sent it before its authority
+        self._reported: set[tuple[str, str]] = set()  # kinds of refusals, and their senders
+        self._logger = get_logger("tf2_buffer")
+
+    # Setting
+
+    def set_transform(self, transform: Any, authority: str) -> None:
+        """Add a transform that may change; it replaces a static one of the same frame.
+
+        What tf2 refuses is refused, and logged once for each sender: a frame that is its own
+        parent, empty names, NaN, a quaternion whose length is not 1, data older than the cache
+        time.
+
+        Args:
+            transform: A TransformStamped.
+            authority: Who has sent it.
+        """
+        self._set(transform, authority, is_static=False)
+
+    def set_transform_static(self, transform: Any, authority: str) -> None:
+        """Add a transform that holds at any time; it replaces the history of the frame.
+
+        Args:
+            transform: A TransformStamped.
+            authority: Who has sent it.
+        """
+        self._set(transform, authority, is_static=True)
+
+    def _set(self, msg: Any, authority: str, *, is_static: bool) -> bool:  # the checks
+        """Add a transform; return whether it was taken."""
+        header = msg.header
+        child, parent = msg.child_frame_id, header.frame_id
+        if child[:1] == "/" or parent[:1] == "/":  # tf had such names, tf2 has not
+            child, parent = child.removeprefix("/"), parent.removeprefix("/")
+        translation, rotation = msg.transform.translation, msg.transform.rotation
+        x, y, z = translation.x, translation.y, translation.z
+        i, j, k, w = rotation.x, rotation.y, rotation.z, rotation.w
+        pose: Pose = (x, y, z, i, j, k, w)
+        excess = abs(i * i + j * j + k * k + w * w - 1.0)
+        if (
+            child == parent
+            or not child
+            or not parent
+            or not excess < TOLERANCE  # also for NaN
+            or isnan(x + y + z)  # also for an infinite coordinate, which is no mistake
+        ):
+            found = mistakes(child, parent, pose, authority)
+            if found:
+                self._refuse(found, authority)
+                return False
+        if excess > ROUNDING:
+            pose = unit(pose)
+        frame = self._frames.get(child)
+        if frame is None or frame.is_static is not is_static or parent not in self._frames.names:
+            frame = self._admitted(child, parent, pose, authority, is_static=is_static)
+            if frame is None:
+                return False
+        before = frame.latest()
+        stamp_ns = time_ns_of(header.stamp)
+        if not frame.insert(stamp_ns, parent, pose):
+            text = old_data(child, _texts.seconds_text(stamp_ns), authority)
+            self._report("TF_OLD_DATA", authority, text)
+            return False
+        if before is None or before[1] != parent:
+            self._routes.forget()
+        if self._authorities.get(child) != authority:
+            self._note_authority(child, authority)
+        self._changed(child, frame, before)
+        return True
+
+    def _changed(self, child: str, frame: Frame, before: tuple[int, str] | None) -> None:
+        """Take note that a frame has a new transform; for subclasses.
+
+        Args:
+            child: The name of the frame.
+            frame: Its data.
+            before: Its newest stamp and parent before that.
+        """
+
+    def _admitted(
+        self, child: str, parent: str, pose: Pose, authority: str, *, is_static: bool
+    ) -> Frame | None:
+        """Return the place for a frame of the given kind; None if there is no room for its name."""
+        new = [name for name in (child, parent) if name not in self._frames.names]
+        if any(len(name) > MAX_NAME for name in new):
+            self._report("TF_LONG_FRAME_ID", authority, too_long(MAX_NAME, authority))
+            return None
+        if len(self._frames.names) + len(new) > MAX_FRAMES:
+            self._report("TF_TOO_MANY_FRAMES", authority, too_many(MAX_FRAMES, authority))
+            return None
+        self._frames.names.update(dict.fromkeys(new))
+        frame = self._frames.get(child)
+        if frame is None or frame.is_static is not is_static:
+            if frame is not None:
+                frame.clear()  # gives back its room
+            frame = (
+                StaticFrame(parent, pose) if is_static else DynamicFrame(self._cache_ns, self._room)
+            )
+            self._frames[child] = frame
+            self._routes.forget()
+        return frame
+
+    def _note_authority(self, child: str, authority: str) -> None:
+        """Record who sends a frame, and report it if two do so in turns."""
+        last = self._authorities.get(child)
+        self._authorities[child] = authority
+        if last is None:
+            return
+        if self._rivals.get(child) == authority:
+            text = two_broadcasters(child, last, authority)
+            self._report("TF_TWO_BROADCASTERS", child, text)
+        self._rivals[child] = last
+
+    def _refuse(self, found: list[tuple[str, str]], authority: str) -> None:
+        """Log what is wrong with a transform."""
+        for kind, text in found:
+            self._report(kind, authority, text, is_error=True)
+
+    def _report(self, kind: str, about: str, text: str, *, is_error: bool = False) -> None:
+        """Log a refusal, once for each kind and sender: others decide how often it comes."""
+        if (kind, about) in self._reported or len(self._reported) >= MAX_REPORTS:
+            return
+        self._reported.add((kind, about))
+        text = shortened(escaped(text))
+        if is_error:
+            self._logger.error(text)
+        else:
+            self._logger.warning(text)
+
+    def clear(self) -> None:
+        """Forget the history of all frames; static transforms and the names of frames stay."""
+        for frame in self._frames.values():
+            frame.clear()
+        self._routes.forget()
+
+    # Looking up
+
+    def lookup_transform_core(
+        self, target_frame: str, source_frame: str, time: Any
+    ) -> TransformStamped:
+        """Return the transform that expresses in `target_frame` what is given in `source_frame`.
+
+        Raises:
+            LookupException: a frame does not exist, or the tree has a loop.
+            ConnectivityException: the frames are in different trees.
+            ExtrapolationException: there is no data for the time.
+            InvalidArgumentException: a name is empty or begins with a slash.
+        """
+        pose, stamp_ns = self._lookup(target_frame, source_frame, time_ns_of(time))
+        return self._message(target_frame, source_frame, unit(pose), stamp_ns)
+
+    def lookup_transform_full_core(
+        self,
+        target_frame: str,
+        target_time: Any,
+        source_frame: str,
+        source_time: Any,
+        fixed_frame: str,
+    ) -> TransformStamped:
+        """Return the transform from a source frame at one time to a target frame at another.
+
+        Args:
+            target_frame: The frame to express things in.
+            target_time: When to look at the target frame.
+            source_frame: The frame that they are in.
+            source_time: When to look at the source frame.
+            fixed_frame: The frame that stands still between both times.
+
+        Raises:
+            TransformException: as `lookup_transform_core`.
+        """
+        for argument, frame in (
+            ("target_frame", target_frame),
+            ("source_frame", source_frame),
+            ("fixed_frame", fixed_frame),
+        ):
+            self._expect_frame(f"lookupTransform argument {argument}", frame)
+        inner, _ = self._lookup(fixed_frame, source_frame, time_ns_of(source_time))
+        outer, stamp_ns = self._lookup(target_frame, fixed_frame, time_ns_of(target_time))
+        pose = unit(composed(unit(outer), unit(inner)))
+        return self._message(target_frame, source_frame, pose, stamp_ns)
+
+    def can_transform_core(
+        self, target_frame: str, source_frame: str, time: Any
+    ) -> tuple[bool, str]:
+        """Return whether the transform is available, and why not."""
+        time_ns = time_ns_of(time)
+        if target_frame == source_frame:
+            return True, ""
+        names = {"target_frame": target_frame, "source_frame": source_frame}
+        problem = self._problem_of(names)
+        if problem:
+            return False, problem
+        failure = walk(self._frames, target_frame, source_frame, time_ns).failure
+        return failure is None, "" if failure is None else failure.text
+
+    def can_transform_full_core(
+        self,
+        target_frame: str,
+        target_time: Any,
+        source_frame: str,
+        source_time: Any,
+        fixed_frame: str,
+    ) -> tuple[bool, str]:
+        """Return whether the transform between two times is available, and why not."""
+        problem = self._problem_of(
+            {
+                "target_frame": target_frame,
+                "source_frame": source_frame,
+                "fixed_frame": fixed_frame,
+            }
+        )
+        if problem:
+            return False, problem
+        for target, source, time in (
+            (target_frame, fixed_frame, target_time),
+            (fixed_frame, source_frame, source_time),
+        ):
+            failure = walk(self._frames, target, source, time_ns_of(time)).failure
+            if failure is not None:
+                return False, failure.text
+        return True, ""
+
+    def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:
+        """Return the newest time at which the transform is available; 0 between static frames.
+
+        Raises:
+            LookupException: a frame does not exist.
+            InvalidArgumentException: a name is empty or begins with a slash.
+            TransformException: the frames are in different trees.
+        """
+        for frame in (target_frame, source_frame):
+            self._expect_frame("get_latest_common_time", frame)
+        latest = self._latest_ns(target_frame, source_frame)
+        if isinstance(latest, Failure):
+            raise TransformException(latest.text)
+        return Time(nanoseconds=max(latest, 0))
+
+    def lookupVelocityCore(  # noqa: N802  # tf2's name
+        self, tracking_frame: str, observation_frame: str, time: Any, averaging_interval: Any
+    ) -> Velocity:
+        """Return the linear and angular velocity of a frame, seen from another.
+
+        Args:
+            tracking_frame: The frame that moves; the velocity is that of its origin.
+            observation_frame: The frame it is seen from, and in whose axes the result is.
+            time: The middle of the interval.
+            averaging_interval: Over which time to average: a Duration, or seconds.
+
+        Raises:
+            TransformException: as `lookup_transform_core`.
+        """
+        return self.lookupVelocityFullCore(
+            tracking_frame,
+            observation_frame,
+            observation_frame,
+            (0.0, 0.0, 0.0),
+            tracking_frame,
+            time,
+            averaging_interval,
+        )
+
+    def lookupVelocityFullCore(  # noqa: N802  # tf2's name
+        self,
+        tracking_frame: str,
+        observation_frame: str,
+        reference_frame: str,
+        reference_point: Vector,
+        reference_point_frame: str,
+        time: Any,
+        averaging_interval: Any,
+    ) -> Velocity:
+        """Return the linear and angular velocity of a point that moves with a frame.
+
+        Args:
+            tracking_frame: The frame that moves.
+            observation_frame: The frame it is seen from.
+            reference_frame: The frame in whose axes the result is.
+            reference_point: The point, in `reference_point_frame`.
+            reference_point_frame: The frame of the point.
+            time: The middle of the interval.
+            averaging_interval: Over which time to average: a Duration, or seconds.
+
+        Raises:
+            TransformException: as `lookup_transform_core`.
+        """
+        latest = self._latest_ns(observation_frame, tracking_frame)
+        return velocity(
+            lambda target, source, time_ns: unit(self._lookup(target, source, time_ns)[0]),
+            0 if isinstance(latest, Failure) else latest,
+            (tracking_frame, observation_frame, reference_frame, reference_point_frame),
+            reference_point,
+            time_ns_of(time),
+            duration_ns(averaging_interval),
+        )
+
+    # All frames
+
+    def all_frames_as_yaml(self) -> str:
+        """Return parent, broadcaster, rate and times of each frame, as YAML."""
+        return _texts.frames_as_yaml(self._frames, self._authorities)
+
+    def all_frames_as_string(self) -> str:
+        """Return one line for each frame, with its parent."""
+        return _texts.frames_as_string(self._frames)
+
+    def _allFramesAsDot(self, time: Any = None) -> str:  # noqa: N802  # tf2's name
+        """Return the tree in the language of Graphviz; with a time, also how old the data is."""
+        now_ns = 0 if time is None else time_ns_of(time)
+        return _texts.frames_as_dot(self._frames, self._authorities, now_ns)
+
+    def _frameExists(self, frame_id: str) -> bool:  # noqa: N802  # tf2's name
+        """Return whether a frame was ever mentioned, as child or parent."""
+        return frame_id in self._frames.names
+
+    def _getFrameStrings(self) -> list[str]:  # noqa: N802  # tf2's name
+        """Return the names of all frames that were ever mentioned."""
+        return list(self._frames.names)
+
+    def _chain(
+        self,
+        target_frame: str,
+        target_time: Any,
+        source_frame: str,
+        source_time: Any,
+        fixed_frame: str,
+    ) -> list[str]:
+        """Return the frames between source and target, as tf2 does.
+
+        Raises:
+            TransformException: as `lookup_transform_full_core`.
+        """
+        return chain(
+            self._frames,
+            (target_frame, time_ns_of(target_time)),
+            (source_frame, time_ns_of(source_time)),
+            fixed_frame,
+        )
+
+    # Within
+
+    def _lookup(self, target: str, source: str, time_ns: int) -> tuple[Pose, int]:
+        """Return the pose of `source` in `target`, and its stamp."""
+        if target == source:  # tf2 answers for frames that do not exist, too
+            frame = self._frames.get(target)
+            if time_ns == 0 and frame is not None:
+                time_ns = frame.newest_ns
+            return Walk(time_ns).pose(), time_ns
+        if target not in self._frames.names or source not in self._frames.names:
+            self._expect_frame("lookupTransform argument target_frame", target)
+            self._expect_frame("lookupTransform argument source_frame", source)
+        found = self._find(target, source, time_ns)
+        if isinstance(found, Failure):
+            raise found.exception()
+        return found
+
+    def _find(self, target: str, source: str, time_ns: int) -> tuple[Pose, int] | Failure:
+        """Return the pose of one existing frame in another, and its stamp, or why there is none."""
+        route = self._routes.find(target, source)
+        if route is not None:
+            stamp_ns = time_ns or route.latest_ns()
+            pose = route.pose(stamp_ns)
+            if pose is not None:
+                return pose, stamp_ns
+        way = walk(self._frames, target, source, time_ns)
+        return way.failure or (way.pose(), way.time_ns)
+
+    def _latest_ns(self, target: str, source: str) -> int | Failure:
+        """Return the newest time at which a transform is available."""
+        if target == source:
+            frame = self._frames.get(source)
+            return 0 if frame is None else frame.newest_ns
+        return latest_common_ns(self._frames, target, source)
+
+    def _expect_frame(self, subject: str, frame: str) -> None:
+        """Raise the error of tf2 if a frame does not exist."""
+        if not frame or frame.startswith("/"):
+            wrong = "cannot start with a '/'" if frame else "cannot be empty"
+            raise InvalidArgumentException(
+                f'Invalid argument "{frame}" passed to {subject} - in tf2 frame_ids {wrong}'
+            )
+        if frame not in self._frames.names:
+            raise LookupException(f'"{frame}" passed to {subject} does not exist. ')
+
+    def _problem_of(self, arguments: dict[str, str]) -> str:
+        """Return why one of some frames cannot be asked for; empty if all can."""
+        for argument, frame in arguments.items():
+            if frame in self._frames.names:
+                continue
+            wrong = "frame does not exist"
+            if not frame:
+                wrong = "in tf2 frame_ids cannot be empty"
+            elif frame.startswith("/"):
+                wrong = "in tf2 frame_ids cannot start with a '/'"
+            return (
+                f'Invalid frame ID "{frame}" passed to canTransform argument {argument} - {wrong}'
+            )
+        return ""
+
+    def _message(self, target: str, source: str, pose: Pose, stamp_ns: int) -> TransformStamped:
+        sec, nanosec = divmod(stamp_ns, S_TO_NS)
+        x, y, z, i, j, k, w = pose
+        return TransformStamped(
+            header=Header(stamp=TimeMsg(sec=sec, nanosec=nanosec), frame_id=target),
+            child_frame_id=source,
+            transform=Transform(
+                translation=Vector3(x=x, y=y, z=z), rotation=Quaternion(x=i, y=j, z=k, w=w)
+            ),
+        )

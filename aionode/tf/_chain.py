@@ -1,0 +1,85 @@
+"""The names of the frames between two frames, in the form that tf2 gives them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from aionode.tf._walk import walk
+
+if TYPE_CHECKING:
+    from aionode.tf._frames import Tree
+
+__all__ = ["chain"]
+
+
+def chain(frames: Tree, target: tuple[str, int], source: tuple[str, int], fixed: str) -> list[str]:
+    """Return the frames between a source and a target, by way of a fixed frame.
+
+    tf2 leaves out some of the frames where both branches meet, and so does this.
+
+    Args:
+        frames: The frames by name.
+        target: The target frame and its time, in nanoseconds.
+        source: The source frame and its time, in nanoseconds.
+        fixed: The frame that stands still between both times.
+
+    Raises:
+        TransformException: there is no such chain.
+    """
+    found = chain_at(frames, fixed, *source)
+    if source[1] == target[1]:
+        return found
+    to_target = chain_at(frames, target[0], fixed, target[1])
+    n, m = common_end(found, to_target)
+    if n:
+        del found[n - 1 :]
+    if m < len(to_target):
+        found += to_target[: m + 1]
+    return found
+
+
+def chain_at(frames: Tree, target: str, source: str, time_ns: int) -> list[str]:
+    """Return the frames between two frames at one time."""
+    if target == source:
+        return []
+    way = walk(frames, target, source, time_ns)
+    if way.failure is not None:
+        raise way.failure.exception()
+    up = to_top(frames, source, way.time_ns, stop=target)
+    if up[-1] == target:
+        return up
+    down = to_top(frames, target, way.time_ns, stop=source)
+    if down[-1] == source:
+        return down
+    if down[-1] == up[-1]:
+        down.pop()
+    n, m = common_end(up, down)
+    if n:
+        del up[n - 1 :]
+    if m < len(down):
+        up += reversed(down[: m + 1])
+    return up
+
+
+def to_top(frames: Tree, frame: str, time_ns: int, *, stop: str) -> list[str]:
+    """Return a frame and those above it at a time, up to the last one, or to `stop`."""
+    found = [frame]
+    while frame != stop:
+        history = frames.get(frame)
+        above = None if history is None else history.find(time_ns)
+        if above is None:
+            break
+        frame = above[0]
+        found.append(frame)
+    return found
+
+
+def common_end(one: list[str], other: list[str]) -> tuple[int, int]:
+    """Return the indices, from the end of two lists, at which they differ first."""
+    n, m = len(one), len(other)
+    while n > 0 and m > 0:
+        n -= 1
+        m -= 1
+        if one[n] != other[m]:
+            break
+    return n, m

@@ -1,0 +1,103 @@
+"""Ways through the tree that hold at any time, so that most lookups need no walk."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from aionode.tf._arithmetic import Pose, chained, composed, inverted
+from aionode.tf._walk import MAX_DEPTH, lowest
+
+if TYPE_CHECKING:
+    from aionode.tf._arithmetic import Edge
+    from aionode.tf._frames import Frame, Tree
+
+__all__ = ["Route", "Routes"]
+
+MAX_ROUTES = 1_000
+"""How many routes a buffer remembers."""
+
+
+class Route:
+    """The frames between two frames, all of which have had one parent only."""
+
+    __slots__ = ("down", "names", "up")
+
+    def __init__(self, up: list[Frame], down: list[Frame], names: list[str]) -> None:
+        self.up = up
+        self.down = down
+        self.names = names
+
+    def latest_ns(self) -> int:
+        """Return the newest time for which all dynamic frames have data; 0 if none is dynamic."""
+        return lowest([frame.newest_ns for frame in (*self.up, *self.down)])
+
+    def pose(self, time_ns: int) -> Pose | None:
+        """Return the pose of the source in the target; None if a frame has no data for the time."""
+        source = pose_over(self.up, time_ns)
+        if not self.down or source is None:
+            return source
+        target = pose_over(self.down, time_ns)
+        return None if target is None else composed(inverted(target), source)
+
+
+def pose_over(frames: list[Frame], time_ns: int) -> Pose | None:
+    """Return the pose that a series of frames leads to; None if one has no data for the time."""
+    edges: list[Edge] = []
+    for frame in frames:
+        edge = frame.edge(time_ns)
+        if edge is None:
+            return None
+        edges.append(edge)
+    return chained(edges)
+
+
+class Routes:
+    """The routes of a buffer, found once and forgotten when the tree changes.
+
+    Args:
+        frames: The frames of the buffer.
+    """
+
+    def __init__(self, frames: Tree) -> None:
+        self._frames = frames
+        self._known: dict[tuple[str, str], Route | None] = {}
+
+    def forget(self) -> None:
+        """Forget all routes: a frame is new, of another kind, or has another parent."""
+        self._known.clear()
+
+    def find(self, target: str, source: str) -> Route | None:
+        """Return the route between two frames; None if only a walk can tell."""
+        key = target, source
+        if key in self._known:
+            return self._known[key]
+        if len(self._known) >= MAX_ROUTES:
+            self._known.clear()
+        route = self._known[key] = self._search(target, source)
+        return route
+
+    def _search(self, target: str, source: str) -> Route | None:
+        above_source = self._above(source)
+        above_target = self._above(target)
+        common = next((name for name in above_source if name in above_target), None)
+        if common is None:
+            return None
+        up = above_source[: above_source.index(common)]
+        down = above_target[: above_target.index(common)]
+        frames = self._frames
+        if any(frames[name].reparented for name in (*up, *down)):
+            return None
+        return Route([frames[name] for name in up], [frames[name] for name in down], [*up, *down])
+
+    def _above(self, frame: str) -> list[str]:
+        """Return a frame and those above it; empty if they form a loop."""
+        found = [frame]
+        while (history := self._frames.get(frame)) is not None:
+            latest = history.latest()
+            if latest is None:
+                break
+            frame = latest[1]
+            found.append(frame)
+            if len(found) > MAX_DEPTH:
+                return []
+        return found
