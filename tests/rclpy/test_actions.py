@@ -9,6 +9,7 @@ import pytest
 
 import aionode.rclpy
 from aionode.action import GoalStatus
+from aionode.endpoints.actions import _goal_store
 from aionode.interfaces.example_interfaces.action import Fibonacci as OwnFibonacci
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._rosidl import action_class
@@ -262,6 +263,104 @@ def test_a_client_knows_the_state_of_its_goals(
         executor.spin_once(timeout_sec=PATIENCE_S)
     server.may_end.set_result(None)
     while handle.status != GoalStatus.SUCCEEDED:
+        executor.spin_once(timeout_sec=PATIENCE_S)
+
+
+class States:
+    """Counts the messages with the states of goals, and keeps the last one."""
+
+    def __init__(self, node: Node) -> None:
+        self.count = 0
+        self.last: list[Any] = []
+        status_type = Fibonacci.Impl.GoalStatusMessage
+        node.create_subscription(status_type, "fibonacci/_action/status", self.take, 10_000)
+
+    def take(self, message: Any) -> None:
+        """Take one."""
+        self.count += 1
+        self.last = [each.status for each in message.status_list]
+
+
+def test_goals_beyond_the_limit_are_rejected_before_the_program_is_asked(
+    node: Node, result_of: Callable[..., Any], caplog: pytest.LogCaptureFixture
+) -> None:
+    """Clients that send goals which never end take no memory without bound."""
+    asked: list[Any] = []
+
+    def decide(goal: Any) -> GoalResponse:
+        asked.append(goal)
+        return GoalResponse.ACCEPT
+
+    Server(node, goal_callback=decide, max_goals=3)
+    client = client_of(node)
+
+    answers = [result_of(client.send_goal_async(Fibonacci.Goal(order=1))) for _ in range(5)]
+
+    assert [answer.accepted for answer in answers] == [True] * 3 + [False] * 2
+    assert len(asked) == 3
+    (line,) = [each for each in caplog.records if "rejected" in each.message]
+    assert "as 3 are active: max_goals=3" in line.message
+
+
+def test_of_too_many_results_the_oldest_is_forgotten(
+    node: Node, executor: SingleThreadedExecutor, result_of: Callable[..., Any]
+) -> None:
+    """Results are not kept without bound, however long their time is."""
+    server = Server(node, max_goals=2, result_timeout=-1)
+    server.may_end.set_result(None)
+    client = client_of(node)
+    handles = []
+    for order in (1, 2, 3):
+        handles.append(result_of(client.send_goal_async(Fibonacci.Goal(order=order))))
+        result_of(handles[-1].get_result_async())
+    executor.spin_once(timeout_sec=0.0)  # the server learns what was forgotten
+
+    kept = [result_of(handle.get_result_async()).status for handle in handles]
+
+    assert kept == [GoalStatus.UNKNOWN, GoalStatus.SUCCEEDED, GoalStatus.SUCCEEDED]
+    assert len(server.server._goal_handles) == len(server.server._result_futures) == 2
+
+
+def test_the_states_of_many_goals_are_published_less_often_than_they_change(
+    node: Node,
+    executor: SingleThreadedExecutor,
+    result_of: Callable[..., Any],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Each message lists all goals; the last one is sent at the end of the server at the latest."""
+    monkeypatch.setattr(_goal_store, "SPACING_S", 1000.0)
+    states = States(node)
+    server = Server(node)
+    client = client_of(node)
+    for _ in range(_goal_store.UNSPACED + 10):
+        result_of(client.send_goal_async(Fibonacci.Goal(order=1)))
+    while len(states.last) <= _goal_store.UNSPACED:
+        executor.spin_once(timeout_sec=PATIENCE_S)
+    sent = states.count
+    server.may_end.set_result(None)
+    while any(each.is_active for each in server.begun) or len(server.begun) < 20:
+        executor.spin_once(timeout_sec=0.1)
+    assert states.count == sent
+
+    server.server.destroy()
+    while states.last != [GoalStatus.SUCCEEDED] * 20:
+        executor.spin_once(timeout_sec=PATIENCE_S)
+    assert states.count == sent + 1
+
+
+def test_the_states_of_many_goals_are_published_after_a_while(
+    node: Node, executor: SingleThreadedExecutor, result_of: Callable[..., Any]
+) -> None:
+    """What clients know last is the truth, though not each change was sent."""
+    states = States(node)
+    server = Server(node)
+    client = client_of(node)
+    for _ in range(_goal_store.UNSPACED + 10):
+        result_of(client.send_goal_async(Fibonacci.Goal(order=1)))
+
+    server.may_end.set_result(None)
+
+    while states.last != [GoalStatus.SUCCEEDED] * 20:
         executor.spin_once(timeout_sec=PATIENCE_S)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from aionode.errors import brief
 
@@ -12,9 +12,19 @@ if TYPE_CHECKING:
 
     from aionode.clock import TimeBase
     from aionode.clock._time_base import Alarm
-    from aionode.endpoints.actions.goal import GoalKey
 
-__all__ = ["GoalStore", "StatusPace", "checked_max_goals"]
+__all__ = [
+    "MAX_GOALS",
+    "AlarmedGoalStore",
+    "GoalStore",
+    "StatusPace",
+    "StatusSpacing",
+    "checked_max_goals",
+    "full_text",
+]
+
+MAX_GOALS = 1000
+"""How many goals may be active at once, unless a program says otherwise."""
 
 SPACING_S = 0.0001
 """The shortest time between two status messages, in seconds for each goal that they list."""
@@ -37,10 +47,9 @@ def checked_max_goals(max_goals: int, subject: str) -> int:
     return max_goals
 
 
-class StoredGoal(Protocol):
-    """What the store needs of a `ServerGoalHandle`."""
-
-    _key: GoalKey
+def full_text(subject: str, active: int, max_goals: int) -> str:
+    """Return why a server rejects a goal when it has as many as it takes."""
+    return f"{subject}: rejected a goal, as {active} are active: max_goals={max_goals}"
 
 
 class GoalStore(dict[bytes, Any]):
@@ -49,22 +58,21 @@ class GoalStore(dict[bytes, Any]):
     An ended goal is forgotten after a time, or when there are too many, the oldest first.
 
     Args:
-        time_base: Whose steady clock counts.
+        now_ns: Shows the time that counts.
         limit: How many goals may be active at once, and how many that have ended are kept.
-        kept_ns: How long goals are kept after their end.
+        kept_ns: How long goals are kept after their end; negative for ever.
 
     Attributes:
         kept_ns: The same.
     """
 
-    def __init__(self, time_base: TimeBase, limit: int, kept_ns: int) -> None:
+    def __init__(self, now_ns: Callable[[], int], limit: int, kept_ns: int) -> None:
         super().__init__()
-        self._time_base = time_base
+        self._now_ns = now_ns
         self._limit = limit
         self.kept_ns = kept_ns
         # When each kept goal is forgotten. All are kept equally long, so the first is due first.
         self._kept: dict[bytes, int] = {}
-        self._alarm: Alarm | None = None  # for the first, if it waits for its time
 
     @property
     def active(self) -> int:
@@ -76,17 +84,55 @@ class GoalStore(dict[bytes, Any]):
         """Whether no other goal may become active."""
         return self.active >= self._limit
 
-    def add(self, goal: StoredGoal) -> None:
-        """Take a goal that was accepted."""
-        self[goal._key.goal_id] = goal
+    @property
+    def due_ns(self) -> int | None:
+        """When the next goal is to be forgotten; None if none waits for its time."""
+        return None if self.kept_ns < 0 else next(iter(self._kept.values()), None)
 
-    def keep(self, goal_id: bytes) -> None:
-        """Keep a goal that has ended; with no time to keep it, until `forget_ended`."""
+    def keep(self, goal_id: bytes) -> Any | None:
+        """Keep a goal that has ended; return the goal that is forgotten for it, or None."""
+        forgotten = None
         if len(self._kept) >= self._limit:
-            self._forget(next(iter(self._kept)))
-        self._kept[goal_id] = self._time_base.steady_ns() + self.kept_ns
+            forgotten = self._forget(next(iter(self._kept)))
+        self._kept[goal_id] = self._now_ns() + self.kept_ns
+        return forgotten
+
+    def expire(self) -> list[Any]:
+        """Forget the goals whose time is over, and return them."""
+        now_ns = self._now_ns()
+        forgotten = []
+        for goal_id, due_ns in list(self._kept.items()):
+            if due_ns > now_ns or self.kept_ns < 0:
+                break
+            forgotten.append(self._forget(goal_id))
+        return forgotten
+
+    def _forget(self, goal_id: bytes) -> Any:
+        del self._kept[goal_id]
+        return self.pop(goal_id)
+
+
+class AlarmedGoalStore(GoalStore):
+    """A goal store that forgets by itself, when an alarm rings.
+
+    With no time to keep goals, it keeps them until `forget_ended`.
+
+    Args:
+        time_base: Whose steady clock counts.
+        limit, kept_ns: As for `GoalStore`.
+    """
+
+    def __init__(self, time_base: TimeBase, limit: int, kept_ns: int) -> None:
+        super().__init__(time_base.steady_ns, limit, kept_ns)
+        self._time_base = time_base
+        self._alarm: Alarm | None = None  # for the first, if it waits for its time
+
+    def keep(self, goal_id: bytes) -> Any | None:
+        """Keep a goal that has ended; return the goal that is forgotten for it, or None."""
+        forgotten = super().keep(goal_id)
         if self._alarm is None and self.kept_ns:
             self._set_alarm()
+        return forgotten
 
     def forget_ended(self) -> None:
         """Forget the goals that are not to be kept, once their end has been published."""
@@ -104,33 +150,44 @@ class GoalStore(dict[bytes, Any]):
             self._alarm = None
         return goals
 
-    def _forget(self, goal_id: bytes) -> None:
-        del self._kept[goal_id], self[goal_id]
-
     def _set_alarm(self) -> None:
         self._alarm = None
-        if self._kept:
-            due_ns = next(iter(self._kept.values()))
-            self._alarm = self._time_base.call_at(due_ns, self._expire)
+        due_ns = self.due_ns
+        if due_ns is not None:
+            self._alarm = self._time_base.call_at(due_ns, self._on_alarm)
 
-    def _expire(self) -> None:
-        now_ns = self._time_base.steady_ns()
-        for goal_id, due_ns in list(self._kept.items()):
-            if due_ns > now_ns:
-                break
-            self._forget(goal_id)
+    def _on_alarm(self) -> None:
+        self.expire()
         self._set_alarm()
+
+
+class StatusSpacing:
+    """The shortest time between two status messages, which grows with the goals that they list.
+
+    A status message lists every goal that is active or kept, so sending a long list for each change
+    would cost more than the goals themselves. It counts real time, as the list takes that to send,
+    whatever clock the node has.
+    """
+
+    def __init__(self) -> None:
+        self._next_s = 0.0  # when the next message may be sent
+
+    def wait_s(self, now_s: float) -> float:
+        """Return how long the next message has to wait, in seconds; 0 for not at all."""
+        return max(0.0, self._next_s - now_s)
+
+    def note_sent(self, listed: int, now_s: float) -> None:
+        """Note a message with so many goals."""
+        if listed > UNSPACED:
+            self._next_s = now_s + listed * SPACING_S
 
 
 class StatusPace:
     """Decides when the states of all goals are published, after one of them has changed.
 
-    A status message lists every goal that is active or kept, so sending a long list for each change
-    would cost more than the goals themselves. All changes of one iteration of the loop go into one
-    message. With many goals there is a shortest time between two messages as well, which grows with
-    the list; the first change after a rest is sent at once, and the last one always.
-
-    It counts real time, as the list takes that to send, whatever clock the node has.
+    All changes of one iteration of the loop go into one message. With many goals there is a
+    shortest time between two messages as well, see `StatusSpacing`; the first change after a rest
+    is sent at once, and the last one always.
 
     Args:
         send: Publishes the states.
@@ -140,15 +197,16 @@ class StatusPace:
     def __init__(self, send: Callable[[], None], goals: Collection[bytes]) -> None:
         self._send = send
         self._goals = goals
-        self._next_s = 0.0  # of the loop's time: when the next message may be sent
+        self._spacing = StatusSpacing()  # of the loop's time
         self._due: asyncio.Handle | None = None
 
     def note_change(self) -> None:
         """Have the states sent soon."""
         if self._due is None:
             loop = asyncio.get_running_loop()
-            if loop.time() < self._next_s:
-                self._due = loop.call_at(self._next_s, self.flush)
+            wait_s = self._spacing.wait_s(loop.time())
+            if wait_s:
+                self._due = loop.call_later(wait_s, self.flush)
             else:
                 self._due = loop.call_soon(self.flush)
 
@@ -160,5 +218,4 @@ class StatusPace:
         self._due = None
         listed = len(self._goals)
         self._send()
-        if listed > UNSPACED:
-            self._next_s = asyncio.get_running_loop().time() + listed * SPACING_S
+        self._spacing.note_sent(listed, asyncio.get_running_loop().time())

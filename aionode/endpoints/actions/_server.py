@@ -27,7 +27,13 @@ from aionode.endpoints.actions._common import (
     tell_rejected,
 )
 from aionode.endpoints.actions._early_cancels import EarlyCancels
-from aionode.endpoints.actions._goal_store import GoalStore, StatusPace, checked_max_goals
+from aionode.endpoints.actions._goal_store import (
+    MAX_GOALS,
+    AlarmedGoalStore,
+    StatusPace,
+    checked_max_goals,
+    full_text,
+)
 from aionode.endpoints.actions._server_goal import ServerGoalHandle
 from aionode.endpoints.actions.goal import (
     CancelCode,
@@ -158,7 +164,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any] | None
         ) = None,
         result_timeout: float = 10.0,
-        max_goals: int = 1000,
+        max_goals: int = MAX_GOALS,
         concurrent: bool | int = True,
         on_error: OnError = "log",
         offload: bool = False,
@@ -185,7 +191,9 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._checked_result: Callable[[ResultT], ResultT] = snapshotter(self.action_type.Result)
         self._max_goals = checked_max_goals(max_goals, self._subject)
         timeout_ns = seconds_to_ns(result_timeout, f"{self._subject}: result_timeout")
-        self._goals: GoalStore = GoalStore(self._time_base, self._max_goals, timeout_ns)
+        self._goals: AlarmedGoalStore = AlarmedGoalStore(
+            self._time_base, self._max_goals, timeout_ns
+        )
         self._status_pace = StatusPace(self._send_status, self._goals)
         self._early_cancels = EarlyCancels(self._time_base)
         self._accepted: MessageQueue[Any] = MessageQueue(UNLIMITED, CallbackStats(), keep_all=True)
@@ -338,8 +346,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         if not self._goals.is_full:
             return False
         self._logger.warning(
-            f"{self._subject}: rejected a goal, as {self._goals.active} are active: "
-            f"max_goals={self._max_goals}",
+            full_text(self._subject, self._goals.active, self._max_goals),
             throttle_duration_sec=REJECTED_SEC,
         )
         return True
@@ -368,7 +375,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             GoalInfo(goal_id=request.goal_id, stamp=stamp),
             GoalKey(goal_id, stamp_ns(stamp)),
         )
-        self._goals.add(goal)
+        self._goals[goal_id] = goal
         self._publish_status()
         return goal
 

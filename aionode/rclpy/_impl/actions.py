@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import threading
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from aionode.clock import S_TO_NS
+from aionode.clock import S_TO_NS, MachineTime
+from aionode.endpoints.actions._goal_store import GoalStore, StatusSpacing
 from aionode.endpoints.actions.goal import (
     GoalEvent,
     GoalKey,
@@ -27,6 +30,16 @@ if TYPE_CHECKING:
 
 __all__ = ["ActionClientHandle", "ActionServerHandle", "Expiry", "GoalEvent", "GoalState"]
 
+RETRY_S = 0.001
+"""How long states wait for a thread that is sending earlier ones, in seconds."""
+
+steady_ns = MachineTime().steady_ns
+
+
+def now_s() -> float:
+    """Return the steady clock, in seconds."""
+    return steady_ns() / S_TO_NS
+
 
 @dataclass(eq=False)
 class GoalState:
@@ -35,12 +48,10 @@ class GoalState:
     Attributes:
         info: Its id, and when it was accepted.
         status: Its state.
-        ended_ns: When it has ended, by the clock of the server; 0 before.
     """
 
     info: Any
     status: GoalStatus = GoalStatus.ACCEPTED
-    ended_ns: int = 0
 
     @property
     def is_active(self) -> bool:
@@ -141,22 +152,42 @@ class ActionClientHandle(Parts):
 
 
 class Expiry(Destroyable):
-    """When the next goal is to be forgotten: a timer, for wait sets."""
+    """When the next goal is to be forgotten: a timer, for wait sets.
 
-    def __init__(self, node: NodeHandle, clock: ClockHandle) -> None:
+    Attributes:
+        goals: The goals.
+        forgotten: Those that had to make room for others, until an executor has learnt of them.
+    """
+
+    def __init__(self, node: NodeHandle, clock: ClockHandle, goals: GoalStore) -> None:
         super().__init__(node.signal)
         self._clock = clock
-        self.due_ns: int | None = None
+        self.goals = goals
+        self.forgotten: list[GoalState] = []
+
+    def keep(self, goal_id: bytes) -> None:
+        """Keep a goal that has ended for the time of results, and forget the oldest of too many."""
+        forgotten = self.goals.keep(goal_id)
+        if forgotten is not None:
+            self.forgotten.append(forgotten)
+        self.signal.notify()
 
     def ready(self) -> bool:
-        """Return whether one is to be forgotten now."""
-        return self.due_ns is not None and self._clock.clock.now_ns() >= self.due_ns
+        """Return whether one is to be forgotten now, or was."""
+        due_ns = self.goals.due_ns
+        return bool(self.forgotten) or (due_ns is not None and self._clock.clock.now_ns() >= due_ns)
 
     def due_in_ns(self) -> int | None:
         """Return how long it is until then; None if no goal has ended."""
-        if self.due_ns is None or self._clock.clock.ros_time_is_active:
+        due_ns = self.goals.due_ns
+        if due_ns is None or self._clock.clock.ros_time_is_active:
             return None
-        return max(0, self.due_ns - self._clock.clock.now_ns())
+        return max(0, due_ns - self._clock.clock.now_ns())
+
+    def take(self) -> list[GoalState]:
+        """Forget the goals whose time is over; return all that were forgotten."""
+        forgotten, self.forgotten = self.forgotten, []
+        return forgotten + self.goals.expire()
 
 
 class ActionServerHandle(Parts):
@@ -174,12 +205,12 @@ class ActionServerHandle(Parts):
         feedback_qos: Any,
         status_qos: Any,
         result_timeout: float,
+        max_goals: int,
     ) -> None:
         super().__init__(node)
         impl = action_type.Impl
         name = f"{node.resolve(action_name)}/_action"
-        self._clock = clock
-        self._timeout_ns = int(result_timeout * 1e9)
+        self._io = node.io
         self.action_type = action_type
         self._status_message = message_like(action_type, "action_msgs/msg/GoalStatus")
         # Held until the states are sent: none may arrive after a newer one. A handler of a signal
@@ -187,7 +218,9 @@ class ActionServerHandle(Parts):
         self._status_lock = threading.RLock()
         self._is_sending_status = False
         self._has_newer_status = False
-        self.goals: dict[bytes, GoalState] = {}
+        self._waits_to_send = False
+        self._spacing = StatusSpacing()
+        self.goals = GoalStore(clock.clock.now_ns, max_goals, int(result_timeout * 1e9))
         self.goal = ServiceHandle(node, impl.SendGoalService, f"{name}/send_goal", goal_qos)
         self.parts.append(self.goal)
         self.cancel = ServiceHandle(node, impl.CancelGoalService, f"{name}/cancel_goal", cancel_qos)
@@ -200,7 +233,7 @@ class ActionServerHandle(Parts):
         self.parts.append(self.feedback)
         self.status = PublisherHandle(node, impl.GoalStatusMessage, f"{name}/status", status_qos)
         self.parts.append(self.status)
-        self.expiry = Expiry(node, clock)
+        self.expiry = Expiry(node, clock, self.goals)
         self.parts.append(self.expiry)
 
     def add_goal(self, info: Any) -> GoalState:
@@ -209,56 +242,66 @@ class ActionServerHandle(Parts):
         Raises:
             RCLError: there is one of this id.
         """
-        state = GoalState(info)
-        if self.goals.setdefault(bytes(info.goal_id.uuid), state) is not state:
+        goal_id = bytes(info.goal_id.uuid)
+        if goal_id in self.goals:
             raise RCLError("Failed to accept new goal: goal ID already exists")
+        state = self.goals[goal_id] = GoalState(info)
         return state
 
     def publish_status(self) -> None:
-        """Publish the states of all goals."""
+        """Publish the states of all goals: at once, or after a while if they are many."""
         with self._status_lock:
             self._has_newer_status = True
-            if self._is_sending_status:
+            if self._is_sending_status or self._waits_to_send:
                 return
-            self._is_sending_status = True
-            try:
-                while self._has_newer_status:
-                    self._has_newer_status = False
-                    self._publish_status()
-            finally:
-                self._is_sending_status = False
+            wait_s = self._spacing.wait_s(now_s())
+            if wait_s:
+                self._waits_to_send = True
+                self._io.post(partial(self._send_later, wait_s))
+            else:
+                self._send_status()
 
-    def _publish_status(self) -> None:
+    def _send_later(self, wait_s: float) -> None:
+        self._io.loop.call_later(wait_s, self._send_waiting)
+
+    def _send_waiting(self) -> None:
+        """Send the states that had to wait; in the thread of the context."""
+        # That must not wait for a thread which may be waiting for it, inside of the lock.
+        if not self._status_lock.acquire(blocking=False):
+            self._send_later(RETRY_S)
+            return
+        try:
+            if self._waits_to_send:
+                self._waits_to_send = False
+                with suppress(RCLError):  # nobody can be told after shutdown
+                    self._send_status()
+        finally:
+            self._status_lock.release()
+
+    def _send_status(self) -> None:
+        self._is_sending_status = True
+        try:
+            while self._has_newer_status:
+                self._has_newer_status = False
+                goals = list(self.goals.values())
+                self.status.publish(self._status_of(goals))
+                self._spacing.note_sent(len(goals), now_s())
+        finally:
+            self._is_sending_status = False
+
+    def _status_of(self, goals: list[GoalState]) -> Any:
         message = self.action_type.Impl.GoalStatusMessage()
         message.status_list = [
-            self._status_message(goal_info=goal.info, status=int(goal.status))
-            for goal in list(self.goals.values())
+            self._status_message(goal_info=goal.info, status=int(goal.status)) for goal in goals
         ]
-        self.status.publish(message)
+        return message
 
-    def notify_goal_done(self) -> None:
-        """Note which goals have ended, to forget them after the time for results."""
-        now_ns = self._clock.clock.now_ns()
-        ended = [goal for goal in list(self.goals.values()) if not goal.is_active]
-        for goal in ended:
-            goal.ended_ns = goal.ended_ns or now_ns
-        if self._timeout_ns < 0:
-            return
-        self.expiry.due_ns = min((goal.ended_ns + self._timeout_ns for goal in ended), default=None)
-        self.signal.notify()
-
-    def expire_goals(self) -> list[Any]:
-        """Forget the goals whose time is over, and return their infos."""
-        now_ns = self._clock.clock.now_ns()
-        over = [
-            (goal_id, goal)
-            for goal_id, goal in list(self.goals.items())
-            if goal.ended_ns and now_ns - goal.ended_ns >= self._timeout_ns
-        ]
-        for goal_id, _ in over:
-            del self.goals[goal_id]
-        self.notify_goal_done()
-        return [goal.info for _, goal in over]
+    def _destroy(self) -> None:
+        if getattr(self, "_waits_to_send", False):
+            self._io.post(self._send_waiting)
+            self._io.post(super()._destroy)
+        else:
+            super()._destroy()
 
     def process_cancel_request(self, request: Any) -> Any:
         """Return the response to a request to cancel: the goals that its id and time select.

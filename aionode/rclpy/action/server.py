@@ -7,6 +7,8 @@ import traceback as tracebacks
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic
 
+from aionode.endpoints.actions._common import REJECTED_SEC
+from aionode.endpoints.actions._goal_store import MAX_GOALS, checked_max_goals, full_text
 from aionode.endpoints.actions.goal import (
     CancelResponse,
     GoalEvent,
@@ -104,9 +106,11 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
             if self._goal_handle is None:
                 return
             self._goal_handle.update(event)
-            self._action_server._handle.publish_status()
+            handle = self._action_server._handle
             if not self._goal_handle.is_active:
-                self._action_server.notify_goal_done()
+                with self._action_server._lock:
+                    handle.expiry.keep(bytes(self.goal_id.uuid))
+            handle.publish_status()
 
     def execute(self, execute_callback: Callable[[AnyGoalHandle], Any] | None = None) -> None:
         """Have an executor call the execute callback; by default that of the server."""
@@ -182,6 +186,8 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         goal_service_qos_profile, result_service_qos_profile, cancel_service_qos_profile,
             feedback_pub_qos_profile, status_pub_qos_profile: QoS of its services and topics.
         result_timeout: For how many seconds results are kept; negative for ever.
+        max_goals: How many goals may be active at once; those beyond are rejected before
+            `goal_callback` is asked. So many results are kept, too. rclpy has no such argument.
     """
 
     def __init__(
@@ -203,6 +209,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         feedback_pub_qos_profile: QoSProfile = FEEDBACK_QOS,
         status_pub_qos_profile: QoSProfile = qos_profile_action_status_default,
         result_timeout: float = 10,
+        max_goals: int = MAX_GOALS,
     ) -> None:
         super().__init__(callback_group or node.default_callback_group)
         self._lock = threading.RLock()
@@ -225,7 +232,10 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
                 feedback_pub_qos_profile,
                 status_pub_qos_profile,
                 result_timeout,
+                checked_max_goals(max_goals, f"action server {action_name}"),
             )
+        self._action_name = action_name
+        self._max_goals = max_goals
         self._goal_handles: dict[bytes, AnyGoalHandle] = {}
         self._result_futures: dict[bytes, Future[Any]] = {}
         self._reasons: dict[bytes, str] = {}  # why goals were aborted
@@ -244,7 +254,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         info = message_like(self._action_type, "action_msgs/msg/GoalInfo")()
         info.goal_id = goal_id
         accepted = False
-        if bytes(goal_id.uuid) not in self._handle.goals:
+        if bytes(goal_id.uuid) not in self._handle.goals and not self._is_full():
             answer = await await_or_execute(self._goal_callback, request.goal)
             if isinstance(answer, GoalResponse):
                 accepted = answer is GoalResponse.ACCEPT
@@ -260,6 +270,17 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         if goal_handle is not None:
             self._handle.publish_status()
             await await_or_execute(self._handle_accepted_callback, goal_handle)
+
+    def _is_full(self) -> bool:
+        """Return whether `max_goals` are active; if so, say why another one is rejected."""
+        goals = self._handle.goals
+        if not goals.is_full:
+            return False
+        self._logger.warning(
+            full_text(f"action server {self._action_name}", goals.active, self._max_goals),
+            throttle_duration_sec=REJECTED_SEC,
+        )
+        return True
 
     def _accept(self, info: Any, goal: Any) -> AnyGoalHandle | None:
         now = self._node.get_clock().now().to_msg()  # its class may be of the other family
@@ -380,7 +401,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
                 if header is not None:
                     data[name] = (header, request)
             if handle.expiry.ready():
-                data["expired"] = handle.expire_goals()
+                data["expired"] = [goal.info for goal in handle.expiry.take()]
         return data
 
     async def execute(self, taken_data: dict[str, Any]) -> None:
@@ -417,11 +438,6 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
             executor.create_task(
                 self._execute_goal, execute_callback or self._execute_callback, goal_handle
             )
-
-    def notify_goal_done(self) -> None:
-        """Note that a goal has ended."""
-        with self._lock:
-            self._handle.notify_goal_done()
 
     # Callbacks
 
