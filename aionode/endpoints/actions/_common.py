@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from aionode.qos import QoSProfile
 
 __all__ = [
-    "REJECTED_SEC",
     "AbortReason",
     "ActionEntity",
     "awaited",
@@ -30,6 +29,7 @@ __all__ = [
     "pass_reason",
     "seconds_to_ns",
     "stamp_ns",
+    "tell_full",
     "tell_rejected",
     "uuid_message",
 ]
@@ -105,6 +105,14 @@ def pass_reason(error: Exception, context: CallbackContext) -> None:  # noqa: AR
 def tell_rejected(logger: RcutilsLogger, subject: str) -> None:
     """Log that a server rejected a goal; once a second at most, whatever clients send."""
     logger.info(f"{subject}: goal_callback rejected a goal", throttle_duration_sec=REJECTED_SEC)
+
+
+def tell_full(logger: RcutilsLogger, subject: str, active: int, max_goals: int) -> None:
+    """Log that a server rejected a goal, as it has as many as it takes; once a second at most."""
+    logger.warning(
+        f"{subject}: rejected a goal, as {active} are active: max_goals={max_goals}",
+        throttle_duration_sec=REJECTED_SEC,
+    )
 
 
 # Arguments

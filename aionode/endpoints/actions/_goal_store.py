@@ -20,7 +20,6 @@ __all__ = [
     "StatusPace",
     "StatusSpacing",
     "checked_max_goals",
-    "full_text",
 ]
 
 MAX_GOALS = 1000
@@ -45,11 +44,6 @@ def checked_max_goals(max_goals: int, subject: str) -> int:
     if max_goals < 1:
         raise ValueError(f"{subject}: max_goals={max_goals}; it must be at least 1")
     return max_goals
-
-
-def full_text(subject: str, active: int, max_goals: int) -> str:
-    """Return why a server rejects a goal when it has as many as it takes."""
-    return f"{subject}: rejected a goal, as {active} are active: max_goals={max_goals}"
 
 
 class GoalStore(dict[bytes, Any]):

@@ -15,7 +15,6 @@ from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints._core.node_tasks import create_own_task
 from aionode.endpoints.actions._client_watch import ClientWatch, announcing
 from aionode.endpoints.actions._common import (
-    REJECTED_SEC,
     AbortReason,
     ActionEntity,
     awaited,
@@ -24,6 +23,7 @@ from aionode.endpoints.actions._common import (
     pass_reason,
     seconds_to_ns,
     stamp_ns,
+    tell_full,
     tell_rejected,
 )
 from aionode.endpoints.actions._early_cancels import EarlyCancels
@@ -32,7 +32,6 @@ from aionode.endpoints.actions._goal_store import (
     AlarmedGoalStore,
     StatusPace,
     checked_max_goals,
-    full_text,
 )
 from aionode.endpoints.actions._server_goal import ServerGoalHandle
 from aionode.endpoints.actions.goal import (
@@ -345,10 +344,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         """Return whether `max_goals` are active; if so, say why another one is rejected."""
         if not self._goals.is_full:
             return False
-        self._logger.warning(
-            full_text(self._subject, self._goals.active, self._max_goals),
-            throttle_duration_sec=REJECTED_SEC,
-        )
+        tell_full(self._logger, self._subject, self._goals.active, self._max_goals)
         return True
 
     async def _welcomes(self, goal: GoalT) -> bool:

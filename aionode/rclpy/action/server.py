@@ -7,8 +7,8 @@ import traceback as tracebacks
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic
 
-from aionode.endpoints.actions._common import REJECTED_SEC
-from aionode.endpoints.actions._goal_store import MAX_GOALS, checked_max_goals, full_text
+from aionode.endpoints.actions._common import tell_full
+from aionode.endpoints.actions._goal_store import MAX_GOALS, checked_max_goals
 from aionode.endpoints.actions.goal import (
     CancelResponse,
     GoalEvent,
@@ -276,10 +276,8 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         goals = self._handle.goals
         if not goals.is_full:
             return False
-        self._logger.warning(
-            full_text(f"action server {self._action_name}", goals.active, self._max_goals),
-            throttle_duration_sec=REJECTED_SEC,
-        )
+        subject = f"action server {self._action_name}"
+        tell_full(self._logger, subject, goals.active, self._max_goals)
         return True
 
     def _accept(self, info: Any, goal: Any) -> AnyGoalHandle | None:
