@@ -109,8 +109,12 @@ class StandIn:
 
 
 def hush(quiet: threading.Event) -> None:
-    """Wait for a line, after which nothing is published."""
-    sys.stdin.readline()
+    """Wait until it is told to be quiet, after which nothing is published.
+
+    It moves wheels without being told to.
+    """
+    while sys.stdin.readline().strip() == "move":
+        pass
     quiet.set()
 
 

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from aionode.action import ServerGoalHandle
 from aionode.context import Context
+from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
@@ -32,6 +34,8 @@ pytestmark = [
     pytest.mark.one_loop,
     pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc"),
 ]
+
+Fibonacci.Result()  # loads numpy, which filters warnings of its own
 
 ROUTES = ("local", "link", "zenoh")
 
@@ -124,10 +128,21 @@ async def test_a_node_that_fails_leaves_the_process_as_it_was(route: str, tmp_pa
         await fail_over(route)
 
 
+async def work(_: ServerGoalHandle[Any, Any, Any]) -> Fibonacci.Result:
+    """Never finish by itself."""
+    await asyncio.Event().wait()
+    return Fibonacci.Result()
+
+
 async def fail_over(route: str) -> None:
-    """Run nodes one of which fails at a message."""
+    """Run nodes one of which fails at a message, while a goal runs and one of its calls waits."""
     async with nodes_over(route) as nodes:
         await exchange(nodes)
+        nodes.b.create_action_server(Fibonacci, "work", execute_callback=work)
+        client = nodes.a.create_action_client(Fibonacci, "work")
+        await client.wait_for_server()
+        goal = await client.send_goal(Fibonacci.Goal(order=5))
+        assert goal.accepted
         nodes.b.create_subscription(Int32, "mistakes", fail, 10)
         publisher = nodes.a.create_publisher(Int32, "mistakes", 10)
         await publisher.wait_for_subscribers()

@@ -34,6 +34,8 @@ class Stopped(msgspec.Struct):
         raw_s: From the fault until the wheels were told to stop; infinite if they went on.
         own_s: The same without the time for which the mover or the wheels waited for a core.
         late: How many commands moved them after they had stopped, while they were watched.
+        moved: How many moved them after the fault, while they were watched.
+        moved_s: From the fault until the last of these.
         wrong: What else was wrong.
         void: Why the run shows nothing, such as wheels that stood still before the fault; empty if
             it does.
@@ -42,6 +44,8 @@ class Stopped(msgspec.Struct):
     raw_s: float = math.inf
     own_s: float = math.inf
     late: int = 0
+    moved: int = 0
+    moved_s: float = 0.0
     wrong: list[str] = []
     void: str = ""
 
@@ -128,12 +132,16 @@ class Motion(msgspec.Struct, frozen=True):
             return [outcome.void]
         found = list(outcome.wrong)
         if self.limit_s is None:
-            if math.isfinite(outcome.raw_s):
+            # One that is back may have lost its connections meanwhile, and be taken for gone then.
+            was_back = 0 < self.lasts_s <= outcome.raw_s
+            if math.isfinite(outcome.raw_s) and not was_back:
                 found.append(f"stopped after {outcome.raw_s:.2f} s, though nothing can stop it")
             return found
         limit_s = self.limit_s + self.allowed_s + spare_s
         if math.isinf(outcome.own_s):
-            found.append("did not stop")
+            found.append(
+                f"did not stop: {outcome.moved} commands, the last {outcome.moved_s:.2f} s on"
+            )
         elif outcome.own_s > limit_s:
             found.append(f"stopped after {outcome.own_s:.2f} s, not {limit_s:.1f} s")
         if outcome.late:
@@ -191,4 +199,11 @@ def stopped(
         for each in moves
         if stop_s < each.time_s < until_s and not (motion.returns and each.sent_s > stop_s)
     ]
-    return Stopped(raw_s=stop_s - struck_s, own_s=stop_s - struck_s, late=len(late))
+    after_s = [each.time_s - struck_s for each in moves if struck_s < each.time_s < until_s]
+    return Stopped(
+        raw_s=stop_s - struck_s,
+        own_s=stop_s - struck_s,
+        late=len(late),
+        moved=len(after_s),
+        moved_s=max(after_s, default=0.0),
+    )

@@ -28,10 +28,9 @@ DDS_LEASE_S = 20.0
 """After which Fast DDS takes a participant for gone, in seconds."""
 
 ROS_LEASE_S = 60.0
-"""After which rmw_zenoh does."""
-
-LEASE_S = 10.0
-"""And aionode's own sessions: a node of ROS 2 that wakes after that leaves, and comes again."""
+"""After which rmw_zenoh does. Its own sessions lose aionode's after 10 s: a frozen node
+that is back later may have to connect anew, and is gone for a moment then.
+"""
 
 PYTHON_VARIABLE = "AIONODE_FAULTS_ROS_PYTHON"
 """The interpreter of an environment that has rclpy, and aionode with its extra ``ros``."""
@@ -127,22 +126,18 @@ def publishers(place: Place, who: str, mover: Role, *ways: Any) -> Iterator[Moti
         )
 
 
-def clients(
-    place: Place, who: str, mover: Role, leases_s: tuple[float, float], *ways: Any
-) -> Iterator[Motion]:
+def clients(place: Place, who: str, mover: Role, lease_s: float, *ways: Any) -> Iterator[Motion]:
     """Yield what ``on_client_lost`` does against a client of ROS 2, which gives no sign of life.
 
     Args:
         place: Where.
         who: For the table.
         mover: The process of the client.
-        leases_s: What is over sooner does not show; and after which its middleware takes it for
-            gone at the latest.
+        lease_s: After which its middleware takes it for gone; what is over sooner does not show.
         ways: In which ways it goes.
     """
-    shows_after_s, gone_s = leases_s
     for goes, strike, lasts_s in ways:
-        shows = not lasts_s or lasts_s > shows_after_s
+        shows = not lasts_s or lasts_s > lease_s
         yield Motion(
             place,
             who,
@@ -152,7 +147,7 @@ def clients(
             SERVER,
             strike,
             ("lost",) if shows else (),
-            gone_s + LOST_S if shows else None,
+            lease_s + LOST_S if shows else None,
             allowed_s=0.5,
             lasts_s=lasts_s,
             ends=not lasts_s,
@@ -197,7 +192,7 @@ def ros_motions() -> Iterator[Motion]:
     for way in ("link", "Zenoh"):
         place = layer(way)
         yield from publishers(place, "a publisher of aionode's rclpy", rclpy[0], *ENDS, *freezes(5))
-        yield from clients(place, "a client of aionode's rclpy", rclpy[1], (0.0, 0.0), *ENDS[:1])
+        yield from clients(place, "a client of aionode's rclpy", rclpy[1], 0.0, *ENDS[:1])
     dds = over_dds("aionode")
     yield from publishers(dds, "a publisher of rclpy", rclpy[0], *ENDS, *freezes(5, 14))
     yield from clients(
@@ -205,7 +200,7 @@ def ros_motions() -> Iterator[Motion]:
         "a client of rclpy",
         rclpy[1],
         # Also after SIGINT: rclpy's action clients keep their participant.
-        (DDS_LEASE_S, DDS_LEASE_S),
+        DDS_LEASE_S,
         *ENDS[:2],
         *freezes(5, 30),
     )
@@ -216,7 +211,7 @@ def ros_motions() -> Iterator[Motion]:
         zenoh,
         "a client of ROS 2",
         ros[1],
-        (LEASE_S, ROS_LEASE_S),
+        ROS_LEASE_S,
         ENDS[0],
         *freezes(5, 14, 70),
     )

@@ -122,7 +122,12 @@ class Play:
                     pass
                 self.never = ""
         if self.never or not self.child.runs:
-            self.never = f"never moved: {self.child.output()[-200:]}"
+            told = len(self.handed()), self.stops_since(0.0), self.stops_since(self._told_s)
+            self.never = (
+                "never moved steadily: {} commands and stops, {} stops, {} of them in the last "
+                "second: ".format(*told)
+                + self.child.output()[-200:]
+            )
 
     async def _moves(self) -> bool:
         """Tell the movers to move; return whether they then do so for some time."""
