@@ -385,17 +385,19 @@ class SilenceWatch:
                 continue
             if not len(reader):
                 continue
-            rest = handle(*reader.pop())
-            if rest is not None:
-                self._go_on(tasks, rest)
+            self._go_on(tasks, handle(*reader.pop()))
             self._note_handed()
             if perf_ns() >= turn_ends_ns:
                 await checkpoint()
                 turn_ends_ns = perf_ns() + SLICE_NS
 
-    def _go_on(self, tasks: asyncio.TaskGroup, rest: Coroutine[Any, Any, None]) -> None:
+    def _go_on(self, tasks: asyncio.TaskGroup, rest: Coroutine[Any, Any, None] | None) -> None:
         """Have the rest of a callback run, unless the callback has ended the last publisher."""
+        if rest is None:
+            return
         if self._due:
+            # Python 3.12 and newer keep what it would await until `rest` itself goes: nothing else
+            # may refer to it, as garbage is finalized in any order, with a warning for a coroutine.
             rest.close()
             return
         task = create_own_task(tasks, rest)

@@ -234,9 +234,12 @@ class Recovery:
             self._check_in(declared_s / 2)
             return
         silent = {zid for zid in self._returned if self._cuts[zid] < ATTEMPTS}
-        self._returned.clear()
+        # Until they declare: if Zenoh takes their new connections for links of the old ones once
+        # more, no event tells of it.
+        self._returned = silent
         if silent:
             self._cuts.update(silent)
+            self._check_in(declared_s)
             logger.info(
                 "processes %s are connected but declare nothing; cutting their connections, so "
                 "that Zenoh makes them anew",
@@ -244,7 +247,7 @@ class Recovery:
             )
             start_thread(
                 threading.Thread(
-                    target=cut_participants, args=(session, silent), name="aionode-zenoh"
+                    target=cut_participants, args=(session, silent.copy()), name="aionode-zenoh"
                 )
             )
 

@@ -677,7 +677,32 @@ async def test_a_participant_that_is_connected_and_declares_nothing_is_connected
         first._recovery._check_returned()
         await until(lambda: "b2" in first._state.acknowledgements.present)
 
-        assert first._recovery._cuts == {"b2": 1}
+        assert first._recovery._cuts["b2"]
+
+
+async def test_a_participant_that_still_declares_nothing_is_connected_anew_once_more(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Its two connections were cut one after the other: Zenoh took the third for one of theirs."""
+    monkeypatch.setattr(recovery, "DECLARED_S", 0.2)
+    cut_participants = recovery.cut_participants
+    cuts: list[set[str]] = []
+
+    def cut(session: zenoh.Session, zids: set[str]) -> None:
+        cuts.append(zids)
+        if len(cuts) > 1:
+            cut_participants(session, zids)
+
+    monkeypatch.setattr(recovery, "cut_participants", cut)
+    async with (
+        asyncio.timeout(4 * LIMIT_S),
+        context("a1") as first,
+        silent_after_return(first, "b2"),
+    ):
+        first._recovery._check_returned()
+        await until(lambda: "b2" in first._state.acknowledgements.present)
+
+    assert len(cuts) > 1
 
 
 async def test_many_that_declare_nothing_are_cut_too() -> None:
