@@ -83,7 +83,6 @@ def all_attacks() -> list[Attack]:
             "post_batch",
             pair("on"),
             replaced="talker",
-            issue=OPEN,
         ),
         Attack("HEARTBEAT up to 2^62", "member", "heartbeat", pair()),
         Attack("GAP up to 2^62", "member", "gap", pair()),

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager, suppress
 from typing import Any
 
@@ -207,9 +207,9 @@ class Liar:
             acknack.pack(kind, writer.gid, reader.gid, first, last, rest),
         )
 
-    def post(self, reader: EndpointInfo, frames: Iterable[bytes]) -> None:
+    def post(self, reader: EndpointInfo, batch: bytes) -> None:
         """Send frames to a context, as what a link could not deliver."""
-        self.put(f"@aionode/{self.domain}/{reader.node.participant}/post", b"".join(frames))
+        self.put(f"@aionode/{self.domain}/{reader.node.participant}/post", batch)
 
     def ask(self, service: str, interface: Any, request: Any, *, wait_s: float = 0.0) -> int:
         """Send a request; return the size of its answer, 0 if nobody waits for it.

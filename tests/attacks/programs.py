@@ -26,6 +26,7 @@ from aionode.interfaces.std_msgs.msg import String
 from aionode.qos import DurabilityPolicy, HistoryPolicy, LivelinessPolicy, QoSProfile
 from aionode.transport._local_sessions import announce
 from aionode.transport.ipc import _protocol as protocol
+from aionode.transport.ipc._continuation import STOPS, seal
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
 from aionode.wire._acknack import SubmessageKind
@@ -159,11 +160,10 @@ def post_batch(liar: Liar, seconds: float) -> int:
     begun()
     for number in pace(seconds, 100):
         payload = cdr.encode(String(data=forged_text(number)))
-        hello = protocol.Hello(talker.node.participant, protocol.VERSION, liar.domain).pack()
-        frame = protocol.pack(
-            protocol.Kind.DATA, number + 100_000, time.time_ns(), talker.gid, payload
-        )
-        liar.post(listener, [hello, frame, protocol.RetransmitDone().pack()])
+        for kind, batch in ((protocol.Kind.DATA, number + 1), (protocol.Kind.STOP, STOPS)):
+            frame = protocol.pack(kind, number + 100_000, time.time_ns(), talker.gid, payload)
+            done = protocol.RetransmitDone().pack() if batch else b""
+            liar.post(listener, seal(os.urandom(protocol.SECRET_SIZE), batch, frame + done))
     return number + 1
 
 

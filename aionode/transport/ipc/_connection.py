@@ -6,6 +6,7 @@ import array
 import asyncio
 import logging
 import os
+import secrets
 import socket
 from collections import deque
 from contextlib import suppress
@@ -17,6 +18,7 @@ from aionode.errors import FrameError
 from aionode.transport.ipc import _protocol as protocol
 from aionode.transport.ipc._protocol import (
     HEADER_SIZE,
+    SECRET_SIZE,
     BufferRef,
     Forget,
     FrameParser,
@@ -132,6 +134,7 @@ class Connection:
 
     Attributes:
         participant: The context at the other end; empty before its `Hello`.
+        secret: By what the other end knows this one when Zenoh continues the link.
         pool: The buffers of this context.
         receivers: The subscriptions here that hear publishers of the other process.
     """
@@ -144,6 +147,7 @@ class Connection:
         owner: LinkOwner,
     ) -> None:
         self.participant = ""
+        self.secret = secrets.token_bytes(SECRET_SIZE)
         self.pool = pool
         self.receivers = ReceiverTable()
         self._loop = loop
@@ -151,7 +155,7 @@ class Connection:
         self._fd = sock.fileno()
         self._owner = owner
         self._parser = FrameParser()
-        self._max_held = HEADER_SIZE - 1  # a Hello is a header without payload
+        self._max_held = HEADER_SIZE + SECRET_SIZE - 1  # a Hello is a header and a secret
         # Descriptors that were received before the rest of their frames.
         self._descriptors: deque[int] = deque()
         self._ancillary = socket.CMSG_SPACE(DESCRIPTORS * array.array("i").itemsize)

@@ -11,6 +11,7 @@ from aionode.clock import MachineTime
 from aionode.errors import FrameError, TransportError
 from aionode.graph import EndpointKind
 from aionode.transport.ipc._connection import Connection, flush
+from aionode.transport.ipc._continuation import STOPS, LinkSecrets, seal
 from aionode.transport.ipc._endpoint_table import EndpointTable, communicate_by_link
 from aionode.transport.ipc._protocol import (
     VERSION,
@@ -26,7 +27,6 @@ from aionode.transport.ipc._protocol import (
     Opened,
     RetransmitDone,
     Switched,
-    unpack_batch,
 )
 from aionode.transport.ipc._publisher import IpcWriter
 from aionode.transport.ipc._service import REPLY, IpcRequester, IpcServer, server_of
@@ -107,7 +107,7 @@ class LinkManager:
         self.requesters: dict[bytes, IpcRequester] = {}
         self._peer_directory = peer_directory
         self.content_filters = peer_directory.content_filters
-        self._hello = Hello(participant, VERSION, domain_id)
+        self._secrets = LinkSecrets()
         self._domain_id = domain_id
         self._graph: Graph | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -161,6 +161,7 @@ class LinkManager:
         self._near.clear()
         self._backoff.clear()
         self._failures.clear()
+        self._secrets.clear()
         self.pool.close()
         self._graph = None
 
@@ -221,9 +222,9 @@ class LinkManager:
         timer = self._loop.call_later(delay_s, run)
         self._timers.add(timer)
 
-    def post(self, participant: str, frame: bytes) -> None:
-        """Send a frame to one other context over Zenoh; from any thread. It may be lost."""
-        self._peer_directory.post(participant, self._hello.pack() + frame)
+    def post(self, connection: Connection, stop: bytes) -> None:
+        """Send a STOP to the other end of a link over Zenoh; from any thread. It may be lost."""
+        self._peer_directory.post(connection.participant, seal(connection.secret, STOPS, stop))
 
     def keep(self, gid: bytes, send_queue: IpcSendQueue) -> None:
         """Keep what a destroyed publisher left to be sent or confirmed."""
@@ -394,7 +395,7 @@ class LinkManager:
             for one in accepted[: max(len(accepted) - MAX_OPENING, 0)]:
                 one.close()
             self.later(HELLO_S, lambda: self._close_if_silent(connection))
-        connection.send(self._hello)
+        connection.send(Hello(self.participant, VERSION, self._domain_id, connection.secret))
 
     def _close_if_silent(self, connection: Connection) -> None:
         if connection in self._opening:
@@ -412,6 +413,7 @@ class LinkManager:
         if participant in self._links or participant == self.participant:
             raise FrameError(f"a second link to {participant}")
         connection.accept_hello(participant)
+        self._secrets.add(participant, hello.secret)
         self._opening.pop(connection, None)
         self._backoff.discard(participant)
         self._failures.pop(participant, None)
@@ -545,21 +547,21 @@ class LinkManager:
         for key in [key for key in self._ending if key[0] is connection]:
             unacked += self._ending.pop(key).unacked()
         unacked.append(RetransmitDone().pack())
-        hello = self._hello.pack()
-        batch = [hello]
-        size = 0
+        batch: list[bytes] = []
+        size, number = 0, 1
         for data in unacked:
             batch.append(data)
             size += len(data)
             if size >= RETRANSMIT_BYTES or data is unacked[-1]:
-                self._peer_directory.retransmit(connection.participant, b"".join(batch))
-                batch = [hello]
-                size = 0
+                sealed = seal(connection.secret, number, b"".join(batch))
+                self._peer_directory.retransmit(connection.participant, sealed)
+                batch.clear()
+                size, number = 0, number + 1
 
     def _on_retransmit(self, data: bytes) -> None:
         """Take what another context could not deliver over its link."""
         try:
-            sender, frames = unpack_batch(data)
+            sender, frames = self._secrets.unseal(data)
         except FrameError as error:
             self._malformed += 1
             if self._malformed == 1:

@@ -30,6 +30,7 @@ __all__ = [
     "MAX_INLINE",
     "MESSAGE_HEADER",
     "MESSAGE_MARK",
+    "SECRET_SIZE",
     "VERSION",
     "BufferRef",
     "Cancel",
@@ -53,7 +54,6 @@ __all__ = [
     "decode_control",
     "has_fd",
     "pack",
-    "unpack_batch",
 ]
 
 Handler = Callable[[bytes | bytearray | memoryview, int, int, int], None]
@@ -61,12 +61,14 @@ Handler = Callable[[bytes | bytearray | memoryview, int, int, int], None]
 callback may run within the call.
 """
 
-VERSION: Final = 2
+VERSION: Final = 3
 """Version of this format; only equal versions can be linked."""
 
 GID_SIZE: Final = 16
 
 NO_GID: Final = bytes(GID_SIZE)
+
+SECRET_SIZE: Final = 16
 
 MAX_INLINE: Final = 1 << 26
 """The largest payload in the stream, in bytes; a larger size means that the stream is corrupt."""
@@ -323,17 +325,27 @@ class Hello(Control, frozen=True, gc=False):
     """Id of the context: hexadecimal, without leading zeros."""
     version: int
     domain_id: int
+    secret: bytes
+    """What continues the link over Zenoh proves by this who has sent it."""
 
     def pack(self) -> bytes:
         """Return the frame as bytes."""
         gid = int(self.participant, 16).to_bytes(GID_SIZE, "big")
-        return pack(Kind.HELLO, self.version, self.domain_id, gid)
+        return pack(Kind.HELLO, self.version, self.domain_id, gid, self.secret)
 
     @classmethod
     def from_frame(cls, frame: Frame) -> Self:
-        """Return what `pack` wrote."""
+        """Return what `pack` wrote.
+
+        Raises:
+            FrameError: there is no secret in it.
+        """
+        if len(frame.payload) != SECRET_SIZE:
+            raise FrameError(
+                f"expected HELLO with a secret of {SECRET_SIZE} bytes, got {len(frame.payload)}"
+            )
         participant = f"{int.from_bytes(frame.gid, 'big'):x}"
-        return cls(participant, frame.sequence, frame.source_ns)
+        return cls(participant, frame.sequence, frame.source_ns, frame.payload)
 
 
 class OfSubscription(Control, frozen=True, gc=False):
@@ -562,19 +574,6 @@ def decode_control(frame: Frame) -> Control:
     if control is None or frame.in_shm:
         raise FrameError(f"expected a control frame, got kind {frame.kind}")
     return control.from_frame(frame)
-
-
-def unpack_batch(data: bytes) -> tuple[str, list[Frame]]:
-    """Return the context that has retransmitted `data`, and the frames after its Hello.
-
-    Raises:
-        FrameError: it cannot be read.
-    """
-    frames = FrameParser().feed(data)
-    hello = decode_control(frames[0]) if frames else None
-    if not isinstance(hello, Hello):
-        raise FrameError("expected HELLO as the first frame")
-    return hello.participant, frames[1:]
 
 
 def subscription_in(frame: Frame) -> bytes:

@@ -50,8 +50,8 @@ class LinkRegistry(Protocol):
     def later(self, delay_s: float, call: Callable[[], None]) -> None:
         """Call `call` after a delay, unless the links are closed before."""
 
-    def post(self, participant: str, frame: bytes) -> None:
-        """Send a frame to one other context over the other transport; from any thread.
+    def post(self, connection: Connection, stop: bytes) -> None:
+        """Send a STOP to the other end of a link over the other transport; from any thread.
 
         It may be lost.
         """

@@ -84,7 +84,7 @@ class IpcStop(StopSender):
         """Send it over Zenoh once more."""
         if self._frame:
             for connection in list(self._writer._send_queues):
-                self._writer._registry.post(connection.participant, self._frame)
+                self._writer._registry.post(connection, self._frame)
         if self._writer._needs_zenoh:
             self._zenoh.repeat()
 
@@ -92,4 +92,4 @@ class IpcStop(StopSender):
         self._frame = protocol.pack(
             Kind.STOP, sequence, source_ns, self._writer._gid, self._payload
         )
-        self._writer._registry.post(connection.participant, self._frame)
+        self._writer._registry.post(connection, self._frame)

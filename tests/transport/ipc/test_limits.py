@@ -47,7 +47,8 @@ async def dialled(folder: Path, context: Context) -> socket.socket:
 
 def hello(participant: int) -> bytes:
     """Return the first frame of a process."""
-    return protocol.pack(Kind.HELLO, protocol.VERSION, DOMAIN_ID, participant.to_bytes(16, "big"))
+    gid, secret = participant.to_bytes(16, "big"), bytes(protocol.SECRET_SIZE)
+    return protocol.pack(Kind.HELLO, protocol.VERSION, DOMAIN_ID, gid, secret)
 
 
 async def until_closed(sock: socket.socket) -> None:
