@@ -6,9 +6,8 @@ A noun's module is imported only when that noun is used, so help and completion 
 part             contents
 ================ ==================================================================
 ``_main``        the main program: the nouns, and errors in one line
-``_commands``    for each noun, its commands as click parses them
-``_verbs``       for each noun, its verbs: coroutines with plain arguments
-``_support``     what verbs and commands share: output, options, lookups, sessions
+``_nouns``       for each noun, its commands: each with its verb, a coroutine
+``_support``     what nouns share: declaring commands, lookups, output, sessions
 ================ ==================================================================
 """
 
@@ -37,7 +36,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         # Only as the process's main program; after `run`, remaining threads are the user's.
         # Otherwise Python would wait for threads and run exit handlers, after the answer.
         if argv is None and sys.argv[1:2] != ["run"]:
-            from aionode.cli._support.deadline import leave
+            from aionode.cli._support.exit import leave
 
             leave(status)
     except KeyboardInterrupt:

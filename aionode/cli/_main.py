@@ -11,13 +11,13 @@ import importlib
 import io
 import os
 import sys
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from aionode._streams import discard, open_missing
-from aionode.cli._support.error_text import limited, one_line, status_of
+from aionode.cli._support.error_text import limited, one_line
+from aionode.cli._support.exit import INTERRUPTED, status_of
 from aionode.cli._support.output import unwritable
 from aionode.errors import AionodeError
 
@@ -27,67 +27,39 @@ if TYPE_CHECKING:
 __all__ = ["LateGroup", "main", "report", "root"]
 
 NOUNS = {
-    "action": (
-        "aionode.cli._commands.action:action",
-        "Send goals; list and inspect actions.",
-    ),
-    "completion": (
-        "aionode.cli._commands.completion:completion",
-        "Print the completion script of a shell.",
-    ),
-    "doctor": (
-        "aionode.cli._commands.doctor:doctor_command",
-        "Find out why endpoints do not communicate.",
-    ),
-    "interface": (
-        "aionode.cli._commands.interface:interface",
-        "Show message, service and action types.",
-    ),
-    "lifecycle": (
-        "aionode.cli._commands.lifecycle:lifecycle",
-        "Show and change the states of managed nodes.",
-    ),
-    "node": ("aionode.cli._commands.node:node", "List and inspect nodes."),
-    "param": ("aionode.cli._commands.param:param", "Read and set the parameters of nodes."),
-    "router": (
-        "aionode.cli._commands.router:router_command",
-        "Connect machines, as rmw_zenohd does.",
-    ),
-    "run": ("aionode.cli._commands.run:run_command", "Run node classes together in one process."),
-    "service": ("aionode.cli._commands.service:service", "List, find and call services."),
-    "topic": ("aionode.cli._commands.topic:topic", "List, print, publish and measure topics."),
+    "action": "Send goals; list and inspect actions.",
+    "completion": "Print the completion script of a shell.",
+    "doctor": "Find out why endpoints do not communicate.",
+    "interface": "Show message, service and action types.",
+    "lifecycle": "Show and change the states of managed nodes.",
+    "node": "List and inspect nodes.",
+    "param": "Read and set the parameters of nodes.",
+    "router": "Connect machines, as rmw_zenohd does.",
+    "run": "Run node classes together in one process.",
+    "service": "List, find and call services.",
+    "topic": "List, print, publish and measure topics.",
 }
+"""For each noun, one line of help; its module has its command, ``topic_command`` of ``topic``."""
 
 UNWRITABLE = {
     getattr(errno, name, errno.EIO) for name in ("ENOSPC", "EDQUOT", "EFBIG", "EIO", "EBADF")
 }
 """The errors of writing to a file or terminal that accepts no more data."""
 
-INTERRUPTED = 130
-"""The exit status of a program that Ctrl-C interrupted, by the convention of shells."""
-
 
 class LateGroup(click.Group):
-    """A group whose commands are imported when they are used.
-
-    Args:
-        late: For each command, its location (``module:attribute``) and one line of help.
-    """
-
-    def __init__(self, *args: Any, late: Mapping[str, tuple[str, str]], **options: Any) -> None:
-        super().__init__(*args, **options)
-        self.late = late
+    """The group of the nouns, each of which is imported when it is used."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return the names of the commands."""
-        return [*super().list_commands(ctx), *self.late]
+        """Return the nouns."""
+        return list(NOUNS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Return a command, importing it."""
-        if cmd_name not in self.late:
-            return super().get_command(ctx, cmd_name)
-        module, _, attribute = self.late[cmd_name][0].partition(":")
-        command: click.Command = getattr(importlib.import_module(module), attribute)
+        """Return the command of a noun, importing it."""
+        if cmd_name not in NOUNS:
+            return None
+        module = importlib.import_module(f"aionode.cli._nouns.{cmd_name}")
+        command: click.Command = getattr(module, f"{cmd_name}_command")
         return command
 
     def resolve_command(
@@ -117,12 +89,11 @@ class LateGroup(click.Group):
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the list of commands without importing them."""
         with formatter.section("Commands"):
-            formatter.write_dl([(name, text) for name, (_, text) in self.late.items()])
+            formatter.write_dl(list(NOUNS.items()))
 
 
 @click.group(
     cls=LateGroup,
-    late=NOUNS,
     name="aionode",
     context_settings={"help_option_names": ["-h", "--help"]},
 )

@@ -17,8 +17,8 @@ from aionode.action import (
     ClientGoalHandle,
     GoalResponse,
 )
+from aionode.cli._nouns.action import info, send_goal
 from aionode.cli._support.nouns import ACTION
-from aionode.cli._verbs.action import info, send_goal
 from aionode.errors import CommandError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.testing import settle

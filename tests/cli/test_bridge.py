@@ -6,10 +6,10 @@ from collections.abc import AsyncIterator
 
 import pytest
 
-from aionode.cli._verbs import doctor as doctor_verbs
-from aionode.cli._verbs import node as node_verbs
-from aionode.cli._verbs import service as service_verbs
-from aionode.cli._verbs import topic as topic_verbs
+from aionode.cli._nouns import doctor as doctor_verbs
+from aionode.cli._nouns import node as node_verbs
+from aionode.cli._nouns import service as service_verbs
+from aionode.cli._nouns import topic as topic_verbs
 from aionode.graph import EndpointKind
 from aionode.node import Node
 from tests.cli.conftest import Screen

@@ -128,7 +128,7 @@ def failing(monkeypatch: pytest.MonkeyPatch) -> Callable[[BaseException], None]:
         def packages(**_: object) -> None:
             raise error
 
-        monkeypatch.setattr("aionode.cli._commands.interface.packages", packages)
+        monkeypatch.setattr("aionode.cli._nouns.interface.packages", packages)
 
     return fail_with
 

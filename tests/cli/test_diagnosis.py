@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from aionode import Node, QoSProfile, ReliabilityPolicy
+from aionode.cli._nouns.doctor import doctor, network_findings
 from aionode.cli._support.lookup import ALIKE, close_to, likeness
-from aionode.cli._verbs.doctor import doctor, network_findings
 from aionode.errors import CommandError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import Int8, String

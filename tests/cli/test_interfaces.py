@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from aionode.cli._main import main
-from aionode.cli._verbs.interface import list_interfaces, package, packages, proto, show
+from aionode.cli._nouns.interface import list_interfaces, package, packages, proto, show
 from aionode.errors import CommandError
 from aionode.interfaces import get_interface, interface_names
 

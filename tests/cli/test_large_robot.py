@@ -12,10 +12,10 @@ from typing import Any
 import pytest
 import zenoh  # noqa: TID251  # plays the robot, without aionode
 
+from aionode.cli._nouns import node as node_verbs
+from aionode.cli._nouns import topic as topic_verbs
+from aionode.cli._nouns.topic_measure import hz
 from aionode.cli._support.session import make_node, wait_until_known
-from aionode.cli._verbs import node as node_verbs
-from aionode.cli._verbs import topic as topic_verbs
-from aionode.cli._verbs.topic_measure import hz
 from aionode.context import Context
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import String

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from aionode import Node
-from aionode.cli._verbs.lifecycle import get_state, list_nodes, list_transitions, set_state
+from aionode.cli._nouns.lifecycle import get_state, list_nodes, list_transitions, set_state
 from aionode.errors import CommandError
 from aionode.lifecycle import LifecycleNode, State, TransitionCallbackReturn
 from aionode.testing import settle

@@ -9,7 +9,7 @@ import pytest
 
 from aionode import Node
 from aionode.action import ActionServer
-from aionode.cli._verbs.node import info, list_nodes
+from aionode.cli._nouns.node import info, list_nodes
 from aionode.errors import CommandError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from aionode import DurabilityPolicy, HistoryPolicy, Node, ReliabilityPolicy
-from aionode.cli._commands.completion import names_of
+from aionode.cli._support.completion import names_of
 from aionode.cli._support.options import qos_from
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String

@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 
 from aionode import Node, Parameter
 from aionode.arguments import matching_parameters, read_parameter_file
-from aionode.cli._support.param_text import file_form, file_text
-from aionode.cli._verbs.param import (
+from aionode.cli._nouns.param import (
     delete,
     describe,
     dump,
@@ -24,6 +23,7 @@ from aionode.cli._verbs.param import (
     load,
     set_parameter,
 )
+from aionode.cli._nouns.param_text import file_form, file_text
 from aionode.errors import CommandError, ParameterFileError
 from aionode.interfaces.rcl_interfaces.msg import (
     FloatingPointRange,

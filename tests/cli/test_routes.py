@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from aionode import DurabilityPolicy, Node, QoSProfile
-from aionode.cli._support.routes import link_findings, pairs_of
-from aionode.cli._verbs.doctor import doctor
+from aionode.cli._nouns.doctor import doctor
+from aionode.cli._nouns.doctor_routes import link_findings, pairs_of
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import Int8, String
 from aionode.transport.base import LinkStatus

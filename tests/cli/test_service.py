@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from aionode import Node
+from aionode.cli._nouns.service import call, info
 from aionode.cli._support.nouns import SERVICE
-from aionode.cli._verbs.service import call, info
 from aionode.errors import CommandError, ServiceError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.testing import ManualClock, settle

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from aionode import ActionServer, Node, ServiceIntrospectionState
-from aionode.cli._verbs.service_echo import echo
+from aionode.cli._nouns.service import echo
 from aionode.errors import CommandError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from aionode import Node
+from aionode.cli._nouns.topic import info, list_topics
 from aionode.cli._support.nouns import TOPIC
-from aionode.cli._verbs.topic import info, list_topics
 from aionode.errors import CommandError, InvalidTopicNameException
 from aionode.interfaces.std_msgs.msg import Int8, String
 

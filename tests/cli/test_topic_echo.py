@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from aionode import Context, Node, QoSProfile, ReliabilityPolicy
+from aionode.cli._nouns.topic_echo import echo
 from aionode.cli._support.session import make_node
-from aionode.cli._verbs.topic_echo import echo
 from aionode.errors import CommandError
 from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
 from aionode.interfaces.sensor_msgs.msg import JointState

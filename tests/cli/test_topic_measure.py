@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from aionode import Context, Node, QoSProfile
+from aionode.cli._nouns import topic_measure
+from aionode.cli._nouns.topic_measure import bw, delay, hz
 from aionode.cli._support.session import make_node
-from aionode.cli._verbs import topic_measure
-from aionode.cli._verbs.topic_measure import bw, delay, hz
 from aionode.errors import CommandError
 from aionode.interfaces.builtin_interfaces.msg import Time as TimeMsg
 from aionode.interfaces.geometry_msgs.msg import TwistStamped

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from aionode import Node
-from aionode.cli._verbs.topic_pub import pub
+from aionode.cli._nouns.topic import pub
 from aionode.errors import CommandError, InvalidTopicNameException
 from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped
 from aionode.interfaces.std_msgs.msg import String

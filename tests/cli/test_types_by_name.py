@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 from aionode import Node
+from aionode.cli._nouns.action import send_goal
+from aionode.cli._nouns.service import call
+from aionode.cli._nouns.topic_echo import echo
 from aionode.cli._support.lookup import topic_type
-from aionode.cli._verbs.action import send_goal
-from aionode.cli._verbs.service import call
-from aionode.cli._verbs.topic_echo import echo
 from aionode.errors import CommandError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.message import ActionType, Message, ServiceType, int32

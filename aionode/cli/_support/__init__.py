@@ -1,1 +1,1 @@
-"""Code that verbs and commands share."""
+"""What the nouns share: declaring commands, running verbs, looking up names, printing."""

@@ -1,17 +1,10 @@
-"""Errors in one line, and their exit status."""
+"""Errors in one line."""
 
 from __future__ import annotations
 
-from aionode.errors import AionodeError, NameValidationException
+from aionode.errors import NameValidationException
 
-__all__ = ["limited", "one_line", "status_of"]
-
-
-def status_of(error: AionodeError) -> int:
-    """Return the exit status for an error."""
-    status: int = getattr(error, "status", 1)
-    return status
-
+__all__ = ["limited", "one_line"]
 
 MOST_CHARACTERS = 1000
 """Maximum length of an error text: it may quote input of any length."""

@@ -13,13 +13,15 @@ from aionode.message import Message, fields, type_name
 from aionode.qos import HistoryPolicy
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from aionode.cli._support.output import Output
     from aionode.graph import EndpointInfo
     from aionode.message import FieldType
 
 __all__ = [
     "PrintOptions",
-    "byte_form",
+    "Printer",
     "csv_line",
     "endpoint_text",
     "field_of",
@@ -82,13 +84,6 @@ class PrintOptions:
         return [*plain, "..."] if cut else plain
 
 
-def byte_form(output: Output, *, csv: bool) -> Callable[[int], object]:
-    """Return what makes a `byte` of its number as ros2 prints it: a character, in CSV bytes."""
-    if output.json:
-        return int
-    return (lambda number: bytes((number,))) if csv else chr
-
-
 IDL_NAMES = {
     "float32": "float",
     "float64": "double",
@@ -145,6 +140,86 @@ def csv_line(plain: Any) -> str:
     if isinstance(plain, list):
         return ",".join(csv_line(value) for value in plain)
     return str(plain).replace("\n", "\\n").replace("\r", "\\r")
+
+
+class Printer:
+    """Prints messages in the form that the options of ``echo`` select.
+
+    Args:
+        output: Where to print.
+        csv: Whether all values stand on one line.
+        flow_style: Whether each array stands on one line, in brackets.
+        truncate_length: Maximum elements of an array and characters of a string; None prints all,
+            as ``--json`` always does.
+        no_arr: Whether arrays are described instead of printed.
+        no_str: Whether strings are described instead of printed.
+        field: The path of the only field to print.
+
+    Attributes:
+        options: How messages become plain values.
+    """
+
+    def __init__(
+        self,
+        output: Output,
+        *,
+        csv: bool = False,
+        flow_style: bool = False,
+        truncate_length: int | None = 128,
+        no_arr: bool = False,
+        no_str: bool = False,
+        field: str | None = None,
+    ) -> None:
+        self._output = output
+        self._csv = csv
+        self._flow_style = flow_style
+        self._field = field
+        # ros2 prints a `byte` as a character, in CSV and as a single field as bytes.
+        as_byte = chr if not (csv or field) else lambda number: bytes((number,))
+        self.options = PrintOptions(
+            None if output.json else truncate_length,
+            no_arr=no_arr,
+            no_str=no_str,
+            as_byte=int if output.json else as_byte,
+        )
+
+    def part_of(self, msg: Any) -> Any:
+        """Return the part of a message that is printed: all of it, or one field."""
+        return self._part_and_type(msg)[0]
+
+    def show(self, msg: Any, info: Mapping[str, int] | None = None) -> None:
+        """Print one message, or its bytes, after `info` if given."""
+        if isinstance(msg, Message):
+            part, type_ = self._part_and_type(msg)
+            self.show_plain(
+                self.options.value(part, type_), info, as_yaml=isinstance(part, Message)
+            )
+        elif self._output.json:
+            self.show_plain(bytes(msg), info)  # as Base64
+        else:
+            if info is not None:
+                self._output.text("---Got new message, message info:---")
+                self._output.text(f"{info}\n---Message data:---")
+            self._output.text(f"{bytes(msg)!r}\n---")
+
+    def show_plain(
+        self, plain: Any, info: Mapping[str, int] | None = None, *, as_yaml: bool = True
+    ) -> None:
+        """Print plain values, after `info` if given."""
+        if self._output.json:
+            self._output.item("", plain if info is None else {"info": info, "message": plain})
+        elif self._csv:
+            first = "" if info is None else f"{csv_line(info)},"
+            self._output.text(first + csv_line(plain))
+        else:
+            head = "" if info is None else f"{yaml_text(info)}---\n"
+            body = yaml_text(plain, flow_style=self._flow_style) if as_yaml else f"{plain}\n"
+            self._output.text(f"{head}{body}---")
+
+    def _part_and_type(self, msg: Any) -> tuple[Any, FieldType | None]:
+        if self._field is None or not isinstance(msg, Message):
+            return msg, None
+        return field_of(msg, self._field)
 
 
 FIELD_PART = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)((?:\[[0-9]{1,18}\])*)")

@@ -10,7 +10,7 @@ from aionode.graph import TOPIC_KINDS, EndpointKind
 from aionode.names import is_hidden
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Collection, Iterable
 
     from aionode.graph import EndpointInfo, NodeInfo
     from aionode.message import Message
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 __all__ = [
     "ALIKE",
     "absolute",
+    "actions_and_types",
+    "class_given",
     "close_to",
     "endpoints",
     "interface_class",
@@ -74,6 +76,22 @@ def names_and_types(
         if hidden or not is_hidden(endpoint.name):
             types.setdefault(endpoint.name, set()).add(endpoint.type_name)
     return {name: sorted(types[name]) for name in sorted(types)}
+
+
+def actions_and_types(
+    node: Node, *kinds: EndpointKind, of: NodeInfo | None = None
+) -> dict[str, list[str]]:
+    """Return the actions of other nodes, sorted, each with its types.
+
+    Args:
+        node: The command's node.
+        kinds: Publishers for the servers, which publish feedback; subscriptions for the clients.
+        of: Only the actions of this node.
+    """
+    from aionode._node.graph import actions_among
+
+    topics = names_and_types(node, *kinds, hidden=True, of=of)
+    return dict(actions_among(list(topics.items())))
 
 
 # Errors with help
@@ -135,6 +153,26 @@ def interface_class(kind: str, name: str) -> Any:
         raise CommandError(f"The passed {kind} type is invalid: {error}{hint}") from error
 
 
+def class_given(kind: str, given: str, name: str, used: Collection[str]) -> Any:
+    """Return the class for the type that the user gave for a name on the network.
+
+    Args:
+        kind: ``service`` or ``action``.
+        given: The type that the user gave.
+        name: Full name of the service or action.
+        used: The types that the name has on the network; empty if it is not there.
+
+    Raises:
+        CommandError: there is no such type, or the name has another one.
+    """
+    found = interface_class(kind, given)
+    if used and found.__ros_type__ not in used:
+        raise CommandError(
+            f"The passed {kind} type is invalid: '{name}' has type {', '.join(used)}, not {given}"
+        )
+    return found
+
+
 async def topic_type(node: Node, topic: str, given: str | None = None) -> type[Message] | None:
     """Return the class of a topic's messages according to its endpoints; None if it has none.
 
@@ -160,8 +198,8 @@ async def topic_type(node: Node, topic: str, given: str | None = None) -> type[M
         )
     if not users:
         return None
-    learnt: type[Message] = await type_of(node, users)
-    return learnt
+    learned: type[Message] = await type_of(node, users)
+    return learned
 
 
 async def type_of(node: Node, users: list[EndpointInfo]) -> Any:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from aionode._node.graph import actions_among
 from aionode.cli._support import lookup
 from aionode.errors import CommandError
 from aionode.graph import SERVICE_KINDS, TOPIC_KINDS
@@ -16,7 +15,7 @@ if TYPE_CHECKING:
     from aionode.cli._support.output import Output
     from aionode.node import Node
 
-__all__ = ["ACTION", "NOUNS", "SERVICE", "TOPIC", "Noun"]
+__all__ = ["ACTION", "NOUNS", "SERVICE", "TOPIC", "Noun", "with_types"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +38,7 @@ class Noun:
         """Return the names on the network, sorted, each with its types."""
         if self is ACTION:
             # An action consists of hidden topics and services; its topics show both ends.
-            topics = lookup.names_and_types(node, *TOPIC_KINDS, hidden=True)
-            return dict(actions_among(list(topics.items())))
+            return lookup.actions_and_types(node, *TOPIC_KINDS)
         kinds = SERVICE_KINDS if self is SERVICE else TOPIC_KINDS
         return lookup.names_and_types(node, *kinds, hidden=hidden)
 
@@ -61,8 +59,6 @@ class Noun:
             raise self.unknown(node, name)
         return full_name, types
 
-    # Verbs
-
     async def list_names(
         self,
         node: Node,
@@ -73,8 +69,8 @@ class Noun:
         hidden: bool = False,
     ) -> None:
         """Print every name on the network."""
-        found = self.types_by_name(node, hidden=hidden)
-        self._print_names(found, output, types=types, count=count)
+        known = self.types_by_name(node, hidden=hidden)
+        self._print_names(known, output, types=types, count=count)
 
     async def print_type(self, node: Node, name: str, *, output: Output) -> None:
         """Print the types of a name.
@@ -97,17 +93,22 @@ class Noun:
     ) -> None:
         """Print the names of one type."""
         known = self.types_by_name(node, hidden=hidden)
-        found = {name: types for name, types in known.items() if type_name in types}
-        self._print_names(found, output, count=count)
+        of_type = {name: types for name, types in known.items() if type_name in types}
+        self._print_names(of_type, output, count=count)
 
     def _print_names(
-        self, found: dict[str, list[str]], output: Output, *, types: bool = False, count: bool
+        self,
+        types_by_name: dict[str, list[str]],
+        output: Output,
+        *,
+        types: bool = False,
+        count: bool,
     ) -> None:
-        if count:
-            output.item(str(len(found)), {f"{self.word}s": len(found)})
-            return
-        for name, of in found.items():
-            output.item(f"{name} [{', '.join(of)}]" if types else name, {"name": name, "types": of})
+        items = [
+            (with_types(name, of) if types else name, {"name": name, "types": of})
+            for name, of in types_by_name.items()
+        ]
+        output.items(items, count=f"{self.word}s" * count)
 
     async def wait_for_server(
         self,
@@ -138,3 +139,8 @@ SERVICE = Noun("service")
 ACTION = Noun("action")
 
 NOUNS = {noun.word: noun for noun in (TOPIC, SERVICE, ACTION)}
+
+
+def with_types(name: str, types: list[str]) -> str:
+    """Return a name with its types in brackets."""
+    return f"{name} [{', '.join(types)}]"

@@ -23,22 +23,30 @@ if TYPE_CHECKING:
     from aionode.qos import QoSProfile
 
 __all__ = [
+    "CommandT",
+    "clear_full_length",
+    "count_option",
+    "csv_option",
+    "filter_option",
     "hertz",
+    "hidden_nodes_option",
     "hidden_option",
     "interfaces_option",
     "json_option",
     "load_interface_folders",
+    "name_option",
     "natural",
     "positive",
+    "print_options",
     "qos_from",
     "qos_options",
+    "read_values",
     "ros2_options",
     "seconds",
     "sim_time_option",
-    "stdin_text",
     "timeout_option",
+    "types_option",
     "whole",
-    "window_option",
 ]
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
@@ -89,20 +97,42 @@ timeout_option = click.option(
     help="Wait at most N seconds for the node.",
 )
 
-window_option = click.option(
-    "-w",
-    "--window",
-    metavar="N",
-    type=natural,
-    default=10_000,
-    show_default=True,
-    help="Number of messages in the statistics.",
+types_option = click.option(
+    "-t", "--show-types", "types", is_flag=True, help="Print the types too."
 )
+
+hidden_nodes_option = click.option(
+    "-a", "--all", "hidden", is_flag=True, help="List hidden nodes as well."
+)
+
+
+def count_option(what: str) -> Callable[[CommandT], CommandT]:
+    """Return the option that prints only the number of `what`."""
+    return click.option(
+        "-c", f"--count-{what}", "count", is_flag=True, help="Print only how many there are."
+    )
 
 
 def hidden_option(*names: str, what: str) -> Callable[[CommandT], CommandT]:
     """Return the option that includes hidden `what`."""
     return click.option(*names, "hidden", is_flag=True, help=f"Consider hidden {what} as well.")
+
+
+def name_option(whose: str) -> Callable[[CommandT], CommandT]:
+    """Return the option that names the node of the command itself."""
+    return click.option(
+        "-n", "--node-name", "own_name", help=f"Name of the {whose} node (default: a hidden one)."
+    )
+
+
+def filter_option(does: str) -> Callable[[CommandT], CommandT]:
+    """Return the option for a Python expression about each message."""
+    return click.option(
+        "--filter",
+        "filter_text",
+        metavar="EXPR",
+        help=f"{does} only messages for which this Python expression is true; m is the message.",
+    )
 
 
 def ros2_options(command: CommandT) -> CommandT:
@@ -146,48 +176,77 @@ def load_interface_folders(
             load_interfaces(path)
 
 
-def stdin_text(values: str | None, stdin: bool) -> str:
-    """Return the values as given, or read from standard input.
+def read_values(options: dict[str, Any]) -> None:
+    """Replace ``stdin`` and ``values`` in `options` by the values as given, or read from stdin.
 
     Raises:
         click.UsageError: values and ``--stdin`` were both given.
     """
-    if not stdin:
-        return "{}" if values is None else values
-    if values is not None:
+    stdin, values = options.pop("stdin"), options["values"]
+    if stdin and values is not None:
         raise click.UsageError("Give the values or --stdin, not both.")
-    return sys.stdin.read()
+    if stdin:
+        options["values"] = sys.stdin.read()
+    elif values is None:
+        options["values"] = "{}"
+
+
+# Printing messages
+
+csv_option = click.option(
+    "--csv", is_flag=True, help="Print all values on one line, separated by commas."
+)
+
+print_options = (
+    click.option("-f", "--full-length", is_flag=True, help="Print arrays and strings in full."),
+    click.option(
+        "-l",
+        "--truncate-length",
+        metavar="N",
+        type=whole,
+        default=128,
+        show_default=True,
+        help="Print arrays and strings up to this length.",
+    ),
+    click.option("--no-arr", is_flag=True, help="Describe arrays instead of printing them."),
+    click.option("--no-str", is_flag=True, help="Describe strings instead of printing them."),
+    click.option("--flow-style", is_flag=True, help="Print each array in brackets, on one line."),
+)
+
+
+def clear_full_length(options: dict[str, Any]) -> None:
+    """Replace ``full_length`` in `options` by a ``truncate_length`` of None."""
+    if options.pop("full_length"):
+        options["truncate_length"] = None
 
 
 # Quality of service
 
+POLICIES = {
+    "history": HistoryPolicy,
+    "reliability": ReliabilityPolicy,
+    "durability": DurabilityPolicy,
+    "liveliness": LivelinessPolicy,
+}
+"""The policies that have an option each."""
 
-def qos_options(preset: str) -> Callable[[CommandT], CommandT]:
+
+def qos_options(preset: str) -> tuple[Callable[[CommandT], CommandT], ...]:
     """Return the options for a QoS profile that starts from `preset`."""
 
     def short_keys(kind: Any) -> click.Choice[str]:
         return click.Choice([k for k in kind.short_keys() if k != "unknown"], case_sensitive=False)
 
-    declared = (
+    return (
         click.option(
             "--qos-profile",
             type=short_keys(QoSPresetProfiles),
             help=f"Preset to start from (default: {preset}).",
         ),
         click.option("--qos-depth", type=whole, help="Length of the queue."),
-        click.option("--qos-history", type=short_keys(HistoryPolicy)),
-        click.option("--qos-reliability", type=short_keys(ReliabilityPolicy)),
-        click.option("--qos-durability", type=short_keys(DurabilityPolicy)),
-        click.option("--qos-liveliness", type=short_keys(LivelinessPolicy)),
+        *(click.option(f"--qos-{name}", type=short_keys(kind)) for name, kind in POLICIES.items()),
         click.option("--qos-liveliness-lease-duration-seconds", type=positive, metavar="N"),
     )
-
-    def decorate(command: CommandT) -> CommandT:
-        for option in reversed(declared):
-            command = option(command)
-        return command
-
-    return decorate
 
 
 def qos_from(preset: str, options: dict[str, Any]) -> QoSProfile | None:
@@ -195,27 +254,12 @@ def qos_from(preset: str, options: dict[str, Any]) -> QoSProfile | None:
 
     Returns None if the user gave none of them.
     """
-    given = {
-        name: options.pop(f"qos_{name}")
-        for name in (
-            "profile",
-            "depth",
-            "history",
-            "reliability",
-            "durability",
-            "liveliness",
-            "liveliness_lease_duration_seconds",
-        )
-    }
+    names = ("profile", "depth", *POLICIES, "liveliness_lease_duration_seconds")
+    given = {name: options.pop(f"qos_{name}") for name in names}
     if all(value is None for value in given.values()):
         return None
     profile = QoSPresetProfiles.get_from_short_key(given["profile"] or preset).replace()
-    for name, kind in (
-        ("history", HistoryPolicy),
-        ("reliability", ReliabilityPolicy),
-        ("durability", DurabilityPolicy),
-        ("liveliness", LivelinessPolicy),
-    ):
+    for name, kind in POLICIES.items():
         if given[name] is not None:
             setattr(profile, name, kind.get_from_short_key(given[name]))
     if given["depth"] is not None:

@@ -18,7 +18,7 @@ from aionode._streams import discard
 from aionode.errors import CommandError, escaped
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
 __all__ = ["Output", "unwritable"]
 
@@ -62,6 +62,15 @@ class Output:
             self._write(msgspec.json.encode(json_safe(record)).decode())
         else:
             self._write(text)
+
+    def items(self, items: Iterable[tuple[str, object]], *, count: str = "") -> None:
+        """Print each item, a text and its record; with `count`, their number, under that key."""
+        if count:
+            number = len(list(items))
+            self.item(str(number), {count: number})
+            return
+        for text, record in items:
+            self.item(text, record)
 
     def json_line(self, text: str) -> None:
         """Print a record that is already encoded as JSON."""

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 from aionode._distribution import other_distribution
-from aionode.cli._support.deadline import Deadline
-from aionode.cli._support.error_text import one_line, status_of
+from aionode.cli._support.error_text import one_line
+from aionode.cli._support.exit import INTERRUPTED, status_of
 from aionode.cli._support.output import Output
 from aionode.errors import AionodeError
 
@@ -22,9 +22,6 @@ if TYPE_CHECKING:
     from aionode.runner import LoopFactory
 
 __all__ = ["make_node", "run_verb"]
-
-INTERRUPTED = 130
-"""The exit status of a program that Ctrl-C interrupted, by the convention of shells."""
 
 CLOSE_S = 0.9
 """How long a command may take to exit after it has printed its answer, in seconds."""
@@ -91,6 +88,8 @@ def run_verb(
         click.exceptions.Exit: always, with the exit status.
         AionodeError: the verb failed.
     """
+    # Imported when a command runs; its help does not need them.
+    from aionode.cli._support.deadline import Deadline
     from aionode.runner import best_loop_factory
 
     output = Output(json=json)
@@ -166,40 +165,30 @@ def run_until_stopped(
     Raises:
         BaseException: what `work` raised; the first error where it raised several.
     """
-    try:
-        with asyncio.Runner(loop_factory=loop_factory) as runner:
-            return runner.run(stoppable(work, on_stop))
-    except BaseExceptionGroup as group:
-        raise first_error(group) from None
-
-
-async def stoppable(
-    work: Coroutine[None, None, int | None], on_stop: Callable[[], object]
-) -> int | None:
-    """Await `work`, and cancel it at the first SIGINT, SIGTERM or SIGHUP."""
     from aionode._signals import signals_to
+    from aionode.runner import Stop
 
-    loop = asyncio.get_running_loop()
-    task = asyncio.current_task()
-    assert task is not None  # noqa: S101  # a coroutine runs in a task
-    stopped = False
-
-    def stop() -> None:
-        nonlocal stopped
-        stopped = True
-        task.cancel()
+    stop = Stop()
 
     def on_signal() -> None:
         on_stop()
-        loop.call_soon_threadsafe(stop)
+        stop()
 
-    with signals_to(on_signal):
-        try:
-            return await work or 0
-        except asyncio.CancelledError:
-            if stopped:
-                return None
-            raise
+    async def stoppable() -> int | None:
+        stop.begin()
+        with signals_to(on_signal):
+            try:
+                return await work or 0
+            except asyncio.CancelledError:
+                if stop.wanted:
+                    return None
+                raise
+
+    try:
+        with asyncio.Runner(loop_factory=loop_factory) as runner:
+            return runner.run(stoppable())
+    except BaseExceptionGroup as group:
+        raise first_error(group) from None
 
 
 def first_error(group: BaseExceptionGroup[BaseException]) -> BaseException:

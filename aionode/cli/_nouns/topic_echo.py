@@ -2,19 +2,37 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import click
+
 from aionode.cli._support import lookup
+from aionode.cli._support.command import command
+from aionode.cli._support.completion import (
+    beginning,
+    class_named,
+    complete_types_of,
+    name_argument,
+    types_now,
+)
 from aionode.cli._support.follow import Follower, filter_from
-from aionode.cli._support.formatting import PrintOptions, byte_form, csv_line, field_of, yaml_text
+from aionode.cli._support.formatting import Printer
+from aionode.cli._support.options import (
+    clear_full_length,
+    csv_option,
+    filter_option,
+    name_option,
+    positive,
+    print_options,
+    qos_from,
+    qos_options,
+)
 from aionode.errors import CommandError
 from aionode.graph import TOPIC_KINDS, EndpointKind
-from aionode.message import Message
 from aionode.qos import DurabilityPolicy, ReliabilityPolicy, qos_profile_sensor_data
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
     from enum import Enum
 
     from aionode.cli._support.output import Output
@@ -23,12 +41,82 @@ if TYPE_CHECKING:
     from aionode.node import Node
     from aionode.qos import QoSProfile
 
-__all__ = ["echo"]
+__all__ = ["echo", "echoing"]
 
 DEPTH = 1000
 """Default queue depth: how many messages may wait to be printed."""
 
+echoing = click.Group("topic")
+"""The command of this module; the group ``topic`` has it too."""
 
+
+def complete_fields(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Complete the path of a field of the topic earlier on the command line."""
+    # An option that has no value yet ends click's parsing: it leaves the arguments as they are.
+    given = [*ctx.args, ctx.params.get("topic_name"), ctx.params.get("message_type")]
+    name, *types = list(filter(None, given)) or [""]
+    if name and not types:
+        types = types_now("topic", name)
+    classes = [class_named(type_) for type_ in types]
+    paths = [path for cls in classes if cls is not None for path in field_paths(cls)]
+    return beginning(incomplete, list(dict.fromkeys(paths)))
+
+
+def field_paths(cls: Any) -> Iterator[str]:
+    """Yield the paths of all fields of a message class; those of messages in arrays have none."""
+    from aionode.message import fields
+
+    for field in fields(cls):
+        yield field.name
+        if field.type.nested is not None and field.type.container == "single":
+            yield from (f"{field.name}.{path}" for path in field_paths(field.type.nested))
+
+
+def prepare_echo(options: dict[str, Any]) -> None:
+    """Replace the options of the profile and the length of arrays by their meaning."""
+    options["qos"] = qos_from("sensor_data", options)
+    clear_full_length(options)
+
+
+@command(
+    echoing,
+    "echo",
+    name_argument("topic"),
+    click.argument(
+        "message_type", required=False, shell_complete=complete_types_of("topic", "msg")
+    ),
+    *qos_options("sensor_data"),
+    csv_option,
+    click.option(
+        "--field", metavar="PATH", shell_complete=complete_fields,
+        help="Print one field, such as pose.position or name[0].",
+    ),
+    *print_options,
+    click.option("--no-lost-messages", is_flag=True, help="Do not report lost messages."),
+    click.option("--raw", is_flag=True, help="Print the serialized bytes."),
+    filter_option("Print"),
+    click.option(
+        "--content-filter",
+        metavar="EXPR",
+        help="Receive only messages that pass this filter of DDS, such as 'pose.x > 1'.",
+    ),
+    click.option("--once", is_flag=True, help="Print one message and end."),
+    click.option("--timeout", metavar="N", type=positive, help="End after N seconds."),
+    click.option(
+        "-i",
+        "--include-message-info",
+        "with_info",
+        is_flag=True,
+        help="Print timestamps and sequence numbers too.",
+    ),
+    click.option("-c", "--clear", is_flag=True, help="Clear the screen before each message."),
+    name_option("subscribing"),
+    interfaces=True,
+    sim_time=True,
+    prepare=prepare_echo,
+    endless=lambda options: not options["once"],
+    busy=True,
+)  # fmt: skip
 async def echo(
     node: Node,
     topic_name: str,
@@ -36,12 +124,7 @@ async def echo(
     *,
     output: Output,
     qos: QoSProfile | None = None,
-    csv: bool = False,
     field: str | None = None,
-    truncate_length: int | None = 128,
-    no_arr: bool = False,
-    no_str: bool = False,
-    flow_style: bool = False,
     no_lost_messages: bool = False,
     raw: bool = False,
     filter_text: str | None = None,
@@ -50,10 +133,29 @@ async def echo(
     timeout: float | None = None,
     with_info: bool = False,
     clear: bool = False,
+    **printing: Any,
 ) -> int:
-    """Print each message of a topic; return the exit status.
+    """Print each message of a topic, as YAML, CSV or JSON.
 
-    The default profile is the strongest that all current publishers offer.
+    Args:
+        node: The command's node.
+        topic_name: Name of the topic.
+        message_type: ROS name of its type; default: that of its publishers and subscriptions.
+        output: Where to print.
+        qos: Profile of the subscription; default: the strongest that all current publishers offer.
+        field: Path of the only field to print.
+        no_lost_messages: Whether lost messages are not reported.
+        raw: Whether serialized bytes are printed.
+        filter_text: Python expression that is true of the messages to print.
+        content_filter: The content filter of the subscription.
+        once: Whether the first message is the only one.
+        timeout: How long to print messages, in seconds; None is unlimited.
+        with_info: Whether timestamps and sequence numbers are printed too.
+        clear: Whether the screen is cleared before each message.
+        printing: Passed on to `Printer`.
+
+    Returns:
+        The exit status.
 
     Raises:
         CommandError: the type cannot be determined, or `field` or a filter is invalid.
@@ -67,13 +169,7 @@ async def echo(
         raise no_type(node, name)
     if not publishers:
         output.warn(f"WARNING: topic [{name}] does not appear to be published yet")
-    print_options = PrintOptions(
-        None if output.json else truncate_length,
-        no_arr=no_arr,
-        no_str=no_str,
-        as_byte=byte_form(output, csv=csv or field is not None),
-    )
-    printer = Printer(output, print_options, csv=csv, field=field, flow_style=flow_style)
+    printer = Printer(output, field=field, **printing)
     fits = filter_from(filter_text)
     follower = Follower(node)
     lost = 0
@@ -87,7 +183,7 @@ async def echo(
             return
         if clear:
             output.clear()
-        printer.show(msg, info if with_info else None)
+        printer.show(msg, times(info) if with_info else None)
         if once:
             follower.finish()
 
@@ -151,56 +247,6 @@ def strongest(publishers: Sequence[EndpointInfo], output: Output) -> QoSProfile:
             DurabilityPolicy.VOLATILE,
         ),
     )
-
-
-@dataclass(frozen=True, slots=True)
-class Printer:
-    """Prints messages in the form that the options select."""
-
-    output: Output
-    print_options: PrintOptions
-    csv: bool = False
-    field: str | None = None
-    flow_style: bool = False
-
-    def part_of(self, msg: Any) -> Any:
-        """Return the part of a message that is printed: all of it, or one field."""
-        if self.field is None or not isinstance(msg, Message):
-            return msg
-        return field_of(msg, self.field)[0]
-
-    def show(self, msg: Any, info: MessageInfo | None) -> None:
-        """Print one message, preceded by `info` if given."""
-        if not isinstance(msg, Message):
-            self._show_raw(bytes(msg), info)
-            return
-        part, type_ = (msg, None) if self.field is None else field_of(msg, self.field)
-        plain = self.print_options.value(part, type_)
-        if self.output.json:
-            self._show_json(plain, info)
-        elif self.csv:
-            first = "" if info is None else f"{','.join(str(v) for v in times(info).values())},"
-            self.output.text(first + csv_line(plain))
-        else:
-            head = "" if info is None else f"{yaml_text(times(info))}---\n"
-            body = (
-                yaml_text(plain, flow_style=self.flow_style)
-                if isinstance(part, Message)
-                else f"{plain}\n"
-            )
-            self.output.text(f"{head}{body}---")
-
-    def _show_raw(self, data: bytes, info: MessageInfo | None) -> None:
-        if self.output.json:
-            self._show_json(data, info)  # as Base64
-            return
-        if info is not None:
-            self.output.text("---Got new message, message info:---")
-            self.output.text(f"{times(info)}\n---Message data:---")
-        self.output.text(f"{data!r}\n---")
-
-    def _show_json(self, plain: Any, info: MessageInfo | None) -> None:
-        self.output.item("", plain if info is None else {"info": times(info), "message": plain})
 
 
 def times(info: MessageInfo) -> dict[str, int]:

@@ -1,15 +1,16 @@
-"""The verbs of ``aionode param``."""
+"""``aionode param``: read and set the parameters of nodes."""
 
 from __future__ import annotations
 
 import asyncio
 import re
 from contextlib import asynccontextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from aionode.cli._support import lookup
-from aionode.cli._support.lookup import absolute
-from aionode.cli._support.param_text import (
+import click
+
+from aionode.cli._nouns.param_text import (
     LABELS,
     TYPE_NAMES,
     description,
@@ -18,13 +19,17 @@ from aionode.cli._support.param_text import (
     file_text,
     plain,
 )
+from aionode.cli._support import lookup
+from aionode.cli._support.command import command
+from aionode.cli._support.completion import complete_of_node, name_argument
+from aionode.cli._support.lookup import absolute
+from aionode.cli._support.options import hidden_option, timeout_option
 from aionode.cli._support.yaml_messages import shortened
 from aionode.errors import AionodeError, CommandError, ParameterFileError
 from aionode.graph import EndpointKind
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable, Sequence
-    from pathlib import Path
 
     from aionode.cli._support.output import Output
     from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
@@ -32,10 +37,24 @@ if TYPE_CHECKING:
     from aionode.parameter import Parameter
     from aionode.parameter_client import AsyncParameterClient
 
-__all__ = ["delete", "describe", "dump", "get", "list_parameters", "load", "set_parameter"]
+__all__ = [
+    "delete",
+    "describe",
+    "dump",
+    "get",
+    "list_parameters",
+    "load",
+    "param_command",
+    "set_parameter",
+]
 
 ANSWER_S = 5.0
 """Timeout for the parameter services of a node, in seconds; normally they take milliseconds."""
+
+
+@click.group("param")
+def param_command() -> None:
+    """Read and set the parameters of nodes."""
 
 
 # The node
@@ -43,9 +62,15 @@ ANSWER_S = 5.0
 
 @asynccontextmanager
 async def parameters_of(
-    node: Node, node_name: str, timeout_s: float, *, hidden: bool = False
+    node: Node, node_name: str, *, hidden: bool = False, timeout: float = 1.0
 ) -> AsyncIterator[AsyncParameterClient]:
-    """Yield a client for the parameters of a node, waiting at most `timeout_s` for the node.
+    """Yield a client for the parameters of a node.
+
+    Args:
+        node: The command's node.
+        node_name: Name of the other node.
+        hidden: Whether it may be a hidden node.
+        timeout: Maximum time to wait for it, and for its services, in seconds.
 
     Raises:
         CommandError: there is no such node, it has no parameter services, or it does not answer.
@@ -53,12 +78,12 @@ async def parameters_of(
     from aionode.parameter_client import AsyncParameterClient
 
     name = absolute(node_name)
-    await wait_for_node(node, name, timeout_s, hidden=hidden)
+    await wait_for_node(node, name, hidden=hidden, timeout=timeout)
     client = AsyncParameterClient(node, name)
     try:
-        if not await client.wait_for_services(timeout_s):
+        if not await client.wait_for_services(timeout):
             raise CommandError(
-                f"Node '{name}' has no parameter services (none within {timeout_s:g} s); was it "
+                f"Node '{name}' has no parameter services (none within {timeout:g} s); was it "
                 "created with start_parameter_services=False?"
             )
         async with asyncio.timeout(ANSWER_S):
@@ -71,22 +96,25 @@ async def parameters_of(
         client.destroy()
 
 
-async def wait_for_node(node: Node, name: str, timeout_s: float, *, hidden: bool) -> None:
+async def wait_for_node(
+    node: Node, name: str, *, hidden: bool = False, timeout: float = 1.0
+) -> None:
     """Wait until a node of this name exists.
 
     Raises:
-        CommandError: none appeared within `timeout_s`.
+        CommandError: none appeared within `timeout`, in seconds.
     """
-
-    def names() -> list[str]:
-        infos = lookup.node_infos(node, hidden=hidden)
-        return [info.fully_qualified_name for info in infos]
-
     try:
-        async with asyncio.timeout(timeout_s):
-            await node.graph.until(lambda: name in names(), name)
+        async with asyncio.timeout(timeout):
+            await node.graph.until(lambda: name in node_names(node, hidden=hidden), name)
     except TimeoutError:
-        raise lookup.unknown("Node not found:", name, names(), "node list") from None
+        names = node_names(node, hidden=hidden)
+        raise lookup.unknown("Node not found:", name, names, "node list") from None
+
+
+def node_names(node: Node, *, hidden: bool) -> list[str]:
+    """Return the full names of the other nodes."""
+    return [info.fully_qualified_name for info in lookup.node_infos(node, hidden=hidden)]
 
 
 async def not_declared(client: AsyncParameterClient, wanted: Sequence[str]) -> CommandError:
@@ -99,9 +127,41 @@ async def not_declared(client: AsyncParameterClient, wanted: Sequence[str]) -> C
     return lookup.unknown("Parameter not set: no parameter", missing, known, where)
 
 
-# Verbs
+async def names_of(node: Node, node_name: str) -> list[str]:
+    """Return the sorted names of the parameters of a node."""
+    from aionode.parameter_client import AsyncParameterClient
+
+    client = AsyncParameterClient(node, node_name)
+    await client.wait_for_services()
+    return sorted((await client.list_parameters()).names)
 
 
+# Commands
+
+node_argument = name_argument("node")
+parameter_argument = click.argument("parameter_name", shell_complete=complete_of_node(names_of))
+node_options = (
+    hidden_option("--include-hidden-nodes", what="nodes"),
+    timeout_option,
+)
+"""The options that all commands have."""
+
+
+@command(
+    param_command,
+    "list",
+    name_argument("node", required=False),
+    click.option("--filter", "pattern", metavar="REGEX", help="Only names that match."),
+    click.option(
+        "--param-prefixes",
+        "prefixes",
+        metavar="PREFIX",
+        multiple=True,
+        help="Only names with this prefix.",
+    ),
+    click.option("--param-type", "types", is_flag=True, help="Print the types too."),
+    *node_options,
+)
 async def list_parameters(
     node: Node,
     node_name: str | None = None,
@@ -113,7 +173,10 @@ async def list_parameters(
     hidden: bool = False,
     timeout: float = 1.0,
 ) -> int:
-    """Print the names of the parameters of one node, or of all; return the exit status.
+    """List the parameters of one node, or of all.
+
+    Returns:
+        The exit status.
 
     Raises:
         CommandError: there is no such node, it has no parameter services, or `pattern` is invalid.
@@ -121,15 +184,17 @@ async def list_parameters(
     fits = pattern_from(pattern)
     if node_name is not None:
         names = [absolute(node_name)]
-        await wait_for_node(node, names[0], timeout, hidden=hidden)
+        await wait_for_node(node, names[0], hidden=hidden, timeout=timeout)
     else:
-        infos = lookup.node_infos(node, hidden=hidden)
-        names = [info.fully_qualified_name for info in infos]
-        names = [name for name in dict.fromkeys(names) if offers_parameters(node, name)]
+        names = [
+            name
+            for name in dict.fromkeys(node_names(node, hidden=hidden))
+            if offers_parameters(node, name)
+        ]
 
     async def ask(name: str) -> list[ParameterDescriptor] | AionodeError:
         try:
-            async with parameters_of(node, name, timeout, hidden=hidden) as client:
+            async with parameters_of(node, name, hidden=hidden, timeout=timeout) as client:
                 found = (await client.list_parameters(list(prefixes))).names
                 return await client.describe_parameters(sorted(filter(fits, found)))
         except AionodeError as error:
@@ -176,6 +241,14 @@ def pattern_from(pattern: str | None) -> Callable[[str], bool]:
     return lambda name: compiled.match(name) is not None
 
 
+@command(
+    param_command,
+    "get",
+    node_argument,
+    parameter_argument,
+    click.option("--hide-type", is_flag=True, help="Print the value only."),
+    *node_options,
+)
 async def get(
     node: Node,
     node_name: str,
@@ -183,15 +256,14 @@ async def get(
     *,
     output: Output,
     hide_type: bool = False,
-    hidden: bool = False,
-    timeout: float = 1.0,
+    **reach: Any,
 ) -> None:
     """Print the value of a parameter.
 
     Raises:
         CommandError: there is no such node or parameter.
     """
-    async with parameters_of(node, node_name, timeout, hidden=hidden) as client:
+    async with parameters_of(node, node_name, **reach) as client:
         found = await client.get_parameters([parameter_name])
         if not found:
             raise await not_declared(client, [parameter_name])
@@ -210,6 +282,15 @@ async def get(
     )
 
 
+@command(
+    param_command,
+    "set",
+    node_argument,
+    parameter_argument,
+    click.argument("value"),
+    *node_options,
+    context_settings={"ignore_unknown_options": True},
+)
 async def set_parameter(
     node: Node,
     node_name: str,
@@ -217,10 +298,12 @@ async def set_parameter(
     value: str,
     *,
     output: Output,
-    hidden: bool = False,
-    timeout: float = 1.0,
+    **reach: Any,
 ) -> int:
-    """Set a parameter to a value in YAML; return the exit status.
+    """Set a parameter to a value in YAML.
+
+    Returns:
+        The exit status.
 
     Raises:
         CommandError: there is no such node, or the value is not valid YAML.
@@ -229,7 +312,7 @@ async def set_parameter(
 
     message = parameter_value(value)
     parameter = Parameter.from_parameter_msg(message_of(parameter_name, message))
-    async with parameters_of(node, node_name, timeout, hidden=hidden) as client:
+    async with parameters_of(node, node_name, **reach) as client:
         (result,) = await client.set_parameters([parameter])
     return print_result(
         output,
@@ -290,21 +373,24 @@ def print_result(
     return 0 if result.successful else 1
 
 
+@command(param_command, "delete", node_argument, parameter_argument, *node_options)
 async def delete(
     node: Node,
     node_name: str,
     parameter_name: str,
     *,
     output: Output,
-    hidden: bool = False,
-    timeout: float = 1.0,
+    **reach: Any,
 ) -> int:
-    """Undeclare a parameter; return the exit status.
+    """Undeclare a parameter.
+
+    Returns:
+        The exit status.
 
     Raises:
         CommandError: there is no such node.
     """
-    async with parameters_of(node, node_name, timeout, hidden=hidden) as client:
+    async with parameters_of(node, node_name, **reach) as client:
         (result,) = await client.delete_parameters([parameter_name])
     return print_result(
         output,
@@ -314,21 +400,29 @@ async def delete(
     )
 
 
+@command(
+    param_command,
+    "describe",
+    node_argument,
+    click.argument(
+        "parameter_names", nargs=-1, required=True, shell_complete=complete_of_node(names_of)
+    ),
+    *node_options,
+)
 async def describe(
     node: Node,
     node_name: str,
     parameter_names: Sequence[str],
     *,
     output: Output,
-    hidden: bool = False,
-    timeout: float = 1.0,
+    **reach: Any,
 ) -> None:
     """Print the type, description and constraints of parameters.
 
     Raises:
         CommandError: there is no such node or parameter.
     """
-    async with parameters_of(node, node_name, timeout, hidden=hidden) as client:
+    async with parameters_of(node, node_name, **reach) as client:
         found = await client.describe_parameters(parameter_names)
         if len(found) < len(parameter_names):
             raise await not_declared(client, parameter_names)
@@ -336,15 +430,14 @@ async def describe(
         output.item("\n".join(description(descriptor)), descriptor_record(node_name, descriptor))
 
 
-async def dump(
-    node: Node, node_name: str, *, output: Output, hidden: bool = False, timeout: float = 1.0
-) -> None:
+@command(param_command, "dump", node_argument, *node_options)
+async def dump(node: Node, node_name: str, *, output: Output, **reach: Any) -> None:
     """Print all parameters of a node as a parameter file.
 
     Raises:
         CommandError: there is no such node.
     """
-    async with parameters_of(node, node_name, timeout, hidden=hidden) as client:
+    async with parameters_of(node, node_name, **reach) as client:
         names = sorted((await client.list_parameters()).names)
         found = await get_all(client, names)
     record = {absolute(node_name): {"ros__parameters": file_form(found, as_numbers=output.json)}}
@@ -360,10 +453,24 @@ async def get_all(client: AsyncParameterClient, names: list[str]) -> list[Parame
     found = await client.get_parameters(names)
     if found or not names:
         return found
-    each = [await client.get_parameters([name]) for name in names]
-    return [parameter for one in each for parameter in one]
+    return [parameter for name in names for parameter in await client.get_parameters([name])]
 
 
+@command(
+    param_command,
+    "load",
+    node_argument,
+    click.argument("parameter_file", type=click.Path(path_type=Path)),
+    click.option(
+        "--no-use-wildcard",
+        "wildcards",
+        is_flag=True,
+        flag_value=False,
+        default=True,
+        help="Ignore the file's values for wildcard nodes.",
+    ),
+    *node_options,
+)
 async def load(
     node: Node,
     node_name: str,
@@ -371,10 +478,12 @@ async def load(
     *,
     output: Output,
     wildcards: bool = True,
-    hidden: bool = False,
-    timeout: float = 1.0,
+    **reach: Any,
 ) -> int:
-    """Set the parameters of a node from a file; return the exit status.
+    """Set the parameters of a node from a file.
+
+    Returns:
+        The exit status.
 
     Raises:
         CommandError: there is no such node.
@@ -391,25 +500,28 @@ async def load(
         raise ParameterFileError(
             str(parameter_file), 0, f"no parameters for {name}, only for {given}"
         )
-    async with parameters_of(node, name, timeout, hidden=hidden) as client:
+    async with parameters_of(node, name, **reach) as client:
         declared = (await client.list_parameters()).names
         present = await get_all(client, [key for key in values if key in declared])
-        before = {one.name: one for one in present}
+        before = {parameter.name: parameter for parameter in present}
         parameters = [like(before.get(key), key, value) for key, value in values.items()]
         results = await client.set_parameters(parameters)
-    for one, result in zip(parameters, results, strict=True):
+    for parameter, result in zip(parameters, results, strict=True):
         # `dump` includes read-only parameters; loading the same value of one is not a failure.
-        if not result.successful and before.get(one.name) == one:
+        if not result.successful and before.get(parameter.name) == parameter:
             result.successful = True
             result.reason = "it already has this value"
     return max(
         print_result(
             output,
             result,
-            (f"Set parameter {one.name} successful", f"Set parameter {one.name} failed"),
-            {"node": name, "name": one.name},
+            (
+                f"Set parameter {parameter.name} successful",
+                f"Set parameter {parameter.name} failed",
+            ),
+            {"node": name, "name": parameter.name},
         )
-        for one, result in zip(parameters, results, strict=True)
+        for parameter, result in zip(parameters, results, strict=True)
     )
 
 
@@ -424,12 +536,13 @@ def like(before: Parameter | None, name: str, value: Any) -> Parameter:
     if value == [] and type_ is not None and type_.name.endswith("_ARRAY"):
         return Parameter(name, type_, value)
     if type_ is ParameterType.BYTE_ARRAY and is_bytes(value):
-        return Parameter(name, type_, [bytes([each]) for each in value])
+        return Parameter(name, type_, [bytes([number]) for number in value])
     return Parameter(name, value=value)
 
 
 def is_bytes(value: Any) -> bool:
     """Return whether a value is a list of integers from 0 to 255."""
     return isinstance(value, list) and all(
-        isinstance(each, int) and not isinstance(each, bool) and 0 <= each < 256 for each in value
+        isinstance(number, int) and not isinstance(number, bool) and 0 <= number < 256
+        for number in value
     )

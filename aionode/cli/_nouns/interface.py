@@ -1,4 +1,4 @@
-"""``aionode interface``: its commands, arguments and options."""
+"""``aionode interface``: show message, service and action types."""
 
 from __future__ import annotations
 
@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
-from aionode.cli._commands.completion import complete_interfaces
+from aionode.cli._support.completion import complete_interfaces
 from aionode.cli._support.options import interfaces_option, json_option
 from aionode.cli._support.output import Output
 from aionode.cli._support.session import run_verb
-from aionode.cli._verbs.interface import KINDS, list_interfaces, package, packages, proto, show
 from aionode.errors import CommandError, InterfaceNotFoundError
 
 if TYPE_CHECKING:
@@ -21,13 +20,13 @@ if TYPE_CHECKING:
 
     from aionode.node import Node
 
-__all__ = ["interface"]
+__all__ = ["interface_command", "list_interfaces", "package", "packages", "proto", "show"]
 
-# Commands
+KINDS = {"msg": "Messages", "srv": "Services", "action": "Actions"}
 
 
-@click.group()
-def interface() -> None:
+@click.group("interface")
+def interface_command() -> None:
     """Show message, service and action types."""
 
 
@@ -50,14 +49,41 @@ def kind_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return with_kinds
 
 
-@interface.command("list")
+# Names
+
+
+def list_interfaces(*, output: Output, kinds: tuple[str, ...] = tuple(KINDS)) -> None:
+    """Print the names of all types."""
+    from aionode.interfaces import interface_names
+
+    names = interface_names()
+    for kind in kinds:
+        output.text(f"{KINDS[kind]}:")
+        for name in of_kinds(names, (kind,)):
+            output.item(f"    {name}", {"name": name, "kind": kind})
+
+
+@interface_command.command("list")
 @kind_options
 def list_command(output: Output, kinds: tuple[str, ...]) -> None:
     """List all types."""
     list_interfaces(output=output, kinds=kinds)
 
 
-@interface.command("package")
+def package(package_name: str, *, output: Output, kinds: tuple[str, ...] = tuple(KINDS)) -> None:
+    """Print the names of the types in one package."""
+    from aionode.interfaces import interface_names
+
+    names = interface_names(package_name)
+    if not names:
+        from aionode.cli._support.lookup import unknown
+
+        raise unknown("Unknown package", package_name, all_packages(), "interface packages")
+    for name in of_kinds(names, kinds):
+        output.item(name, {"name": name, "kind": name.split("/")[1]})
+
+
+@interface_command.command("package")
 @click.argument("package_name", shell_complete=complete_interfaces())
 @kind_options
 def package_command(output: Output, kinds: tuple[str, ...], package_name: str) -> None:
@@ -65,11 +91,35 @@ def package_command(output: Output, kinds: tuple[str, ...], package_name: str) -
     package(package_name.rstrip("/"), output=output, kinds=kinds)
 
 
-@interface.command("packages")
+def packages(*, output: Output, kinds: tuple[str, ...] = tuple(KINDS)) -> None:
+    """Print the names of the packages with types of these kinds."""
+    from aionode.interfaces import interface_names
+
+    for name in all_packages():
+        if of_kinds(interface_names(name), kinds):
+            output.item(name, {"name": name})
+
+
+@interface_command.command("packages")
 @kind_options
 def packages_command(output: Output, kinds: tuple[str, ...]) -> None:
     """List the packages."""
     packages(output=output, kinds=kinds)
+
+
+def all_packages() -> list[str]:
+    """Return the names of all packages."""
+    from aionode.interfaces import known_packages
+
+    return sorted(known_packages())
+
+
+def of_kinds(names: tuple[str, ...], kinds: tuple[str, ...]) -> list[str]:
+    """Return the names of types of some kinds."""
+    return [name for name in names if name.split("/")[1] in kinds]
+
+
+# Definitions
 
 
 def with_class(type_name: str, print_class: Callable[[Any, Output], None], json: bool) -> None:
@@ -88,7 +138,29 @@ def with_class(type_name: str, print_class: Callable[[Any, Output], None], json:
         print_class(cls, Output(json=json))
 
 
-@interface.command("show")
+def show(
+    cls: Any,
+    *,
+    output: Output,
+    comments: Literal["none", "outer", "all"] = "outer",
+) -> None:
+    """Print the definition of a type, with the definitions of nested types indented.
+
+    Args:
+        cls: The class of the type.
+        output: Where to print.
+        comments: Whether to print what fields mean: never, for the type itself, or for nested ones
+            as well. The comments are those of the sourced ROS 2, or else aionode's own.
+    """
+    from aionode.idl import definition_text
+
+    if output.json:
+        output.item("", {"name": cls.__ros_type__, "definition": definition_text(cls)})
+    else:
+        output.raw(definition_text(cls, nested=True, comments=comments))
+
+
+@interface_command.command("show")
 @click.argument("type_name", metavar="TYPE", shell_complete=complete_interfaces())
 @click.option("--all-comments", is_flag=True, help="Print the comments of nested types as well.")
 @click.option("--no-comments", is_flag=True, help="Print no comments.")
@@ -109,7 +181,17 @@ def show_command(type_name: str, all_comments: bool, no_comments: bool, json: bo
     with_class(type_name, lambda cls, output: show(cls, output=output, comments=comments), json)
 
 
-@interface.command("proto")
+def proto(cls: Any, *, output: Output, quotes: bool = True) -> None:
+    """Print the default values of a type in YAML, as a template for ``pub`` and ``call``."""
+    from aionode.message import ActionType, ServiceType, to_builtins, to_yaml
+
+    part = cls.Goal if issubclass(cls, ActionType) else cls
+    part = cls.Request if issubclass(cls, ServiceType) else part
+    text = to_yaml(part())
+    output.item(f'"{text}"' if quotes else text, to_builtins(part()))
+
+
+@interface_command.command("proto")
 @click.argument("type_name", metavar="TYPE", shell_complete=complete_interfaces())
 @click.option("--no-quotes", is_flag=True, help="Print no quotes around the values.")
 @json_option
@@ -119,7 +201,7 @@ def proto_command(type_name: str, no_quotes: bool, json: bool) -> None:
     with_class(type_name, lambda cls, output: proto(cls, output=output, quotes=not no_quotes), json)
 
 
-@interface.command("generate")
+@interface_command.command("generate")
 @click.argument("path", type=click.Path(exists=True, file_okay=False, path_type=Path))
 @click.option(
     "-o",

@@ -1,12 +1,17 @@
-"""The verbs info and send_goal of ``aionode action``."""
+"""``aionode action``: send goals; list and inspect actions."""
 
 from __future__ import annotations
 
 import asyncio
 from typing import TYPE_CHECKING, Any
 
+import click
+
 from aionode.cli._support import lookup
-from aionode.cli._support.nouns import ACTION
+from aionode.cli._support.command import add_type_and_find, command
+from aionode.cli._support.completion import complete_types_of, complete_values, name_argument
+from aionode.cli._support.nouns import ACTION, with_types
+from aionode.cli._support.options import count_option, positive, read_values, types_option
 from aionode.cli._support.yaml_messages import message_from_yaml
 from aionode.errors import CommandError, EntityDestroyedError, GoalRejectedError
 from aionode.graph import EndpointKind
@@ -18,7 +23,7 @@ if TYPE_CHECKING:
     from aionode.graph import NodeInfo
     from aionode.node import Node
 
-__all__ = ["STOP_S", "info", "send_goal"]
+__all__ = ["action_command", "info", "send_goal"]
 
 CANCEL_S = 2.0
 """Timeout for the server's answer to a cancel request, in seconds."""
@@ -32,6 +37,31 @@ STOP_S = CANCEL_S + ENDED_S + 1.5
 USERS = {"clients": EndpointKind.SUBSCRIPTION, "servers": EndpointKind.PUBLISHER}
 
 
+action_argument = name_argument("action")
+
+
+@click.group("action")
+def action_command() -> None:
+    """Send goals; list and inspect actions."""
+
+
+command(
+    action_command,
+    "list",
+    types_option,
+    count_option("actions"),
+    help="List the actions that have a server or a client.",
+)(ACTION.list_names)
+add_type_and_find(action_command, ACTION, "action")
+
+
+@command(
+    action_command,
+    "info",
+    action_argument,
+    types_option,
+    click.option("-c", "--count", is_flag=True, help="Print only how many there are."),
+)
 async def info(
     node: Node, action_name: str, *, output: Output, types: bool = False, count: bool = False
 ) -> None:
@@ -48,9 +78,9 @@ async def info(
     output.text(f"Action: {name}")
     for word, nodes in users.items():
         output.text(f"Action {word}: {len(nodes)}")
-        for each in () if count else nodes:
-            shown = f" [{', '.join(each['types'])}]" if types else ""
-            output.text(f"    {each['node']}{shown}")
+        for user in () if count else nodes:
+            name = user["node"]
+            output.text(f"    {with_types(name, user['types']) if types else name}")
 
 
 def nodes_with(node: Node, name: str, kind: EndpointKind) -> list[dict[str, Any]]:
@@ -68,6 +98,23 @@ def nodes_with(node: Node, name: str, kind: EndpointKind) -> list[dict[str, Any]
     ]
 
 
+@command(
+    action_command,
+    "send_goal",
+    action_argument,
+    click.argument("action_type", shell_complete=complete_types_of("action", "action")),
+    click.argument(
+        "values", metavar="[GOAL]", required=False, shell_complete=complete_values("action")
+    ),
+    click.option("--stdin", is_flag=True, help="Read the goal from standard input."),
+    click.option("-f", "--feedback", is_flag=True, help="Print the feedback."),
+    click.option(
+        "--timeout", metavar="N", type=positive, help="Wait at most N seconds for a server."
+    ),
+    interfaces=True,
+    prepare=read_values,
+    stop_s=STOP_S,
+)
 async def send_goal(
     node: Node,
     action_name: str,
@@ -78,10 +125,23 @@ async def send_goal(
     feedback: bool = False,
     timeout: float | None = None,
 ) -> int:
-    """Send a goal in YAML, and print its result; return 0 if it succeeded, else 1.
+    """Send a goal in YAML, such as '{order: 10}', and print its result.
 
-    It waits at most `timeout` seconds for a server. Cancelling it cancels the goal, prints the
-    result, and returns 0 if the server agreed, as ros2 does.
+    Ctrl-C cancels the goal and prints its result. The exit status is 0 if the goal succeeded, or
+    was canceled so.
+
+    Args:
+        node: The command's node.
+        action_name: Name of the action.
+        action_type: ROS name of its type.
+        output: Where to print.
+        values: The goal in YAML.
+        feedback: Whether feedback is printed.
+        timeout: Maximum time to wait for a server, in seconds; None is unlimited.
+
+    Returns:
+        The exit status: 0 if the goal succeeded, or if this was cancelled and the server agreed to
+        cancel the goal, as with ros2; else 1.
 
     Raises:
         CommandError: the action has another type, the goal is invalid, no server appeared, or the
@@ -133,13 +193,7 @@ async def class_of(node: Node, name: str, action_type: str) -> Any:
     types = ACTION.types_by_name(node).get(name, [])
     if action_type in types:
         return await lookup.type_of_action(node, name, action_type)
-    found = lookup.interface_class("action", action_type)
-    if types and found.__ros_type__ not in types:
-        raise CommandError(
-            f"The passed action type is invalid: '{name}' has type {', '.join(types)}, "
-            f"not {action_type}"
-        )
-    return found
+    return lookup.class_given("action", action_type, name, types)
 
 
 async def watch(

@@ -1,4 +1,4 @@
-"""``aionode run``: finding the node classes to run in one process."""
+"""``aionode run``: node classes together in one process, or a program of rclpy."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
+import click
+
 from aionode.errors import CommandError
 from aionode.interfaces import shipped_packages
 from aionode.node import Node
@@ -19,11 +21,59 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from types import ModuleType
 
-__all__ = ["FITS", "ROS_ARGS", "is_rclpy_program", "node_maker", "run_program"]
+__all__ = ["node_maker", "run_command"]
 
 ROS_ARGS = "--ros-args"
 
 FITS = "expected MODULE:CLASS, such as my_robot.nodes:Talker or talker.py:Talker"
+
+
+@click.command(
+    context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False},
+)
+@click.argument(
+    "args", nargs=-1, metavar="[MODULE:CLASS...|PROGRAM.py [ARGS]...]", type=click.UNPROCESSED
+)
+@click.option("-m", "module", metavar="MODULE", help="Run a module as a program of rclpy.")
+@click.option("--rclpy", is_flag=True, help="Take a file for a program of rclpy in any case.")
+@click.option(
+    "--interfaces",
+    multiple=True,
+    type=click.Path(),
+    metavar="FOLDER",
+    help="Message packages that a program of rclpy uses; may be repeated.",
+)
+def run_command(
+    args: tuple[str, ...], module: str | None, rclpy: bool, interfaces: tuple[str, ...]
+) -> None:
+    """Run node classes together in one process, or a program of rclpy.
+
+    Each MODULE:CLASS is imported, from the current folder or an installed package, and created
+    without arguments; a file such as talker.py:Talker works too. What follows --ros-args applies to
+    all nodes.
+
+    A file that imports rclpy, or a message package such as std_msgs, runs as it is, without ROS:
+    aionode takes their place. What follows the name of the file are its own arguments.
+    """
+    from aionode.runner import run
+
+    if module is not None:
+        run_program(interfaces, ("-m", module, *args))
+    elif args and (rclpy or is_rclpy_program(args[0])):
+        run_program(interfaces, args)
+    if rclpy or interfaces:
+        raise click.UsageError("--rclpy and --interfaces are for programs of rclpy.")
+    at = args.index(ROS_ARGS) if ROS_ARGS in args else len(args)
+    specs, ros_args = args[:at], args[at:]
+    for spec in specs:
+        if spec.startswith("-"):
+            raise click.UsageError(
+                f"No such option '{spec}': arguments of nodes follow {ROS_ARGS}."
+            )
+    if not specs:
+        raise click.UsageError(f"Nothing to run: {FITS}.")
+    sys.path.insert(0, str(Path.cwd()))
+    run(*(node_maker(spec) for spec in specs), args=list(ros_args))
 
 
 def node_maker(spec: str) -> Callable[[], Any]:
@@ -38,14 +88,14 @@ def node_maker(spec: str) -> Callable[[], Any]:
     module = module_of(source, spec)
     if not name:
         return only_node_class(module, spec)
-    made: Any = module
+    maker: Any = module
     for part in name.split("."):
-        made = getattr(made, part, None)
-    if not callable(made) or (isinstance(made, type) and not issubclass(made, Node)):
+        maker = getattr(maker, part, None)
+    if not callable(maker) or (isinstance(maker, type) and not issubclass(maker, Node)):
         known = ", ".join(node_classes(module)) or "none"
-        what = "nothing of that name" if made is None else "neither a node class nor a function"
+        what = "nothing of that name" if maker is None else "neither a node class nor a function"
         raise CommandError(f"{spec}: {what} in {source}; its node classes: {known}")
-    return made  # type: ignore[no-any-return]  # checked to be callable above
+    return maker  # type: ignore[no-any-return]  # checked to be callable above
 
 
 def is_rclpy_program(name: str) -> bool:

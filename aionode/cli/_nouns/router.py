@@ -1,14 +1,18 @@
-"""``aionode router``: its commands, arguments and options."""
+"""``aionode router``: a Zenoh router where there is no ``rmw_zenohd``."""
 
 from __future__ import annotations
 
+import asyncio
 import os
+from typing import TYPE_CHECKING
 
 import click
 
 from aionode.cli._support.output import Output
 from aionode.cli._support.session import run_until_stopped
-from aionode.cli._verbs.router import route
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 __all__ = ["router_command"]
 
@@ -38,6 +42,36 @@ def router_command(listen: tuple[str, ...], connect: tuple[str, ...], json: bool
     from aionode.transport._zenoh_config import ROUTER_PORT, network_from, peer_endpoints
 
     endpoints = listen or (f"tcp/[::]:{network_from(os.environ).router_port}",)
-    peers = [one for host in connect for one in peer_endpoints(host, "--connect", (ROUTER_PORT,))]
+    peers = [
+        endpoint
+        for host in connect
+        for endpoint in peer_endpoints(host, "--connect", (ROUTER_PORT,))
+    ]
     status = run_until_stopped(route(endpoints, peers, output=Output(json=json)))
     raise click.exceptions.Exit(status or 0)
+
+
+async def route(endpoints: Sequence[str], peers: Sequence[str] = (), *, output: Output) -> int:
+    """Run a router that listens on Zenoh endpoints, until cancelled.
+
+    Args:
+        endpoints: Where it listens.
+        peers: The Zenoh endpoints of the routers with which it is linked.
+        output: Where to print.
+
+    Raises:
+        TransportError: it cannot listen there.
+    """
+    from aionode.transport.zenoh._session import close_session, open_router
+
+    session = await open_router(endpoints, peers)
+    try:
+        linked = f", and links this machine with {', '.join(peers)}" if peers else ""
+        output.item(
+            f"Router is listening on {', '.join(endpoints)}{linked}. Ctrl-C ends it.",
+            {"listen": list(endpoints), "connect": list(peers)},
+        )
+        await asyncio.get_running_loop().create_future()
+    finally:
+        await asyncio.shield(close_session(session))
+    return 0

@@ -53,10 +53,10 @@ def plain(parameter: Parameter, *, as_numbers: bool = False) -> Any:
     """Return the value of a parameter for printing, with bytes as ros2 has them or as numbers."""
     value = parameter.value
     if isinstance(value, bytes | bytearray):
-        value = [bytes((each,)) for each in value]
+        value = [bytes((number,)) for number in value]
     if not isinstance(value, list | tuple):
         return value
-    return [each[0] if as_numbers and isinstance(each, bytes) else each for each in value]
+    return [item[0] if as_numbers and isinstance(item, bytes) else item for item in value]
 
 
 def description(descriptor: ParameterDescriptor) -> list[str]:

@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import asyncio
 import os
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+import click
+
 from aionode._distribution import other_distribution
+from aionode.cli._nouns.doctor_diagnosis import Finding, diagnose
+from aionode.cli._nouns.doctor_routes import link_findings, pairs_of, query_links
 from aionode.cli._support import lookup
-from aionode.cli._support.diagnosis import Finding, diagnose
-from aionode.cli._support.routes import link_findings, pairs_of, query_links
+from aionode.cli._support.completion import complete_names
+from aionode.cli._support.options import json_option, ros2_options
+from aionode.cli._support.session import run_verb
 from aionode.clock import perf_ns
 from aionode.errors import FAST_DDS_REMEDY, FAST_DDS_SILENCE
 from aionode.graph import SERVICE_KINDS, TOPIC_KINDS, EndpointKind
@@ -23,7 +29,7 @@ if TYPE_CHECKING:
     from aionode.node import Node
     from aionode.transport._zenoh_config import Network
 
-__all__ = ["doctor", "network_findings"]
+__all__ = ["doctor", "doctor_command", "network_findings"]
 
 PROBE_S = 0.2
 """Timeout for a router on this machine to accept a connection, in seconds; it takes 0.1 ms."""
@@ -35,6 +41,19 @@ DOMAINS_AGAIN_S = 0.02
 """How often to look for them, in seconds."""
 
 ZENOH = "rmw_zenoh_cpp"
+
+
+@click.command()
+@click.argument("names", nargs=-1, shell_complete=complete_names("topic"))
+@json_option
+@ros2_options
+def doctor_command(names: tuple[str, ...], json: bool) -> None:
+    """Summarize the network, and find out why endpoints do not communicate.
+
+    NAMES of nodes, topics and services limit it to those, and show by which route each publisher
+    reaches each subscription. The exit status is 1 if a problem was found.
+    """
+    run_verb(lambda node, output: doctor(node, names, output=output), json=json)
 
 
 async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> int:
@@ -69,7 +88,7 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
         "middleware": middleware,
         "router": has_router,
         "bridges": len(bridges),
-        "participants": len({one.participant for one in nodes}),
+        "participants": len({info.participant for info in nodes}),
         "nodes": len(nodes),
         "topics": count(endpoints, *TOPIC_KINDS),
         "services": count(endpoints, *SERVICE_KINDS),
@@ -81,7 +100,7 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
         lines += [f"  {pair.text()}" for pair in pairs]
     output.item("\n".join(lines), record)
     found = diagnose(nodes, endpoints)
-    hashes = {one.type_hash for one in endpoints if not one.node.bridged}
+    hashes = {end.type_hash for end in endpoints if not end.node.bridged}
     hint = other_distribution(node.context.ros_distro, hashes)
     if hint is not None:
         problem, remedy = hint.split(": ")
@@ -97,12 +116,7 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
     for finding in found:
         output.item(
             f"\n{finding.severity}: {finding.subject}: {finding.text}\n  -> {finding.remedy}",
-            {
-                "severity": finding.severity,
-                "subject": finding.subject,
-                "text": finding.text,
-                "remedy": finding.remedy,
-            },
+            asdict(finding),
         )
     problems = sum(finding.severity == "problem" for finding in found)
     output.text(f"\n{problems} problem(s), {len(found) - problems} hint(s)")
@@ -144,25 +158,25 @@ def chosen(node: Node, names: Sequence[str]) -> tuple[list[NodeInfo], list[Endpo
     if not names:
         return nodes, endpoints
     wanted = full_names(names)
-    known = {one.fully_qualified_name for one in nodes} | {one.name for one in endpoints}
+    known = {info.fully_qualified_name for info in nodes} | {end.name for end in endpoints}
     for name in sorted(wanted - known):
         raise lookup.unknown("No node, topic or service", name, known, "node list")
     # A counterpart may be misspelled, so endpoints with similar names are kept.
-    of_nodes = {one.name for one in endpoints if one.node.fully_qualified_name in wanted}
+    of_nodes = {end.name for end in endpoints if end.node.fully_qualified_name in wanted}
     near = {
         name
-        for name in {one.name for one in endpoints}
-        if any(lookup.likeness(name, each) >= lookup.ALIKE for each in wanted | of_nodes)
+        for name in {end.name for end in endpoints}
+        if any(lookup.likeness(name, other) >= lookup.ALIKE for other in wanted | of_nodes)
     }
     return (
-        [one for one in nodes if one.fully_qualified_name in wanted] or nodes,
-        [one for one in endpoints if one.name in wanted | of_nodes | near],
+        [info for info in nodes if info.fully_qualified_name in wanted] or nodes,
+        [end for end in endpoints if end.name in wanted | of_nodes | near],
     )
 
 
 def full_names(names: Sequence[str]) -> set[str]:
     """Return the names with their leading slash."""
-    return {name if name.startswith("/") else f"/{name}" for name in names}
+    return set(map(lookup.absolute, names))
 
 
 def middleware_of(node: Node) -> str:

@@ -112,31 +112,26 @@ def mismatch(offering: EndpointInfo, requesting: EndpointInfo) -> Iterator[Findi
     found = offering.compare(requesting)
     if found is None:
         return
-    if found.aspect == "type":
-        yield Finding(
-            "problem",
-            subject_of(offering),
-            f"{pair} do not communicate: their types are {offering.type_name} and "
-            f"{requesting.type_name}",
+    differing = {
+        "type": (
+            f"their types are {offering.type_name} and {requesting.type_name}",
             "use one type on both sides, or different names",
-        )
-        return
-    if found.aspect == "distribution":
-        yield Finding(
-            "problem",
-            subject_of(offering),
-            f"{pair} do not communicate: one is of ROS 2 Humble, the other of a newer distribution",
+        ),
+        "distribution": (
+            "one is of ROS 2 Humble, the other of a newer distribution",
             "use one distribution",
-        )
-        return
-    if found.aspect == "definition":
-        yield Finding(
-            "problem",
-            subject_of(offering),
-            f"{pair} do not communicate: their definitions of {offering.type_name} differ "
-            f"({offering.type_hash}, {requesting.type_hash})",
+        ),
+        "definition": (
+            (
+                f"their definitions of {offering.type_name} differ "
+                f"({offering.type_hash}, {requesting.type_hash})"
+            ),
             "use the same version of the interface package on both sides",
-        )
+        ),
+    }.get(found.aspect)
+    if differing is not None:
+        text, remedy = differing
+        yield Finding("problem", subject_of(offering), f"{pair} do not communicate: {text}", remedy)
         return
     if offering.node.participant == requesting.node.participant:
         yield Finding(

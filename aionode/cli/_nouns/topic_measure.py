@@ -1,4 +1,4 @@
-"""``aionode topic hz``, ``bw`` and ``delay``.
+"""``aionode topic hz``, ``bw`` and ``delay``, and the statistics that they print.
 
 Messages are timed on arrival, not when they are processed, and decoded only if their content is
 needed, so the results hold at rates too high for printing. Messages of the first moments are not
@@ -8,31 +8,41 @@ counted: connecting delays them.
 from __future__ import annotations
 
 import asyncio
+import math
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import click
+
+from aionode.cli._support.command import command
+from aionode.cli._support.completion import complete_names, name_argument
 from aionode.cli._support.follow import Follower, filter_from, wait_for_type
-from aionode.cli._support.statistics import (
-    Bandwidth,
-    Intervals,
-    Spread,
-    Window,
-    size_texts,
-    table_text,
-)
+from aionode.cli._support.options import CommandT, filter_option, natural
 from aionode.errors import CommandError
 from aionode.message import fields, type_name
 from aionode.qos import qos_profile_sensor_data
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     from aionode.cli._support.output import Output
     from aionode.endpoints.subscription import MessageInfo, Subscription
     from aionode.message import Message
     from aionode.node import Node
 
-__all__ = ["bw", "delay", "hz"]
+__all__ = [
+    "Bandwidth",
+    "Intervals",
+    "bw",
+    "delay",
+    "hz",
+    "measuring",
+    "size_texts",
+    "spread_of",
+]
 
 DEPTH = 10_000
 """Queue depth: one second of the fastest topics."""
@@ -56,10 +66,42 @@ LEAST_FIRST = (5, 4, 3, 2)
 SILENT = ("-",) * (len(HZ_HEADER) - 1)
 """What stands for the statistics of a silent topic."""
 
+measuring = click.Group("topic")
+"""The commands of this module; the group ``topic`` has them too."""
+
+topic_argument = name_argument("topic")
+
+
+def window_option(default: int) -> Callable[[CommandT], CommandT]:
+    """Return the option for the number of messages in the statistics."""
+    return click.option(
+        "-w",
+        "--window",
+        metavar="N",
+        type=natural,
+        default=default,
+        show_default=True,
+        help="Number of messages in the statistics.",
+    )
+
 
 # Rate
 
 
+@command(
+    measuring,
+    "hz",
+    click.argument("topic_names", nargs=-1, required=True, shell_complete=complete_names("topic")),
+    window_option(10_000),
+    filter_option("Count"),
+    click.option(
+        "--wall-time", is_flag=True, help="Measure in this machine's time, not in ROS time."
+    ),
+    interfaces=True,
+    sim_time=True,
+    endless=True,
+    busy=True,
+)
 async def hz(
     node: Node,
     topic_names: Sequence[str],
@@ -69,7 +111,7 @@ async def hz(
     filter_text: str | None = None,
     wall_time: bool = False,
 ) -> None:
-    """Print the rate of messages, once a second, until cancelled.
+    """Print the rate of messages, once a second.
 
     Raises:
         CommandError: the type of a topic cannot be determined, or the filter is invalid.
@@ -165,6 +207,22 @@ async def every_second(node: Node, follower: Follower, show: Callable[[], None])
     await follower.finished()
 
 
+def spread_text(spread: Spread) -> str:
+    """Return the extremes and deviation in seconds, and the number of durations, as ros2 does."""
+    _, low, high, deviation, count = hz_values(spread)
+    return f"\tmin: {low}s max: {high}s std dev: {deviation}s window: {count}"
+
+
+def spread_record(spread: Spread) -> dict[str, Any]:
+    """Return the parts of a record that `spread_text` shows."""
+    return {
+        "min_s": spread.low / 1e9,
+        "max_s": spread.high / 1e9,
+        "std_dev_s": spread.deviation / 1e9,
+        "window": spread.count,
+    }
+
+
 def hz_values(spread: Spread) -> tuple[str, str, str, str, str]:
     """Return the rate in Hz, extremes and deviation in seconds, and the number of intervals."""
     return (
@@ -181,14 +239,7 @@ def hz_record(name: str, spread: Spread | None) -> dict[str, Any]:
     if spread is None:
         silent = dict.fromkeys(("min_s", "max_s", "std_dev_s"))
         return {"topic": name, "rate_hz": 0.0, **silent, "window": 0}
-    return {
-        "topic": name,
-        "rate_hz": spread.rate_hz,
-        "min_s": spread.low / 1e9,
-        "max_s": spread.high / 1e9,
-        "std_dev_s": spread.deviation / 1e9,
-        "window": spread.count,
-    }
+    return {"topic": name, "rate_hz": spread.rate_hz, **spread_record(spread)}
 
 
 class RateTable:
@@ -242,10 +293,8 @@ def print_rate(output: Output, name: str, intervals: Intervals, dropped: Dropped
     spread = intervals.spread()
     if spread is None:
         return
-    rate, low, high, deviation, count = hz_values(spread)
     output.item(
-        f"average rate: {rate}\n\tmin: {low}s max: {high}s std dev: {deviation}s window: {count}",
-        hz_record(name, spread),
+        f"average rate: {spread.rate_hz:.3f}\n{spread_text(spread)}", hz_record(name, spread)
     )
 
 
@@ -296,8 +345,11 @@ def columns_for(rows: list[tuple[str, ...]], width: int) -> list[int]:
 # Bandwidth
 
 
+@command(
+    measuring, "bw", topic_argument, window_option(100), interfaces=True, endless=True, busy=True
+)
 async def bw(node: Node, topic_name: str, *, output: Output, window: int = 100) -> None:
-    """Print the bandwidth of a topic, once a second, until cancelled.
+    """Print the bandwidth of a topic, once a second.
 
     Raises:
         CommandError: the type of the topic cannot be determined.
@@ -339,8 +391,18 @@ async def bw(node: Node, topic_name: str, *, output: Output, window: int = 100) 
 # Age
 
 
+@command(
+    measuring,
+    "delay",
+    topic_argument,
+    window_option(10_000),
+    interfaces=True,
+    sim_time=True,
+    endless=True,
+    busy=True,
+)
 async def delay(node: Node, topic_name: str, *, output: Output, window: int = 10_000) -> None:
-    """Print the age of messages by the stamp in their header, once a second, until cancelled.
+    """Print the age of messages on arrival, by the stamp in their header.
 
     Raises:
         CommandError: the type cannot be determined, or it has no header.
@@ -367,17 +429,8 @@ async def delay(node: Node, topic_name: str, *, output: Output, window: int = 10
         if spread is None:
             return
         output.item(
-            f"average delay: {spread.mean / 1e9:.3f}\n"
-            f"\tmin: {spread.low / 1e9:.3f}s max: {spread.high / 1e9:.3f}s "
-            f"std dev: {spread.deviation / 1e9:.5f}s window: {spread.count}",
-            {
-                "topic": name,
-                "delay_s": spread.mean / 1e9,
-                "min_s": spread.low / 1e9,
-                "max_s": spread.high / 1e9,
-                "std_dev_s": spread.deviation / 1e9,
-                "window": spread.count,
-            },
+            f"average delay: {spread.mean / 1e9:.3f}\n{spread_text(spread)}",
+            {"topic": name, "delay_s": spread.mean / 1e9, **spread_record(spread)},
         )
 
     await every_second(node, follower, show)
@@ -391,3 +444,135 @@ def has_header(msg_type: Any) -> bool:
         and type_name(field.type.nested) == "std_msgs/msg/Header"
         for field in fields(msg_type)
     )
+
+
+# Statistics: pure computation, which receives and prints nothing
+
+
+@dataclass(frozen=True, slots=True)
+class Spread:
+    """Mean, extremes, population standard deviation and count of durations in nanoseconds."""
+
+    mean: float
+    low: int
+    high: int
+    deviation: float
+    count: int
+
+    @property
+    def rate_hz(self) -> float:
+        """How many of them there are in a second; 0 if they are all zero."""
+        return 1e9 / self.mean if self.mean else 0.0
+
+
+def spread_of(values: Sequence[int]) -> Spread:
+    """Return the spread of at least one duration."""
+    count = len(values)
+    mean = sum(values) / count
+    deviation = math.sqrt(sum((value - mean) ** 2 for value in values) / count)
+    return Spread(mean, min(values), max(values), deviation, count)
+
+
+class Window:
+    """The newest durations, and whether any has been added since the last `spread`."""
+
+    def __init__(self, size: int) -> None:
+        self._values: deque[int] = deque(maxlen=size)
+        self._fresh = False
+
+    def add(self, value_ns: int) -> None:
+        """Add a duration; the oldest is dropped when the window is full."""
+        self._values.append(value_ns)
+        self._fresh = True
+
+    def clear(self) -> bool:
+        """Drop all durations; return whether there were any."""
+        had = bool(self._values)
+        self._values.clear()
+        self._fresh = False
+        return had
+
+    def spread(self) -> Spread | None:
+        """Return the spread, or None if nothing was added since the last call."""
+        if not self._fresh:
+            return None
+        self._fresh = False
+        return spread_of(list(self._values))
+
+
+class Intervals(Window):
+    """The time between one message and the next."""
+
+    def __init__(self, size: int) -> None:
+        super().__init__(size)
+        self._last_ns: int | None = None
+
+    def arrive(self, now_ns: int) -> bool:
+        """Record a message; return whether time went backwards, which resets the window."""
+        last_ns, self._last_ns = self._last_ns, now_ns
+        if last_ns is None:
+            return False
+        if now_ns < last_ns:
+            return self.clear()
+        self.add(now_ns - last_ns)
+        return False
+
+
+@dataclass(frozen=True, slots=True)
+class Throughput:
+    """Bytes per second of the messages in a window, and their sizes in bytes."""
+
+    bytes_per_s: float
+    count: int
+    mean: float
+    low: int
+    high: int
+
+
+class Bandwidth:
+    """Sizes and arrival times of the newest messages."""
+
+    def __init__(self, size: int) -> None:
+        self._messages: deque[tuple[int, int]] = deque(maxlen=size)
+
+    def arrive(self, now_ns: int, size_bytes: int) -> None:
+        """Record a message."""
+        self._messages.append((now_ns, size_bytes))
+
+    def rate(self, now_ns: int) -> Throughput | None:
+        """Return the rate since the oldest message; None with less than two.
+
+        The oldest message starts the measured time, so its own bytes do not count. The time ends
+        with the newest message, or at `now_ns` once the next one is overdue.
+        """
+        if len(self._messages) < 2:
+            return None
+        sizes = [size for _, size in self._messages]
+        first_ns, last_ns = self._messages[0][0], self._messages[-1][0]
+        overdue_ns = now_ns - last_ns - (last_ns - first_ns) / (len(sizes) - 1)
+        duration_s = (last_ns - first_ns + max(overdue_ns, 0)) / 1e9
+        if duration_s <= 0:
+            return None
+        total = sum(sizes)
+        speed = (total - sizes[0]) / duration_s
+        return Throughput(speed, len(sizes), total / len(sizes), min(sizes), max(sizes))
+
+
+def size_texts(bytes_per_s: float, *sizes: float) -> list[str]:
+    """Return the rate and sizes as text, all in the unit that suits the rate."""
+    if bytes_per_s < 1e3:
+        return [f"{size:.0f} B" for size in (bytes_per_s, *sizes)]
+    unit, divisor = ("KB", 1e3) if bytes_per_s < 1e6 else ("MB", 1e6)
+    return [f"{size / divisor:.2f} {unit}" for size in (bytes_per_s, *sizes)]
+
+
+def table_text(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Return a table for a plain terminal."""
+    widths = [max(len(row[i]) for row in (header, *rows)) for i in range(len(header))]
+    head = "   ".join(word.center(width) for word, width in zip(header, widths, strict=True))
+    line = "=" * (sum(widths) + 3 * (len(widths) - 1))
+    body = "\n".join(
+        "   ".join(word.ljust(width) for word, width in zip(row, widths, strict=True))
+        for row in rows
+    )
+    return f"{head}\n{line}\n{body}\n"

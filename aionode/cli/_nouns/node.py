@@ -1,12 +1,16 @@
-"""The verbs of ``aionode node``."""
+"""``aionode node``: list and inspect nodes."""
 
 from __future__ import annotations
 
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from aionode._node.graph import actions_among
+import click
+
 from aionode.cli._support import lookup
+from aionode.cli._support.command import command
+from aionode.cli._support.completion import name_argument
+from aionode.cli._support.options import count_option, hidden_nodes_option
 from aionode.graph import EndpointKind
 
 if TYPE_CHECKING:
@@ -14,15 +18,21 @@ if TYPE_CHECKING:
     from aionode.graph import NodeInfo
     from aionode.node import Node
 
-__all__ = ["info", "list_nodes"]
+__all__ = ["info", "list_nodes", "node_command"]
 
 Offer = dict[str, list[str]]
 
 
+@click.group("node")
+def node_command() -> None:
+    """List and inspect nodes."""
+
+
+@command(node_command, "list", hidden_nodes_option, count_option("nodes"))
 async def list_nodes(
     node: Node, *, output: Output, hidden: bool = False, count: bool = False
 ) -> None:
-    """Print the full name of every node."""
+    """List the nodes on the network."""
     names = [info.fully_qualified_name for info in lookup.node_infos(node, hidden=hidden)]
     if count:
         output.item(str(len(names)), {"nodes": len(names)})
@@ -36,6 +46,12 @@ async def list_nodes(
         output.item(name, {"name": name})
 
 
+@command(
+    node_command,
+    "info",
+    name_argument("node"),
+    click.option("--include-hidden", "hidden", is_flag=True, help="Show hidden names as well."),
+)
 async def info(node: Node, node_name: str, *, output: Output, hidden: bool = False) -> None:
     """Print the topics, services and actions of a node.
 
@@ -44,7 +60,7 @@ async def info(node: Node, node_name: str, *, output: Output, hidden: bool = Fal
     """
     name = lookup.absolute(node_name)
     nodes = lookup.node_infos(node, hidden=True)
-    times = Counter(one.fully_qualified_name for one in nodes)
+    times = Counter(info.fully_qualified_name for info in nodes)
     if not times[name]:
         raise lookup.unknown("Unable to find node", node_name, times, "node list")
     if times[name] > 1:
@@ -52,7 +68,7 @@ async def info(node: Node, node_name: str, *, output: Output, hidden: bool = Fal
             f'There are {times[name]} nodes in the graph with the exact name "{name}". '
             "You are seeing information about only one of them."
         )
-    found = next(one for one in nodes if one.fully_qualified_name == name)
+    found = next(info for info in nodes if info.fully_qualified_name == name)
     offers = offers_of(node, found, hidden=hidden)
     if output.json:
         output.item("", {"name": name, **{key(title): of for title, of in offers.items()}})
@@ -76,8 +92,7 @@ def offers_of(node: Node, found: NodeInfo, *, hidden: bool) -> dict[str, Offer]:
         return lookup.names_and_types(node, kind, hidden=hidden, of=found)
 
     def actions(kind: EndpointKind) -> Offer:
-        topics = lookup.names_and_types(node, kind, hidden=True, of=found)
-        return dict(actions_among(list(topics.items())))
+        return lookup.actions_and_types(node, kind, of=found)
 
     return {
         "Subscribers": offer(EndpointKind.SUBSCRIPTION),

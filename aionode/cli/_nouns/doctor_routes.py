@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from aionode.cli._support.diagnosis import Finding
+from aionode.cli._nouns.doctor_diagnosis import Finding
 from aionode.graph import EndpointKind
 
 if TYPE_CHECKING:
@@ -137,15 +137,15 @@ def why_unlinked(
 ) -> str:
     """Return why the processes of two endpoints are not linked, judging by their advertisements."""
     nodes = (publisher.node, subscription.node)
-    one, other = (advertisements.get(node.participant) for node in nodes)
-    if one is None or other is None:
+    mine, theirs = (advertisements.get(node.participant) for node in nodes)
+    if mine is None or theirs is None:
         silent = [n.fully_qualified_name for n in nodes if n.participant not in advertisements]
         return f"no link offered by {' and '.join(silent)}"
-    if one.host != other.host:
+    if mine.host != theirs.host:
         return "on two hosts"
-    if one.uid != other.uid:
+    if mine.uid != theirs.uid:
         return "of two users"
-    return UNLINKED if one.version == other.version else VERSIONS
+    return UNLINKED if mine.version == theirs.version else VERSIONS
 
 
 def link_findings(pairs: Iterable[Pair]) -> list[Finding]:

@@ -1,10 +1,15 @@
-"""The verbs of ``aionode lifecycle``."""
+"""``aionode lifecycle``: show and change the states of managed nodes."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeVar
 
+import click
+
 from aionode.cli._support import lookup
+from aionode.cli._support.command import command
+from aionode.cli._support.completion import complete_of_node, name_argument
+from aionode.cli._support.options import count_option, hidden_nodes_option
 from aionode.errors import CommandError
 from aionode.graph import EndpointKind
 from aionode.interfaces.lifecycle_msgs.msg import Transition
@@ -19,11 +24,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "get_state",
+    "lifecycle_command",
     "list_nodes",
     "list_transitions",
-    "managed_nodes",
     "set_state",
-    "transitions",
 ]
 
 RequestT = TypeVar("RequestT", bound=Message)
@@ -33,7 +37,12 @@ ResponseT = TypeVar("ResponseT", bound=Message)
 ANSWER_S = 10.0
 """Timeout for answers that need no work of the node, in seconds."""
 
-# Verbs
+node_argument = name_argument("node")
+
+
+@click.group("lifecycle")
+def lifecycle_command() -> None:
+    """Show and change the states of managed nodes."""
 
 
 def managed_nodes(node: Node, *, hidden: bool = False) -> list[str]:
@@ -48,18 +57,23 @@ def managed_nodes(node: Node, *, hidden: bool = False) -> list[str]:
     return sorted(names)
 
 
+@command(lifecycle_command, "nodes", hidden_nodes_option, count_option("nodes"))
 async def list_nodes(
     node: Node, *, output: Output, hidden: bool = False, count: bool = False
 ) -> None:
-    """Print the full name of every managed node."""
+    """List the managed nodes."""
     names = managed_nodes(node, hidden=hidden)
-    if count:
-        output.item(str(len(names)), {"nodes": len(names)})
-        return
-    for name in names:
-        output.item(name, {"name": name})
+    output.items([(name, {"name": name}) for name in names], count="nodes" * count)
 
 
+@command(
+    lifecycle_command,
+    "get",
+    name_argument("node", required=False),
+    click.option(
+        "--include-hidden-nodes", "hidden", is_flag=True, help="Show hidden nodes as well."
+    ),
+)
 async def get_state(
     node: Node, node_name: str | None, *, output: Output, hidden: bool = False
 ) -> None:
@@ -80,50 +94,66 @@ async def get_state(
         )
 
 
+@command(
+    lifecycle_command,
+    "list",
+    node_argument,
+    click.option(
+        "-a", "--all", "every", is_flag=True,
+        help="List all transitions, not only the available ones.",
+    ),
+)  # fmt: skip
 async def list_transitions(
     node: Node, node_name: str, *, output: Output, every: bool = False
 ) -> None:
-    """Print the transitions that are available to a managed node now, or all that exist.
+    """List the transitions that are available to a managed node now.
 
     Raises:
         CommandError: there is no such node.
         RequestTimeoutError: the node does not answer.
     """
     name = known(node, node_name)
-    for one in await transitions(node, name, every=every):
+    for available in await transitions(node, name, every=every):
         output.item(
-            f"- {one.transition.label} [{one.transition.id}]\n"
-            f"\tStart: {one.start_state.label}\n\tGoal: {one.goal_state.label}",
+            f"- {available.transition.label} [{available.transition.id}]\n"
+            f"\tStart: {available.start_state.label}\n\tGoal: {available.goal_state.label}",
             {
-                "label": one.transition.label,
-                "id": one.transition.id,
-                "start": one.start_state.label,
-                "goal": one.goal_state.label,
+                "label": available.transition.label,
+                "id": available.transition.id,
+                "start": available.start_state.label,
+                "goal": available.goal_state.label,
             },
         )
 
 
+async def labels(node: Node, name: str) -> list[str]:
+    """Return the labels of the transitions available to a node; none if it is not managed."""
+    if name not in managed_nodes(node, hidden=True):
+        return []
+    return [available.transition.label for available in await transitions(node, name)]
+
+
+@command(
+    lifecycle_command,
+    "set",
+    node_argument,
+    click.argument("transition", shell_complete=complete_of_node(labels)),
+)
 async def set_state(node: Node, node_name: str, transition: str, *, output: Output) -> None:
-    """Trigger a transition of a managed node, given by its label or id, and wait for its end.
+    """Trigger a transition of a managed node, by its label or id.
 
     Raises:
         CommandError: there is no such node or transition, or the transition failed.
     """
     name = known(node, node_name)
-    available = await transitions(node, name)
-    chosen = next(
-        (
-            one.transition
-            for one in available
-            if transition in {one.transition.label, str(one.transition.id)}
-        ),
-        None,
-    )
-    if chosen is None and transition == "shutdown":
-        chosen = Transition(label=transition)  # available in every state, but not listed
-    if chosen is None:
-        fits = ", ".join(f"{one.transition.label} [{one.transition.id}]" for one in available)
+    available = [description.transition for description in await transitions(node, name)]
+    fitting = [choice for choice in available if transition in {choice.label, str(choice.id)}]
+    if not fitting and transition == "shutdown":
+        fitting = [Transition(label=transition)]  # available in every state, but not listed
+    if not fitting:
+        fits = ", ".join(f"{choice.label} [{choice.id}]" for choice in available)
         raise CommandError(f"Unknown transition requested, available ones are: {fits}")
+    chosen = fitting[0]
     client = node.create_client(ChangeState, f"{name}/change_state")
     response = await client.call(ChangeState.Request(transition=chosen))
     if not response.success:

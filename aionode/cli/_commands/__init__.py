@@ -1,1 +1,0 @@
-"""One module for each noun: its commands, with their arguments and options."""

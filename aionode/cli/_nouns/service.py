@@ -1,0 +1,262 @@
+"""``aionode service``: list, inspect, call and watch services."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from aionode.cli._support import lookup
+from aionode.cli._support.command import add_type_and_find, command
+from aionode.cli._support.completion import complete_types_of, complete_values, name_argument
+from aionode.cli._support.follow import Follower
+from aionode.cli._support.formatting import Printer, names_text
+from aionode.cli._support.nouns import SERVICE
+from aionode.cli._support.options import (
+    clear_full_length,
+    count_option,
+    csv_option,
+    hertz,
+    hidden_option,
+    positive,
+    print_options,
+    read_values,
+    types_option,
+)
+from aionode.cli._support.yaml_messages import message_from_yaml
+from aionode.errors import CommandError
+from aionode.graph import SERVICE_KINDS, EndpointKind
+from aionode.message import to_builtins
+
+if TYPE_CHECKING:
+    from aionode.cli._support.output import Output
+    from aionode.endpoints.client import Client
+    from aionode.endpoints.subscription import MessageInfo
+    from aionode.node import Node
+
+__all__ = ["call", "echo", "info", "service_command"]
+
+service_argument = name_argument("service")
+
+
+@click.group("service")
+def service_command() -> None:
+    """List, find, call and watch services."""
+
+
+command(
+    service_command,
+    "list",
+    types_option,
+    count_option("services"),
+    hidden_option("--include-hidden-services", what="services"),
+    help="List the services that have a server.",
+)(SERVICE.list_names)
+add_type_and_find(service_command, SERVICE, "srv")
+
+
+@command(service_command, "info", service_argument)
+async def info(node: Node, service_name: str, *, output: Output) -> None:
+    """Print the type of a service, and the number of its clients and servers.
+
+    Raises:
+        CommandError: the service does not exist.
+    """
+    name, types = SERVICE.name_and_types(node, service_name)
+    clients = len(lookup.endpoints(node, EndpointKind.CLIENT, name=name))
+    servers = len(lookup.endpoints(node, EndpointKind.SERVER, name=name))
+    output.item(
+        f"Type: {names_text(types)}\nClients count: {clients}\nServices count: {servers}",
+        {"name": name, "types": types, "clients": clients, "servers": servers},
+    )
+
+
+@command(
+    service_command,
+    "call",
+    service_argument,
+    click.argument("service_type", shell_complete=complete_types_of("service", "srv")),
+    click.argument("values", required=False, shell_complete=complete_values("service")),
+    click.option("--stdin", is_flag=True, help="Read the values from standard input."),
+    click.option("-r", "--rate", metavar="N", type=hertz, help="Repeat the call, in Hz."),
+    click.option("--timeout", metavar="N", type=positive, help="Wait at most N seconds."),
+    interfaces=True,
+    prepare=read_values,
+    endless=lambda options: options["rate"] is not None,
+)
+async def call(
+    node: Node,
+    service_name: str,
+    service_type: str,
+    *,
+    output: Output,
+    values: str = "{}",
+    rate: float | None = None,
+    timeout: float | None = None,
+) -> None:
+    """Call a service with a request in YAML, such as '{a: 1, b: 2}'.
+
+    Args:
+        node: The command's node.
+        service_name: Name of the service.
+        service_type: ROS name of its type.
+        output: Where to print each response.
+        values: The request in YAML.
+        rate: Calls in a second; None makes one call.
+        timeout: Maximum time to wait for a server, and for each response, in seconds.
+
+    Raises:
+        CommandError: the service has another type, the request is invalid, or no server appeared.
+        ServiceError: the server failed.
+        RequestTimeoutError: the server did not answer within `timeout`.
+    """
+    name = SERVICE.resolve(node, service_name)
+    srv_type = await class_called(node, name, service_type)
+    request = message_from_yaml(srv_type.Request, values)
+    client: Client[Any, Any] = node.create_client(srv_type, name)
+    if not client.service_is_ready():
+        output.progress("waiting for service to become available...")
+        await SERVICE.wait_for_server(node, name, client.wait_for_service, output, timeout)
+    ticks = None if rate is None else node.create_rate(rate)
+    while True:
+        output.text(f"requester: making request: {request!r}\n")
+        response = await client.call(request, timeout_sec=timeout)
+        output.item(f"response:\n{response!r}\n", to_builtins(response))
+        if ticks is None:
+            return
+        await ticks.sleep()
+
+
+async def class_called(node: Node, name: str, service_type: str) -> Any:
+    """Return the class for the service type that the user gave.
+
+    Raises:
+        CommandError: there is no such type, or the service has another one.
+    """
+    servers = lookup.endpoints(node, EndpointKind.SERVER, name=name)
+    of_type = [server for server in servers if server.type_name == service_type]
+    if of_type:
+        return await lookup.type_of(node, of_type)
+    used = sorted({server.type_name for server in servers})
+    return lookup.class_given("service", service_type, name, used)
+
+
+# Events
+
+DEPTH = 1000
+"""How many events may wait to be printed."""
+
+ACTION_SERVICES = {"SendGoal": "SendGoalService", "GetResult": "GetResultService"}
+
+
+@command(
+    service_command,
+    "echo",
+    service_argument,
+    click.argument(
+        "service_type", required=False, shell_complete=complete_types_of("service", "srv")
+    ),
+    csv_option,
+    *print_options,
+    click.option("--once", is_flag=True, help="Print one event and end."),
+    click.option("--timeout", metavar="N", type=positive, help="End after N seconds."),
+    interfaces=True,
+    prepare=clear_full_length,
+    endless=lambda options: not options["once"],
+    busy=True,
+)
+async def echo(
+    node: Node,
+    service_name: str,
+    service_type: str | None = None,
+    *,
+    output: Output,
+    once: bool = False,
+    timeout: float | None = None,
+    **printing: Any,
+) -> int:
+    """Print each request and response of a service that is introspected.
+
+    Args:
+        node: The command's node.
+        service_name: Name of the service.
+        service_type: ROS name of its type; default: that of its servers and clients.
+        output: Where to print.
+        once: Whether the first event is the only one.
+        timeout: How long to print events, in seconds; None is unlimited.
+        printing: Passed on to `Printer`.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        CommandError: the type cannot be determined.
+    """
+    # Imported when it runs; the other commands of services do not need them.
+    from aionode.endpoints.service_introspection import TOPIC_SUFFIX
+    from aionode.qos import qos_profile_services_default
+
+    name = SERVICE.resolve(node, service_name)
+    srv_type = await class_watched(node, name, service_type)
+    topic = name + TOPIC_SUFFIX
+    printer = Printer(output, **printing)
+    follower = Follower(node)
+    names = event_names()
+
+    def on_event(event: Any, _: MessageInfo) -> None:
+        plain = printer.options.message(event)
+        number = plain["info"]["event_type"]
+        plain["info"]["event_type"] = names.get(number, number)
+        printer.show_plain(plain)
+        if once:
+            follower.finish()
+
+    profile = qos_profile_services_default.replace(depth=DEPTH)
+    subscription = follower.follow(srv_type.Event, topic, on_event, profile)
+    if not lookup.endpoints(node, EndpointKind.PUBLISHER, name=topic):
+        output.warn(
+            f"WARNING: {name} is not introspected so far: none of its servers and clients has "
+            "called configure_introspection"
+        )
+    if not await follower.finished(timeout) and not subscription.stats.received:
+        output.warn(f"No service event of '{name}' within {timeout:g} s")
+        return 1
+    return 0
+
+
+def event_names() -> dict[int, str]:
+    """Return the names of event types, as ros2 prints them."""
+    from aionode.interfaces.service_msgs.msg import ServiceEventInfo
+
+    return {
+        value: name
+        for name, value in vars(ServiceEventInfo).items()
+        if name.startswith(("REQUEST_", "RESPONSE_"))
+    }
+
+
+async def class_watched(node: Node, name: str, given: str | None) -> Any:
+    """Return the class of a service, given by the user or learned from its servers and clients.
+
+    Raises:
+        CommandError: the service is unknown, or has several types.
+    """
+    users = lookup.endpoints(node, *SERVICE_KINDS, name=name)
+    types = sorted({user.type_name for user in users})
+    if given is not None:
+        types = [given]
+        users = [user for user in users if user.type_name == given]
+    if not types:
+        raise SERVICE.unknown(node, name)
+    if len(types) > 1:
+        raise CommandError(
+            f"Service '{name}' has more than one type: {', '.join(types)}; give one of them after "
+            "the service name"
+        )
+    action, _, part = types[0].rpartition("_")
+    if "/action/" in types[0] and part in ACTION_SERVICES:
+        found = await lookup.type_of_action(node, name.rpartition("/_action/")[0], action)
+        return getattr(found.Impl, ACTION_SERVICES[part])
+    if users:
+        return await lookup.type_of(node, users)
+    return lookup.interface_class("service", types[0])

@@ -1,0 +1,197 @@
+"""Completing what a shell has of a command line, with names and types of the network."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable, Iterable
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from aionode.cli._support.lookup import absolute, node_infos
+from aionode.errors import AionodeError
+
+if TYPE_CHECKING:
+    from aionode.node import Node
+
+__all__ = [
+    "beginning",
+    "class_named",
+    "complete_interfaces",
+    "complete_names",
+    "complete_of_node",
+    "complete_types_of",
+    "complete_values",
+    "name_argument",
+    "types_now",
+]
+
+AnswerT = TypeVar("AnswerT")
+
+CommandT = TypeVar("CommandT", bound=Callable[..., Any])
+
+Completer = Callable[[click.Context, click.Parameter, str], list[str]]
+
+QUIET_S = 0.3
+"""How long discovery has to be quiet before names are offered, in seconds; a person is waiting."""
+
+ANSWER_S = 1.0
+"""Timeout for the answer of a node, such as its parameters, in seconds; normally milliseconds."""
+
+
+def complete_names(what: str) -> Completer:
+    """Return the completer for names of a ``node``, ``topic``, ``service`` or ``action``."""
+
+    def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+        async def names(node: Node) -> list[str]:
+            return names_of(node, what)
+
+        return beginning(incomplete, ask_now(names, []))
+
+    return complete
+
+
+def name_argument(what: str, *, required: bool = True) -> Callable[[CommandT], CommandT]:
+    """Return the argument for the name of a ``node``, ``topic``, ``service`` or ``action``."""
+    return click.argument(f"{what}_name", required=required, shell_complete=complete_names(what))
+
+
+def complete_types_of(what: str, kind: str) -> Completer:
+    """Return the completer for the type after the name of a ``topic``, ``service`` or ``action``.
+
+    It offers the types that the name has on the network. If none of them matches, it offers all of
+    a kind (``msg``, ``srv``, ``action``).
+    """
+    any_type = complete_interfaces(kind)
+
+    def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+        name = ctx.params.get(f"{what}_name")
+        known = types_now(what, name) if name else []
+        return beginning(incomplete, known) or any_type(ctx, param, incomplete)
+
+    return complete
+
+
+def types_now(what: str, name: str) -> list[str]:
+    """Return the types that a name has on the network."""
+
+    async def types(node: Node) -> list[str]:
+        return types_of(node, what, name)
+
+    return ask_now(types, [])
+
+
+def complete_of_node(question: Callable[[Node, str], Awaitable[Iterable[str]]]) -> Completer:
+    """Return the completer for names that the node earlier on the command line answers with.
+
+    Args:
+        question: Called with the node of the command, and the full name of that node.
+    """
+
+    def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+        node_name = ctx.params.get("node_name")
+        if not node_name:
+            return []
+
+        async def names(node: Node) -> list[str]:
+            async with asyncio.timeout(ANSWER_S):
+                return list(await question(node, absolute(node_name)))
+
+        return beginning(incomplete, ask_now(names, []))
+
+    return complete
+
+
+def complete_values(kind: str) -> Completer:
+    """Return the completer for values of the type before them, with their defaults, in YAML.
+
+    Args:
+        kind: ``message``, ``service`` or ``action``.
+    """
+
+    def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+        cls = class_named(ctx.params.get(f"{kind}_type"))
+        if cls is None or incomplete:
+            return []  # an edited text is not replaced
+        part = {"message": "", "service": "Request", "action": "Goal"}[kind]
+        msg_type = getattr(cls, part, None) if part else cls
+        return [] if msg_type is None else [prototype(msg_type)]
+
+    return complete
+
+
+def prototype(cls: Any) -> str:
+    """Return the defaults of a message in YAML on one line, without single quotes."""
+    from aionode.message import to_yaml
+
+    return to_yaml(cls(), flow_style=True).strip().replace("''", '""')
+
+
+def class_named(type_name: str | None) -> Any:
+    """Return the class of a type, if need be as the nodes describe it; None if there is none."""
+    from aionode.errors import InterfaceNotFoundError
+    from aionode.interfaces import get_interface
+
+    if not type_name:
+        return None
+    try:
+        return get_interface(type_name)
+    except InterfaceNotFoundError:
+        return ask_now(lambda node: node.find_type(type_name), None)
+
+
+def beginning(incomplete: str, names: list[str]) -> list[str]:
+    """Return the names that begin with `incomplete`."""
+    return [name for name in names if name.startswith(incomplete)]
+
+
+def ask_now(question: Callable[[Node], Awaitable[AnswerT]], nothing: AnswerT) -> AnswerT:
+    """Return the network's answer to a question, or `nothing` after an error.
+
+    An error cannot be shown in the middle of a command line.
+    """
+
+    async def ask() -> AnswerT:
+        from aionode.cli._support.session import make_node
+
+        async with make_node() as node:
+            for transport in node.context.transports:
+                await transport.all_known(QUIET_S)
+            return await question(node)
+
+    try:
+        return asyncio.run(ask())
+    except (AionodeError, ExceptionGroup, TimeoutError):
+        return nothing
+
+
+def names_of(node: Node, what: str) -> list[str]:
+    """Return the names of one kind that are not hidden."""
+    from aionode.cli._support.nouns import NOUNS
+
+    if what == "node":
+        return [info.fully_qualified_name for info in node_infos(node)]
+    return list(NOUNS[what].types_by_name(node))
+
+
+def types_of(node: Node, what: str, name: str) -> list[str]:
+    """Return the types of a name on the network."""
+    from aionode.cli._support.nouns import NOUNS
+
+    known = NOUNS[what].types_by_name(node, hidden=True)
+    return known.get(absolute(name), [])
+
+
+def complete_interfaces(kind: str = "") -> Completer:
+    """Return the completer for type names of a `kind`: ``msg``, ``srv``, ``action``, "" for all."""
+
+    def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+        from aionode.interfaces import interface_names, known_packages
+
+        package, slash, _ = incomplete.partition("/")
+        if not slash:
+            return [f"{name}/" for name in sorted(known_packages()) if name.startswith(package)]
+        found: Any = interface_names(package)
+        return [name for name in found if name.startswith(incomplete) and f"/{kind}" in name]
+
+    return complete

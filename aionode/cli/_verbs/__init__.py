@@ -1,1 +1,0 @@
-"""What commands do: a coroutine for each verb, with plain arguments."""
