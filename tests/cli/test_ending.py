@@ -268,3 +268,53 @@ def test_a_command_that_has_answered_ends(
     )
 
     assert (done.returncode, done.stdout, done.stderr) == (status, stdout, stderr)
+
+
+INSIDE_START = """
+import threading
+from aionode.cli._support.deadline import Deadline
+
+with threading._active_limbo_lock:
+    Deadline().set(0.01, 7)
+    threading.Event().wait(30)
+"""
+
+
+def test_a_signal_that_interrupts_the_start_of_a_thread_sets_a_deadline(
+    env: dict[str, str], tmp_path: Path
+) -> None:
+    """The handler runs while the interrupted thread holds the lock that starting threads takes."""
+    done = subprocess.run(
+        [sys.executable, "-c", INSIDE_START],
+        env=env | {"PYTHONPATH": str(ROOT)},
+        cwd=tmp_path,
+        timeout=ENDS_S,
+        check=False,
+    )
+
+    assert done.returncode == 7
+
+
+CANCELLED = """
+import threading
+from aionode.cli._support.deadline import Deadline
+
+deadline = Deadline()
+deadline.set(0.2, 7)
+deadline.set(0.1, 8)
+deadline.cancel()
+threading.Event().wait(0.5)
+"""
+
+
+def test_a_deadline_that_is_cancelled_ends_nothing(env: dict[str, str], tmp_path: Path) -> None:
+    """A command that ends in time leaves its process to others, as to a test that runs several."""
+    done = subprocess.run(
+        [sys.executable, "-c", CANCELLED],
+        env=env | {"PYTHONPATH": str(ROOT)},
+        cwd=tmp_path,
+        timeout=ENDS_S,
+        check=False,
+    )
+
+    assert done.returncode == 0

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
+import _thread
 import contextlib
-import os
-import sys
-import threading
 
-from aionode._streams import accepts
+from aionode._sudden_end import start_thread
+from aionode.cli._support.exit import leave
 
-__all__ = ["Deadline", "leave"]
+__all__ = ["Deadline"]
 
 
 class Deadline:
@@ -20,27 +19,29 @@ class Deadline:
     """
 
     def __init__(self) -> None:
-        self._timer: threading.Timer | None = None
+        # The lock of each thread that waits for a deadline; releasing the lock ends that thread.
+        # A signal handler may run `set` between two lines of `set` or `cancel` of the same thread:
+        # each step is one call of C, and leaves no deadline out of the list.
+        self._waiting: list[_thread.LockType] = []
 
     def set(self, seconds: float, status: int, text: str = "") -> None:
-        """Exit with `status` in `seconds`, with `text` on stderr; replaces an earlier deadline."""
+        """Exit with `status` in `seconds`, with `text` on stderr; replaces an earlier deadline.
+
+        A signal handler may call it.
+        """
         self.cancel()
-        self._timer = threading.Timer(seconds, leave, (status, text))
-        self._timer.daemon = True
-        self._timer.start()
+        cancelled = _thread.allocate_lock()
+        cancelled.acquire()
+        self._waiting.append(cancelled)
+
+        def wait() -> None:
+            if not cancelled.acquire(timeout=seconds):
+                leave(status, text)
+
+        start_thread(wait)
 
     def cancel(self) -> None:
         """Remove the deadline."""
-        if self._timer is not None:
-            self._timer.cancel()
-
-
-def leave(status: int, text: str = "") -> None:
-    """Exit at once, without waiting for threads or exit handlers.
-
-    Output has been flushed already; flushing again could block on its reader.
-    """
-    if text and accepts(sys.stderr.fileno()):
-        with contextlib.suppress(OSError):
-            os.write(sys.stderr.fileno(), text.encode(errors="backslashreplace"))
-    os._exit(status)
+        with contextlib.suppress(IndexError):  # all are removed, perhaps by a handler meanwhile
+            while True:
+                self._waiting.pop().release()
