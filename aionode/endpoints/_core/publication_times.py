@@ -10,6 +10,9 @@ REMEMBERED_PUBLISHERS = 1024
 SHORTEST_NS = 500_000
 """Messages that were published in a shorter time say nothing about the pace at which they came."""
 
+SYNCHRONIZED_NS = 50_000_000
+"""Clocks that seem to be less far apart count as the same: hosts that use NTP are closer."""
+
 DRIFT = 10_000
 """Clocks of two hosts drift apart by less than one part in so many."""
 
@@ -51,6 +54,8 @@ class PublicationTimes:
                 del self._clocks[next(iter(self._clocks))]
             clock = self._clocks[gid] = PublisherClock(system_began_ns)
         clock.note(source_ns, arrived_ns)
+        if clock.began_ns - SYNCHRONIZED_NS <= system_began_ns <= clock.began_ns:
+            return source_ns + system_began_ns
         return source_ns + clock.began_ns
 
 

@@ -201,8 +201,10 @@ class SilenceWatch:
 
     def admits(self, sample_info: SampleInfo) -> bool:
         """Take a message that has arrived; return whether it is to be queued."""
+        # In this order: if others take the processor in between, no message seems too old for it.
+        system_ns = self._system_ns()
         now_ns = self._steady_ns()
-        system_began_ns = now_ns - self._system_ns()
+        system_began_ns = now_ns - system_ns
         arrived_ns = now_ns
         if sample_info.arrived_ns:
             arrived_ns = min(now_ns, sample_info.arrived_ns + system_began_ns)
