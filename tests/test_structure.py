@@ -29,6 +29,7 @@ SHARED = {
     "aionode.clock._timer_heap": "the manual clock of tests keeps its alarms in one",
     "aionode.clock._values": "QoS has durations, not clocks; the manual clock converts seconds",
     "aionode.endpoints._core": "nodes are made of it, and tools report callbacks by it",
+    "aionode.endpoints._qos": "rclpy's publishers and subscriptions have the same events",
     "aionode.endpoints.actions": "aionode.action is its public name",
     "aionode.endpoints.timer._timer": "Node.create_timer builds one",
     "aionode.errors._values": "durations and times need its texts, not the exceptions",

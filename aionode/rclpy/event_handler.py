@@ -54,6 +54,26 @@ __all__ = [
 QoSPublisherEventType = PublisherEventType
 QoSSubscriptionEventType = SubscriptionEventType
 
+PUBLISHER_KINDS: dict[str, IntEnum] = {
+    "deadline": PublisherEventType.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED,
+    "liveliness": PublisherEventType.RCL_PUBLISHER_LIVELINESS_LOST,
+    "incompatible_qos": PublisherEventType.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS,
+    "incompatible_type": PublisherEventType.RCL_PUBLISHER_INCOMPATIBLE_TYPE,
+    "matched": PublisherEventType.RCL_PUBLISHER_MATCHED,
+}
+
+SUBSCRIPTION_KINDS: dict[str, IntEnum] = {
+    "deadline": SubscriptionEventType.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED,
+    "incompatible_qos": SubscriptionEventType.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS,
+    "liveliness": SubscriptionEventType.RCL_SUBSCRIPTION_LIVELINESS_CHANGED,
+    "message_lost": SubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST,
+    "incompatible_type": SubscriptionEventType.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE,
+    "matched": SubscriptionEventType.RCL_SUBSCRIPTION_MATCHED,
+}
+
+WITH_DEFAULTS = ("incompatible_qos", "incompatible_type")
+"""The events that are logged where no callback is given for them."""
+
 
 class EventHandler(Waitable[Any]):
     """Has an executor call `callback` when something has happened.
@@ -154,12 +174,20 @@ class DefaultHandler(EventHandler):
 def create_handlers(
     group: CallbackGroup,
     parent: PublisherHandle | SubscriptionHandle,
-    callbacks: dict[IntEnum, Callable[..., Any] | None],
-    defaults: tuple[IntEnum, ...],
+    callbacks: Any,
+    kinds: dict[str, IntEnum],
 ) -> list[EventHandler]:
-    """Return a handler for each callback that is given, or has a default."""
+    """Return a handler for each callback that is given, or has a default.
+
+    Args:
+        group: The group of the callbacks.
+        parent: What the events happen to.
+        callbacks: What a program gave for them.
+        kinds: The kind of event that each attribute of `callbacks` is called for.
+    """
     made: list[EventHandler] = []
-    for event_type, callback in callbacks.items():
+    for name, event_type in kinds.items():
+        callback = getattr(callbacks, name)
         if callback:
             made.append(
                 EventHandler(
@@ -169,7 +197,7 @@ def create_handlers(
                     parent_impl=parent,
                 )
             )
-        elif event_type in defaults:
+        elif callbacks.use_default_callbacks and name in WITH_DEFAULTS:
             made.append(DefaultHandler(event_type))
     return made
 
@@ -181,24 +209,7 @@ class SubscriptionEventCallbacks(events.SubscriptionEventCallbacks):
         self, callback_group: CallbackGroup, subscription: SubscriptionHandle, topic_name: str
     ) -> list[EventHandler]:
         """Return the handlers of a subscription."""
-        kinds = SubscriptionEventType
-        mismatches = (
-            kinds.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS,
-            kinds.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE,
-        )
-        return create_handlers(
-            callback_group,
-            subscription,
-            {
-                kinds.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED: self.deadline,
-                kinds.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS: self.incompatible_qos,
-                kinds.RCL_SUBSCRIPTION_LIVELINESS_CHANGED: self.liveliness,
-                kinds.RCL_SUBSCRIPTION_MESSAGE_LOST: self.message_lost,
-                kinds.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE: self.incompatible_type,
-                kinds.RCL_SUBSCRIPTION_MATCHED: self.matched,
-            },
-            mismatches if self.use_default_callbacks else (),
-        )
+        return create_handlers(callback_group, subscription, self, SUBSCRIPTION_KINDS)
 
 
 class PublisherEventCallbacks(events.PublisherEventCallbacks):
@@ -208,20 +219,4 @@ class PublisherEventCallbacks(events.PublisherEventCallbacks):
         self, callback_group: CallbackGroup, publisher: PublisherHandle, topic_name: str
     ) -> list[EventHandler]:
         """Return the handlers of a publisher."""
-        kinds = PublisherEventType
-        mismatches = (
-            kinds.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS,
-            kinds.RCL_PUBLISHER_INCOMPATIBLE_TYPE,
-        )
-        return create_handlers(
-            callback_group,
-            publisher,
-            {
-                kinds.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED: self.deadline,
-                kinds.RCL_PUBLISHER_LIVELINESS_LOST: self.liveliness,
-                kinds.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS: self.incompatible_qos,
-                kinds.RCL_PUBLISHER_INCOMPATIBLE_TYPE: self.incompatible_type,
-                kinds.RCL_PUBLISHER_MATCHED: self.matched,
-            },
-            mismatches if self.use_default_callbacks else (),
-        )
+        return create_handlers(callback_group, publisher, self, PUBLISHER_KINDS)

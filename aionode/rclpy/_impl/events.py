@@ -8,9 +8,12 @@ from __future__ import annotations
 
 from dataclasses import fields, replace
 from enum import IntEnum
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import SilenceAlarm
+from aionode.endpoints._qos.liveliness import PublisherLiveliness
+from aionode.endpoints._qos.matching import Matching
 from aionode.endpoints.events import (
     IncompatibleTypeInfo,
     MatchedInfo,
@@ -21,7 +24,6 @@ from aionode.endpoints.events import (
     QoSRequestedDeadlineMissedInfo,
     QoSRequestedIncompatibleQoSInfo,
 )
-from aionode.graph import EndpointKind
 from aionode.qos import LivelinessPolicy, QoSPolicyKind, is_unlimited
 from aionode.rclpy._impl.destroyable import Destroyable
 from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle
@@ -99,7 +101,7 @@ class rmw_qos_policy_kind_t(IntEnum):  # noqa: N801  # rmw's name, which its tex
 
 
 class Watch:
-    """Counts one kind of event; lives in the thread of the context."""
+    """Keeps the status of one kind of event; lives in the thread of the context."""
 
     empty: Any = None
 
@@ -107,117 +109,98 @@ class Watch:
         self, parent: PublisherHandle | SubscriptionHandle, notify: Callable[[], None]
     ) -> None:
         # Not the handle itself, which is garbage once its user has dropped it.
-        self.bare = parent.bare
         self.feed = parent.feed
         self.assertions = parent.assertions
         self.graph = parent.io.context.graph
-        self.io = parent.io
+        self.time_base = parent.io.context.time_base
         self.endpoint = parent.endpoint
         self.changed = False
         self.status = self.empty
+        self.ends: list[Callable[[], object]] = []
         self._notify = notify
 
     def start(self) -> None:
-        """Begin to watch."""
+        """Begin to watch, and add what ends that to `ends`."""
 
     def stop(self) -> None:
         """Watch no longer."""
+        for end in self.ends:
+            end()
 
-    def count(self, **changes: int | QoSPolicyKind) -> None:
-        """Change the status: counts by these numbers, other attributes to these values."""
-        values: dict[str, Any] = {}
-        for name, value in changes.items():
-            if isinstance(value, QoSPolicyKind):
-                values[name] = value
-                continue
-            values[name] = getattr(self.status, name) + value
-            values[f"{name}_change"] = getattr(self.status, f"{name}_change") + value
-        self.status = replace(self.status, **values)
+    def tell(self, event: Any) -> None:
+        """Take an event: the status has its counts; changes add up until they are taken."""
+        added = {
+            name: getattr(self.status, name) + getattr(event, name) for name in changes_in(event)
+        }
+        self.status = replace(event, **added)
         self.changed = True
         self._notify()
 
-    def alarm(self, longest: Duration, on_silence: Callable[[int], bool]) -> SilenceAlarm:
-        """Return an alarm that runs: `on_silence` gets the periods that have passed."""
-        alarm = SilenceAlarm(self.io.context.time_base, longest.nanoseconds, on_silence)
-        alarm.start()
-        return alarm
+    def count(self, more: int) -> None:
+        """Take an event of a status that counts one thing, of which there are `more` now."""
+        self.tell(type(self.empty)(self.status.total_count + more, more))
 
     def take(self) -> Any:
         """Return the status, and reset its changes."""
         status = self.status
-        zeros = {each.name: 0 for each in fields(status) if each.name.endswith("_change")}
-        self.status = replace(status, **zeros)
+        self.status = replace(status, **dict.fromkeys(changes_in(status), 0))
         self.changed = False
         return status
 
+    def alarm(self, longest: Duration, on_silence: Callable[[int], bool]) -> SilenceAlarm:
+        """Return an alarm that runs: `on_silence` gets the periods that have passed."""
+        alarm = SilenceAlarm(self.time_base, longest.nanoseconds, on_silence)
+        alarm.start()
+        self.ends.append(alarm.stop)
+        return alarm
+
+    def listen(self, listeners: list[Any], listener: Callable[[Any], None]) -> None:
+        """Have `listener` told of messages or assertions."""
+        listeners.append(listener)
+        self.ends.append(partial(listeners.remove, listener))
+
+    def watch_opposites(self, watcher: Callable[[EndpointInfo, bool], None]) -> None:
+        """Have `watcher` told of the endpoints of the opposite kind that come and go."""
+        endpoint = self.endpoint
+        self.ends.append(self.graph.watch(endpoint.kind.opposite, endpoint.name, watcher))
+
+
+def changes_in(status: Any) -> list[str]:
+    """Return the names of the fields of a status that tell of changes."""
+    return [each.name for each in fields(status) if each.name.endswith("_change")]
+
 
 class MatchedWatch(Watch):
-    """Counts matched endpoints."""
+    """Counts the endpoints that are matched, or do not fit.
+
+    Attributes:
+        name: Which of these events.
+        aspects: The mismatches that it tells of, so that the log need not.
+    """
 
     empty = MatchedInfo(0, 0, 0, 0)
-
-    def start(self) -> None:
-        """Begin to watch."""
-        self._matched: set[EndpointInfo] = set()
-        self.io.watch_graph(self.look)
-        self.look()
-
-    def stop(self) -> None:
-        """Watch no longer."""
-        self.io.unwatch_graph(self.look)
-
-    def look(self) -> None:
-        """Compare what is matched now with what was."""
-        matched = set(self.bare.matched())
-        new = len(matched - self._matched)
-        change = len(matched) - len(self._matched)
-        self._matched = matched
-        if new or change:
-            self.count(total_count=new, current_count=change)
-
-
-class MismatchWatch(Watch):
-    """Counts endpoints that cannot be matched."""
-
+    name = "matched"
     aspects: tuple[str, ...] = ()
 
     def start(self) -> None:
         """Begin to watch."""
-        self._seen: set[EndpointInfo] = set()
-        unreported = self.graph.unreported
-        unreported[self.endpoint] = {*unreported.get(self.endpoint, ()), *self.aspects}
-        self.io.watch_graph(self.look)
-        self.look()
+        if self.aspects:
+            unreported = self.graph.unreported
+            unreported[self.endpoint] = {*unreported.get(self.endpoint, ()), *self.aspects}
+            self.ends.append(lambda: unreported.pop(self.endpoint, None))
+        self.watch_opposites(Matching(self.endpoint, self._on_event).note)
 
-    def stop(self) -> None:
-        """Watch no longer."""
-        self.graph.unreported.pop(self.endpoint, None)
-        self.io.unwatch_graph(self.look)
-
-    def look(self) -> None:
-        """Count endpoints that are new."""
-        for other in self.graph.endpoints(self.endpoint.kind.opposite, name=self.endpoint.name):
-            if other in self._seen or self.endpoint.matches(other):
-                continue
-            self._seen.add(other)
-            found = self.endpoint.compare(other)
-            if found is not None and found.aspect in self.aspects:
-                self.note(found.policy)
-
-    def note(self, policy: QoSPolicyKind) -> None:
-        """Count one."""
-        self.count(total_count=1)
+    def _on_event(self, name: str, event: Any) -> None:
+        if name == self.name:
+            self.tell(event)
 
 
-class IncompatibleQoSWatch(MismatchWatch):
+class IncompatibleQoSWatch(MatchedWatch):
     """Counts endpoints whose QoS does not fit."""
 
+    empty: Any = QoSRequestedIncompatibleQoSInfo(0, 0, QoSPolicyKind.INVALID)
+    name = "incompatible_qos"
     aspects = ("qos",)
-    empty = QoSRequestedIncompatibleQoSInfo(0, 0, QoSPolicyKind.INVALID)
-
-    def note(self, policy: QoSPolicyKind) -> None:
-        """Count one."""
-        self.count(total_count=1, last_policy_kind=policy)
 
     def take(self) -> Any:
         """Return the status, with the kind of policy as ROS 2 prints it."""
@@ -225,11 +208,12 @@ class IncompatibleQoSWatch(MismatchWatch):
         return replace(status, last_policy_kind=rmw_qos_policy_kind_t(status.last_policy_kind))
 
 
-class IncompatibleTypeWatch(MismatchWatch):
+class IncompatibleTypeWatch(MatchedWatch):
     """Counts endpoints of another type."""
 
+    empty: Any = IncompatibleTypeInfo(0, 0)
+    name = "incompatible_type"
     aspects = ("type", "definition")
-    empty = IncompatibleTypeInfo(0, 0)
 
 
 class DeadlineWatch(Watch):
@@ -240,24 +224,13 @@ class DeadlineWatch(Watch):
     def start(self) -> None:
         """Begin to watch."""
         deadline = self.endpoint.qos.deadline
-        self._alarm: SilenceAlarm | None = None
         if not is_unlimited(deadline):
-            self._alarm = self.alarm(deadline, self._on_silence)
-            self.feed.append(self._on_message)
-
-    def _on_message(self, sample_info: SampleInfo | None) -> None:
-        if self._alarm is not None:
-            self._alarm.note()
+            alarm = self.alarm(deadline, self._on_silence)
+            self.listen(self.feed, lambda _: alarm.note())
 
     def _on_silence(self, periods: int) -> bool:
-        self.count(total_count=periods)
+        self.count(periods)
         return True
-
-    def stop(self) -> None:
-        """Watch no longer."""
-        if self._alarm is not None:
-            self._alarm.stop()
-            self.feed.remove(self._on_message)
 
 
 class OfferedDeadlineWatch(DeadlineWatch):
@@ -274,95 +247,38 @@ class LivelinessLostWatch(Watch):
     def start(self) -> None:
         """Begin to watch."""
         qos = self.endpoint.qos
-        self._alarm: SilenceAlarm | None = None
-        if is_manual(self.endpoint):
-            self._alarm = self.alarm(qos.liveliness_lease_duration, self._on_lapse)
-            self._alarm.note()
-            self.feed.append(self._on_sign)
-
-    def _on_sign(self, sample_info: SampleInfo | None) -> None:
-        if self._alarm is not None:
-            self._alarm.note()
+        manual = qos.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
+        if manual and not is_unlimited(qos.liveliness_lease_duration):
+            alarm = self.alarm(qos.liveliness_lease_duration, self._on_lapse)
+            alarm.note()
+            self.listen(self.feed, lambda _: alarm.note())
 
     def _on_lapse(self, periods: int) -> bool:
-        self.count(total_count=1)
+        self.count(1)
         return False  # once, until the next sign
-
-    def stop(self) -> None:
-        """Watch no longer."""
-        if self._alarm is not None:
-            self._alarm.stop()
-            self.feed.remove(self._on_sign)
 
 
 class LivelinessChangedWatch(Watch):
-    """Counts the publishers that are alive, and those that let their lease pass.
-
-    A publisher shows that it is alive by being there, or, with a manual policy, by its messages
-    and assertions.
-    """
+    """Counts the publishers that are alive, and those that let their lease pass."""
 
     empty = QoSLivelinessChangedInfo(0, 0, 0, 0)
 
     def start(self) -> None:
         """Begin to watch."""
-        self._publishers: dict[bytes, SilenceAlarm | None] = {}
-        self._lapsed: set[bytes] = set()
-        self.feed.append(self._on_message)
-        self.assertions.append(self._on_sign)
-        self.io.watch_graph(self.look)
-        self.look()
+        liveliness = PublisherLiveliness(self.time_base, self.endpoint.qos, self.tell)
+        liveliness.start()
+        self.ends.append(liveliness.stop)
 
-    def look(self) -> None:
-        """Compare the publishers with those that were there."""
-        matched = {publisher.gid: publisher for publisher in self.bare.matched()}
-        for gid, publisher in matched.items():
-            if gid not in self._publishers:
-                self._publishers[gid] = self._alarm_of(publisher)
-                self.count(alive_count=1)
-        for gid in [gid for gid in self._publishers if gid not in matched]:
-            alarm = self._publishers.pop(gid)
-            if alarm is not None:
-                alarm.stop()
-            if gid in self._lapsed:
-                self._lapsed.discard(gid)
-                self.count(not_alive_count=-1)
-            else:
-                self.count(alive_count=-1)
+        def note(publisher: EndpointInfo, present: bool) -> None:
+            if self.endpoint.matches(publisher):
+                (liveliness.add if present else liveliness.remove)(publisher)
 
-    def _alarm_of(self, publisher: EndpointInfo) -> SilenceAlarm | None:
-        if not is_manual(publisher):
-            return None
-        lease = publisher.qos.liveliness_lease_duration
-        alarm = self.alarm(lease, lambda _: self._on_lapse(publisher.gid))
-        alarm.note()
-        return alarm
+        def note_message(sample_info: SampleInfo) -> None:
+            liveliness.note_message(sample_info.gid)
 
-    def _on_lapse(self, gid: bytes) -> bool:
-        self._lapsed.add(gid)
-        self.count(alive_count=-1, not_alive_count=1)
-        return False  # once, until the next sign
-
-    def _on_message(self, sample_info: SampleInfo | None) -> None:
-        if sample_info is not None:
-            self._on_sign(sample_info.gid)
-
-    def _on_sign(self, gid: bytes) -> None:
-        alarm = self._publishers.get(gid)
-        if alarm is not None:
-            alarm.note()
-        if gid in self._lapsed:
-            self._lapsed.discard(gid)
-            self.count(alive_count=1, not_alive_count=-1)
-
-    def stop(self) -> None:
-        """Watch no longer."""
-        self.io.unwatch_graph(self.look)
-        self.feed.remove(self._on_message)
-        self.assertions.remove(self._on_sign)
-        for alarm in self._publishers.values():
-            if alarm is not None:
-                alarm.stop()
+        self.listen(self.feed, note_message)
+        self.listen(self.assertions, liveliness.note_assertion)
+        self.watch_opposites(note)
 
 
 class MessageLostWatch(Watch):
@@ -372,30 +288,15 @@ class MessageLostWatch(Watch):
 
     def start(self) -> None:
         """Begin to watch."""
-        self._last: dict[bytes, int] = {}
-        self.feed.append(self._on_message)
+        last: dict[bytes, int] = {}
 
-    def _on_message(self, sample_info: SampleInfo | None) -> None:
-        if sample_info is None:
-            return
-        last = self._last.get(sample_info.gid)
-        self._last[sample_info.gid] = sample_info.sequence
-        if last is not None and sample_info.sequence > last + 1:
-            self.count(total_count=sample_info.sequence - last - 1)
+        def note(sample_info: SampleInfo) -> None:
+            before = last.get(sample_info.gid)
+            last[sample_info.gid] = sample_info.sequence
+            if before is not None and sample_info.sequence > before + 1:
+                self.count(sample_info.sequence - before - 1)
 
-    def stop(self) -> None:
-        """Watch no longer."""
-        self.feed.remove(self._on_message)
-
-
-def is_manual(publisher: EndpointInfo) -> bool:
-    """Whether a publisher has to show now and then that it is alive."""
-    qos = publisher.qos
-    return (
-        publisher.kind is EndpointKind.PUBLISHER
-        and qos.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
-        and not is_unlimited(qos.liveliness_lease_duration)
-    )
+        self.listen(self.feed, note)
 
 
 PUBLISHER_WATCHES: dict[int, type[Watch]] = {

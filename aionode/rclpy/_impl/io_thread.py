@@ -71,7 +71,6 @@ class IoThread:
         # Held while a message is delivered inside this context, in the thread that publishes it,
         # and while subscriptions come and go. Nothing waits while it is held.
         self._delivery_lock = Lock()
-        self._graph_watchers: list[Callable[[], None]] = []
         # A daemon, as the interpreter waits for others before it calls what `atexit` has.
         self._thread = Thread(target=self._main, name="rclpy-io", daemon=True)
 
@@ -316,16 +315,14 @@ class IoThread:
                 self._drain()
 
     async def _run(self) -> None:
-        async with self.context, asyncio.TaskGroup() as tasks:
+        async with self.context:
             loop = asyncio.get_running_loop()
             assert isinstance(loop, LendableLoop)  # noqa: S101  # `_main` has made it
             self._loop = loop
             self._stopping = asyncio.Event()
-            watching = tasks.create_task(self._watch_graph())
             self._opened.wake()
             self._drain()  # a signal may have ended `start`, so that `stop` is here already
             await self._stopping.wait()
-            watching.cancel()
 
     # In the thread
 
@@ -334,20 +331,6 @@ class IoThread:
         """Its event loop."""
         assert self._loop is not None  # noqa: S101  # `start` has returned
         return self._loop
-
-    def watch_graph(self, watcher: Callable[[], None]) -> None:
-        """Call `watcher` after each change of the graph; in the thread only, as `unwatch_graph`."""
-        self._graph_watchers.append(watcher)
-
-    def unwatch_graph(self, watcher: Callable[[], None]) -> None:
-        """Undo `watch_graph`."""
-        self._graph_watchers.remove(watcher)
-
-    async def _watch_graph(self) -> None:
-        while True:
-            await self.context.graph.changed()
-            for watcher in list(self._graph_watchers):
-                watcher()
 
 
 def read_until(wakeup: Wakeup, readers: Readers, ends_ns: float | None) -> bool:
