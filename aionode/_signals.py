@@ -124,7 +124,7 @@ class SuddenEnd:
     def __init__(self, number: int) -> None:
         self._number = signal.Signals(number)
         self._messages = LastMessages(number)
-        self._leaving = _thread.allocate_lock()
+        self._leaving = _thread.allocate_lock()  # acquired by the thread that leaves, once
 
     def begin(self, handler: EndHandler, frame: FrameType | None) -> None:
         """Begin, called by `handler`, which is not needed any more."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -165,3 +166,67 @@ def private_imports() -> Iterator[tuple[str, str]]:
 def exceptions_for(imported: str) -> list[str]:
     """Return the entries of SHARED that a module falls under."""
     return [name for name in SHARED if f"{imported}.".startswith(f"{name}.")]
+
+
+THREADS_AND_LOCKS = {
+    "_thread.allocate_lock",
+    "_thread.start_new_thread",
+    "aionode._sudden_end.start_thread",
+    "asyncio.to_thread",
+    "concurrent.futures.ThreadPoolExecutor",
+    "threading.Barrier",
+    "threading.BoundedSemaphore",
+    "threading.Condition",
+    "threading.Lock",
+    "threading.RLock",
+    "threading.Semaphore",
+    "threading.Thread",
+    "threading.Timer",
+}
+"""What makes a thread, or a lock between threads; and `run_in_executor` of every loop."""
+
+
+def test_the_design_names_each_module_that_makes_a_thread_or_a_lock() -> None:
+    """Whoever makes one adds its row to the table: who owns it, what it guards, who takes it."""
+    page = (ROOT.parent / "docs/design.md").read_text(encoding="utf-8")
+    section = page.partition("\n## Threads and locks\n")[2].partition("\n## ")[0]
+    rows = [row for row in section.splitlines() if row.startswith("|")]
+    named = {file for row in rows for file in re.findall(r"`([\w/]+\.py)`", row)}
+    making = {path.relative_to(ROOT).as_posix() for path in MODULES if makes_threads(path)}
+
+    assert making == named
+
+
+def makes_threads(path: Path) -> bool:
+    """Return whether a module makes threads, or locks between threads."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    names = {}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names |= {alias.asname or alias.name: alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            names |= {
+                alias.asname or alias.name: f"{node.module}.{alias.name}" for alias in node.names
+            }
+    used = [
+        function
+        for node in ast.walk(tree)
+        for function in (
+            [node.func]
+            if isinstance(node, ast.Call)
+            else node.bases
+            if isinstance(node, ast.ClassDef)
+            else []
+        )
+    ]
+    return any(
+        (isinstance(function, ast.Attribute) and function.attr == "run_in_executor")
+        or full_name(function, names) in THREADS_AND_LOCKS
+        for function in used
+    )
+
+
+def full_name(function: ast.expr, names: dict[str, str]) -> str:
+    """Return what a name in the source stands for, given what the module imports."""
+    first, _, rest = ast.unparse(function).partition(".")
+    return f"{names.get(first, first)}.{rest}".rstrip(".")

@@ -146,6 +146,8 @@ class CommandLease(Generic[MsgT]):
         self._clock = clock
         self._time_base = time_base.through_suspend()
         self._silence: SilenceAlarm | None = None  # from the beginning of the block to the stop
+        # Held to act on `_state`, by the loop or the thread past it, so that only one of them sends
+        # the stop. Reentrant: a signal handler may interrupt the holder.
         self._lock = threading.RLock()
         self._state = State.NEW
         self._is_publishing = False

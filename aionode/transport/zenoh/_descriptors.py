@@ -71,7 +71,7 @@ Address = tuple[bytes, int]
 Descriptor = tuple[int, int]
 """The number of a descriptor and that of its inode, as the first is used again."""
 
-lock = threading.Lock()
+lock = threading.Lock()  # held to read and change `found`
 found: dict[Pair, Descriptor] = {}
 """Where connections were found before, so that most searches read neither list."""
 
