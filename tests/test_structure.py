@@ -200,7 +200,7 @@ def test_the_design_names_each_module_that_makes_a_thread_or_a_lock() -> None:
 def makes_threads(path: Path) -> bool:
     """Return whether a module makes threads, or locks between threads."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
-    names = {}
+    names: dict[str, str] = {}
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             names |= {alias.asname or alias.name: alias.name for alias in node.names}
