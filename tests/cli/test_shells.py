@@ -71,3 +71,33 @@ def test_values_are_completed_as_one_word(child: Any) -> None:
     child.expect("frame_id")
     child.send("\r")
     child.expect("publishing #1: std_msgs.msg.Header")
+
+
+@pytest.mark.stress
+@pytest.mark.parametrize("shell", SHELLS)
+def test_an_option_is_completed(child: Any) -> None:
+    """Its end is unique, so that the shell adds it without a list."""
+    child.send("aionode interface packages --only-m\t")
+    child.expect("--only-msgs")
+    child.send("\r")
+    child.expect("geometry_msgs")
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_a_folder_is_completed(child: Any, tmp_path: Path) -> None:
+    """Click leaves folders and files to the shell, which knows them."""
+    (tmp_path / "robot_interfaces").mkdir()
+    child.sendline(f"cd '{tmp_path}'")
+    child.send("aionode interface package std_srvs --interfaces robot_in\t")
+    child.expect("robot_interfaces")
+    child.send("\r")
+    child.expect("std_srvs/srv/Trigger")
+
+
+@pytest.mark.stress
+@pytest.mark.parametrize("shell", SHELLS)
+def test_what_nothing_completes_is_left_as_it_is(child: Any) -> None:
+    """The shell neither reports an error of the script nor replaces the word."""
+    child.send("aionode interface package no_such_pack\t")
+    child.send("\r")
+    child.expect("Unknown package 'no_such_pack'")
