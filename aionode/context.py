@@ -121,6 +121,10 @@ class Context:
             of a subscription whose loop is busy, and of a publisher whose readers are slow. What
             is more is dropped and counted, or refused by KEEP_ALL. By default
             ``AIONODE_QUEUE_BYTES``, or 32 MiB; a single message is never too large.
+        graph_bytes: How many bytes of what other processes announce are kept, nodes and endpoints
+            above all, which count about 2.2 kB each. One process may have an eighth of that. What
+            is more is left out, and a warning says so. By default ``AIONODE_GRAPH_BYTES``, or 64
+            MiB, about 30,000 endpoints.
 
     Attributes:
         ros_distro: The distribution of ROS 2 that it belongs to.
@@ -157,6 +161,7 @@ class Context:
         spin_us: float = 0,
         ros_distro: str | None = None,
         queue_bytes: int | None = None,
+        graph_bytes: int | None = None,
     ) -> None:
         if isinstance(spin_us, bool) or not isinstance(spin_us, int | float):
             raise TypeError(f"Context: spin_us={brief(spin_us)} is not a number of microseconds")
@@ -177,6 +182,7 @@ class Context:
             static_peers=static_peers,
             config=config,
             queue_bytes=queue_bytes,
+            graph_bytes=graph_bytes,
         )
         if transport is None:
             transport = transport_of(os.environ)

@@ -131,7 +131,13 @@ QUEUE_BYTES: Final = 32 << 20
 QUEUE_BYTES_VARIABLE: Final = "AIONODE_QUEUE_BYTES"
 """The environment variable that says otherwise."""
 
-LEAST_QUEUE_BYTES: Final = 65_536
+GRAPH_BYTES: Final = 64 << 20
+"""How many bytes of what other processes announce are kept, unless the context says otherwise."""
+
+GRAPH_BYTES_VARIABLE: Final = "AIONODE_GRAPH_BYTES"
+"""The environment variable that says otherwise."""
+
+LEAST_BYTES: Final = 65_536
 """Less than this would be less than a message that is sent at once."""
 
 
@@ -151,6 +157,7 @@ class Network:
         spare_ports: Further ones, for when other programs have taken all of those.
         router_port: Port of a router on this machine.
         queue_bytes: How many bytes of messages may wait in each queue from and to other processes.
+        graph_bytes: How many bytes of what other processes announce are kept.
     """
 
     domain_id: int = 0
@@ -164,6 +171,7 @@ class Network:
     spare_ports: tuple[int, ...] = SPARE_PORTS
     router_port: int = ROUTER_PORT
     queue_bytes: int = QUEUE_BYTES
+    graph_bytes: int = GRAPH_BYTES
 
     @property
     def may_reach_far(self) -> bool:
@@ -207,6 +215,7 @@ def network_from(
     static_peers: Iterable[str] | None = None,
     config: str | Path | Mapping[str, Any] | None = None,
     queue_bytes: int | None = None,
+    graph_bytes: int | None = None,
 ) -> Network:
     """Return what the arguments say and, where they are None, the environment.
 
@@ -220,6 +229,7 @@ def network_from(
         config: A path to a Zenoh configuration file, instead of ``ZENOH_SESSION_CONFIG_URI``, or
             single settings by their key path, which win over ``ZENOH_CONFIG_OVERRIDE``.
         queue_bytes: Instead of ``AIONODE_QUEUE_BYTES``.
+        graph_bytes: Instead of ``AIONODE_GRAPH_BYTES``.
 
     Raises:
         ConfigurationError: one of them does not fit; the text names it.
@@ -265,24 +275,31 @@ def network_from(
         meeting_ports=ports,
         spare_ports=spare_ports,
         router_port=router_port,
-        queue_bytes=choose_queue_bytes(environ, queue_bytes),
+        queue_bytes=choose_bytes(
+            environ, QUEUE_BYTES_VARIABLE, "queue_bytes", queue_bytes, QUEUE_BYTES
+        ),
+        graph_bytes=choose_bytes(
+            environ, GRAPH_BYTES_VARIABLE, "graph_bytes", graph_bytes, GRAPH_BYTES
+        ),
     )
 
 
-def choose_queue_bytes(environ: Mapping[str, str], queue_bytes: int | None) -> int:
-    """Return how many bytes may wait in a queue, as the argument or the environment says."""
-    fits = "a whole number of bytes from 65536 on fits"
-    if queue_bytes is None:
-        text = environ.get(QUEUE_BYTES_VARIABLE, "").strip() or str(QUEUE_BYTES)
-        source, known = QUEUE_BYTES_VARIABLE, text.isascii() and text.isdigit() and len(text) <= 18
-        queue_bytes = int(text) if known else 0
-    elif isinstance(queue_bytes, bool) or not isinstance(queue_bytes, int):
-        raise TypeError(f"queue_bytes: {brief(queue_bytes)} given; {fits}")
+def choose_bytes(
+    environ: Mapping[str, str], variable: str, argument: str, given: int | None, usual: int
+) -> int:
+    """Return a limit in bytes, as the argument or the environment says."""
+    fits = f"a whole number of bytes from {LEAST_BYTES} on fits"
+    if given is None:
+        text = environ.get(variable, "").strip() or str(usual)
+        source, known = variable, text.isascii() and text.isdigit() and len(text) <= 18
+        given = int(text) if known else 0
+    elif isinstance(given, bool) or not isinstance(given, int):
+        raise TypeError(f"{argument}: {brief(given)} given; {fits}")
     else:
-        source, text = "queue_bytes", str(queue_bytes)
-    if queue_bytes < LEAST_QUEUE_BYTES:
+        source, text = argument, str(given)
+    if given < LEAST_BYTES:
         raise ConfigurationError(source, text, fits)
-    return queue_bytes
+    return given
 
 
 def choose_domain_id(environ: Mapping[str, str], domain_id: int | None) -> int:

@@ -309,20 +309,25 @@ def test_single_settings_win_over_the_environment() -> None:
     assert network.overrides == (("a", "1"), ("transport/shared_memory/enabled", "false"))
 
 
-def test_the_bytes_of_a_queue_are_set_by_argument_or_environment() -> None:
+@pytest.mark.parametrize(("name", "usual"), [("queue_bytes", 32 << 20), ("graph_bytes", 64 << 20)])
+def test_limits_in_bytes_are_set_by_argument_or_environment(name: str, usual: int) -> None:
     """A robot that sends clouds of a gigabyte on purpose needs more than others."""
-    environ = {"AIONODE_QUEUE_BYTES": "1000000"}
+    variable = f"AIONODE_{name.upper()}"
+    environ = {variable: "1000000"}
 
-    assert network_from({}).queue_bytes == 32 << 20
-    assert network_from(environ).queue_bytes == 1_000_000
-    assert network_from(environ, queue_bytes=70_000).queue_bytes == 70_000
+    def limit(environ: dict[str, str], **given: Any) -> Any:
+        return getattr(network_from(environ, **given), name)
+
+    assert limit({}) == usual
+    assert limit(environ) == 1_000_000
+    assert limit(environ, **{name: 70_000}) == 70_000
     for bad in ("32M", "-1", "1000", "9" * 30):
-        with pytest.raises(ConfigurationError, match=r"AIONODE_QUEUE_BYTES: .* from 65536 on fits"):
-            network_from({"AIONODE_QUEUE_BYTES": bad})
-    with pytest.raises(ConfigurationError, match="queue_bytes: '5' given"):
-        network_from({}, queue_bytes=5)
-    with pytest.raises(TypeError, match="queue_bytes: '5' given"):
-        network_from({}, queue_bytes="5")  # type: ignore[arg-type]  # the mistake under test
+        with pytest.raises(ConfigurationError, match=rf"{variable}: .* from 65536 on fits"):
+            network_from({variable: bad})
+    with pytest.raises(ConfigurationError, match=f"{name}: '5' given"):
+        limit({}, **{name: 5})
+    with pytest.raises(TypeError, match=f"{name}: '5' given"):
+        limit({}, **{name: "5"})
 
 
 @pytest.mark.parametrize(

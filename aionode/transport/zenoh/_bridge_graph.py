@@ -48,9 +48,6 @@ joined DDS, and answers only after that."""
 NODE_NAME: Final = "zenoh_bridge_ros2dds"
 """What a bridge calls its own node on DDS; it stands for the nodes that are not known."""
 
-MAX_TOKENS: Final = 50_000
-"""How many tokens are remembered of one session, which may prove to be a bridge."""
-
 NODE_SERVICES: Final = frozenset(
     {
         "describe_parameters",
@@ -98,6 +95,7 @@ class BridgeWatcher:
 
     def __init__(self, session_state: SessionState, bridges: BridgeState) -> None:
         self._state = bridges
+        self._announced = session_state.announced
         self._queue_of = session_state.queue
         self._queue = session_state.queue(self._take)
         self._session: zenoh.Session | None = None
@@ -155,7 +153,9 @@ class BridgeWatcher:
 
     def _add(self, key: str, token: BridgeToken) -> None:
         tokens = self._tokens.setdefault(token.zid, {})
-        if key in tokens or len(tokens) >= MAX_TOKENS:
+        if key in tokens or not self._announced.take(token.zid, key):
+            if not tokens:
+                del self._tokens[token.zid]
             return
         tokens[key] = token
         if not token.kind:
@@ -168,6 +168,7 @@ class BridgeWatcher:
         tokens = self._tokens.get(token.zid, {})
         if tokens.pop(key, None) is None:
             return
+        self._announced.give_back(token.zid, key)
         if not tokens:
             del self._tokens[token.zid]
         if not token.kind:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 from typing import TYPE_CHECKING, Final
 
@@ -14,8 +15,6 @@ from aionode.transport.zenoh._session_state import Declaration
 from aionode.wire._liveliness import PREFIX, is_node_token, node_token, parse_token
 
 if TYPE_CHECKING:
-    import asyncio
-
     from aionode.clock import Alarm
     from aionode.transport.zenoh._session_state import SessionState
 
@@ -42,8 +41,16 @@ NAMED: Final = 5
 MAX_FOREIGN: Final = 100
 """How many other domains are remembered, and how many tokens of each."""
 
+FILL_S: Final = 5.0
+"""How long it takes at most until what was left out has the place of what has gone."""
+
 SHOWN: Final = 200
 """How many characters of something unknown are shown."""
+
+
+def participant_of(key: str) -> str:
+    """Return the participant that a liveliness token names; empty without one."""
+    return key.split("/", 3)[2] if key.count("/") > 1 else ""
 
 
 class NodeDeclaration(Declaration):
@@ -114,6 +121,7 @@ class Watcher:
         self._warned = False
         self._may_tell = False
         self._expected: Alarm | None = None
+        self._filling: asyncio.TimerHandle | None = None
         self._subscriber: zenoh.Subscriber[None] | None = None
         self._queue = state.queue(self._take)
         self._changes = state.queue(self._take_change)
@@ -127,7 +135,7 @@ class Watcher:
                 f"{PREFIX}/**", direct(self._queue.put), history=True
             )
             self._listener = session.info.declare_transport_events_listener(
-                direct(self._changes.put)
+                direct(self._changes.put), history=True
             )
 
     def stop(self) -> None:
@@ -138,8 +146,12 @@ class Watcher:
         if self._listener is not None:
             self._listener.undeclare()
             self._listener = None
+        if self._filling is not None:
+            self._filling.cancel()
+            self._filling = None
         self._queue.clear()
         self._changes.clear()
+        self._state.announced.clear()
         self._check = None
         self._missing = set()
         self._known.clear()
@@ -171,8 +183,12 @@ class Watcher:
         )
 
     def knows(self, key: str) -> bool:
-        """Return whether a token is in the graph, or is one of this context."""
-        return key in self._known or key.split("/", 3)[2] == self._state.participant
+        """Return whether a token is in the graph, is one of this context, or may be left out."""
+        return (
+            key in self._known
+            or participant_of(key) == self._state.participant
+            or self._state.announced.left_out > 0
+        )
 
     def node_tokens(self) -> set[str]:
         """Return the tokens of all nodes that are known, those of this context included."""
@@ -222,8 +238,9 @@ class Watcher:
                 item.answered.set_result(item.complete)
 
     def _take_change(self, event: zenoh.TransportEvent) -> None:
-        """Note the loss of a router: the tokens of everyone behind it go as well."""
+        """Note who is connected; with a router, the tokens of everyone behind it go as well."""
         lost = event.kind == zenoh.SampleKind.DELETE
+        self._state.announced.note_connected(str(event.transport.zid), is_so=not lost)
         graph = self._state.graph
         if lost and event.transport.whatami == zenoh.WhatAmI.ROUTER and graph is not None:
             graph.router_lost_ns = perf_ns()
@@ -249,8 +266,17 @@ class Watcher:
         self._missing = missing
 
     def _add(self, key: str) -> None:
-        if key in self._known or key.split("/", 3)[2:3] == [self._state.participant]:
+        participant = participant_of(key)
+        if key in self._known or participant == self._state.participant:
             return
+        announced = self._state.announced
+        if not announced.take(participant, key):
+            return
+        if not self._show(key):
+            announced.give_back(participant, key)
+
+    def _show(self, key: str) -> bool:
+        """Add a token to the graph; return whether it belongs there."""
         token = parse_token(key)
         if token is None:
             self._state.note_malformed(f"{PREFIX}/**", f"the liveliness token {key[:SHOWN]}")
@@ -263,12 +289,17 @@ class Watcher:
             else:
                 self._state.graph.add_endpoint(info)
                 self._state.tell_writers(info, present=True)
+            return True
+        return False
 
     def _remove(self, key: str) -> None:
         info = self._known.pop(key, None)
         if info is None:
             self._forget_domain(key)
             return
+        self._state.announced.give_back(participant_of(key), key)
+        if self._state.announced.left_out and self._filling is None:
+            self._filling = asyncio.get_running_loop().call_later(FILL_S, self._fill)
         if self._state.graph is None:
             return
         if isinstance(info, NodeInfo):
@@ -276,6 +307,12 @@ class Watcher:
         else:
             self._state.graph.remove_endpoint(info)
             self._state.tell_writers(info, present=False)
+
+    def _fill(self) -> None:
+        """Ask for what was left out: there is room again."""
+        self._filling = None
+        self._state.announced.left_out = 0
+        self.check()
 
     def _forget_domain(self, key: str) -> None:
         for domain_id, keys in list(self._foreign.items()):

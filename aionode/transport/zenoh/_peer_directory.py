@@ -279,7 +279,8 @@ class ZenohPeerDirectory:
         key = str(sample.key_expr)
         present = sample.kind == zenoh.SampleKind.PUT
         participant, _, what = key.split("/", 2)[2].partition("/")
-        self._note(participant, key, present=present)
+        if not self._note(participant, key, present=present):
+            return
         if what == "strangers":
             if participant != self._state.participant and present:
                 self._hosts.add(participant)
@@ -297,13 +298,19 @@ class ZenohPeerDirectory:
         self._note(key.split("/", 3)[2], key, present=sample.kind == zenoh.SampleKind.PUT)
         self._update()
 
-    def _note(self, zid: str, key: str, *, present: bool) -> None:
-        if present:
-            self._known.setdefault(zid, set()).add(key)
-        elif zid in self._known:
-            self._known[zid].discard(key)
+    def _note(self, zid: str, key: str, *, present: bool) -> bool:
+        """Note a token of a session; return whether it counts, or is one too many."""
+        keys = self._known.get(zid, set())
+        if present and key not in keys:
+            if not self._state.announced.take(zid, key):
+                return False
+            self._known.setdefault(zid, keys).add(key)
+        elif not present and key in keys:
+            self._state.announced.give_back(zid, key)
+            keys.discard(key)
             self._forget(zid)
         self._classify(zid)
+        return True
 
     def _forget(self, zid: str) -> None:
         """Forget a session that announces nothing and is not connected."""

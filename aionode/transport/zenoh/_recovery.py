@@ -261,8 +261,8 @@ class Recovery:
     def _look(self) -> None:
         self._timer = None
         session = self._session
-        if session is None:
-            return
+        if session is None or self._state.announced.left_out:
+            return  # what was left out would pass for lost
         if self._looking:
             self._look_in(FIRST_S)
             return

@@ -18,9 +18,10 @@ from aionode.graph import EndpointKind
 from aionode.transport._content_filters import ContentFilters
 from aionode.transport._loop_waker import LoopWaker, MessageArrivals, ThreadsafeQueue
 from aionode.transport._send_thread import SendThread
-from aionode.transport._zenoh_config import FLUSH_S, QUEUE_BYTES
+from aionode.transport._zenoh_config import FLUSH_S, GRAPH_BYTES, QUEUE_BYTES
 from aionode.transport.base import Registration
 from aionode.transport.zenoh._acknowledgements import Acknowledgements
+from aionode.transport.zenoh._announced import AnnouncedLimit
 from aionode.transport.zenoh._assertions import Assertions
 from aionode.transport.zenoh._cancellations import Cancellations
 from aionode.transport.zenoh._handlers import translated
@@ -106,6 +107,7 @@ class SessionState:
         now_ns: Returns the time of the context, in nanoseconds since 1970.
         content_filters: What subscriptions of other contexts want.
         queue_bytes: How many bytes of messages may wait in one queue.
+        announced: Limits what is kept of what others announce.
         has_unannounced_peers: Whether there may be subscriptions that nothing announces.
         on_reader: Called when a remote subscription appears or vanishes, by topic, with it and
             whether it exists, or without arguments when all may have changed; ordered sets.
@@ -118,8 +120,10 @@ class SessionState:
         time_base: TimeBase | None = None,
         waker: LoopWaker | None = None,
         queue_bytes: int = QUEUE_BYTES,
+        graph_bytes: int = GRAPH_BYTES,
     ) -> None:
         self.queue_bytes = queue_bytes
+        self.announced = AnnouncedLimit(graph_bytes)
         self.participant = participant
         self.domain_id = domain_id
         self.session: zenoh.Session | None = None

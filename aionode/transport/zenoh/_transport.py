@@ -81,7 +81,11 @@ class ZenohTransport(Transport):
     ) -> None:
         self.network = network
         self.session_state = SessionState(
-            participant, network.domain_id, time_base, queue_bytes=network.queue_bytes
+            participant,
+            network.domain_id,
+            time_base,
+            queue_bytes=network.queue_bytes,
+            graph_bytes=network.graph_bytes,
         )
         self._state = self.session_state
         self._watcher = Watcher(self._state)

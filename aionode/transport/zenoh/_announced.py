@@ -1,0 +1,94 @@
+"""How much is kept of what other contexts announce: nodes, endpoints, filters, links."""
+
+from __future__ import annotations
+
+import logging
+from collections import Counter
+from typing import Final
+
+__all__ = ["AnnouncedLimit"]
+
+logger = logging.getLogger("aionode.transport.zenoh")
+
+TOKEN_BYTES: Final = 2_000
+"""What a token counts besides its text, approximately: an endpoint in the graph takes as much."""
+
+SHARE: Final = 8
+"""One participant may have an eighth of it all."""
+
+RESERVED_BYTES: Final = 256_000
+"""So much of each connected participant is kept whatever others announce: 100 endpoints. Whoever
+fills the graph under invented names puts nobody out who is there."""
+
+
+class AnnouncedLimit:
+    """Limits how many liveliness tokens of others are kept, in all and of each participant.
+
+    Zenoh keeps all of them, and takes about 4 kB for each.
+
+    Args:
+        limit_bytes: The limit in all; a token counts its text, and `TOKEN_BYTES`.
+
+    Attributes:
+        left_out: How many tokens were left out since the graph was last filled up; those that come
+            again count again.
+    """
+
+    def __init__(self, limit_bytes: int) -> None:
+        self.left_out = 0
+        self._is_told = False
+        self._connected: set[str] = set()
+        self._limit_bytes = limit_bytes
+        self._used_bytes = 0
+        self._of: Counter[str] = Counter()  # by participant
+
+    def take(self, participant: str, key: str) -> bool:
+        """Count a token that is to be kept; return whether it may be, and log the first refusal."""
+        size_bytes = TOKEN_BYTES + len(key)
+        own_bytes = self._of[participant] + size_bytes
+        is_reserved = own_bytes <= RESERVED_BYTES and participant in self._connected
+        fits = self._used_bytes + size_bytes <= self._limit_bytes
+        if own_bytes > max(self._limit_bytes // SHARE, RESERVED_BYTES) or not (fits or is_reserved):
+            self._leave_out(participant)
+            return False
+        self._of[participant] = own_bytes
+        self._used_bytes += size_bytes
+        return True
+
+    def give_back(self, participant: str, key: str) -> None:
+        """Count no more a token that was taken."""
+        if participant not in self._of:  # everything was forgotten meanwhile
+            return
+        size_bytes = TOKEN_BYTES + len(key)
+        self._used_bytes -= size_bytes
+        self._of[participant] -= size_bytes
+        if not self._of[participant]:
+            del self._of[participant]
+
+    def note_connected(self, participant: str, *, is_so: bool) -> None:
+        """Note who is connected; the others may be behind routers, or invented."""
+        if is_so:
+            self._connected.add(participant)
+        else:
+            self._connected.discard(participant)
+
+    def clear(self) -> None:
+        """Begin anew: nothing is kept any more."""
+        self._used_bytes = 0
+        self._of.clear()
+        self._connected.clear()
+
+    def _leave_out(self, participant: str) -> None:
+        if not self._of[participant]:
+            del self._of[participant]  # it was asked for only
+        self.left_out += 1
+        if not self._is_told:
+            self._is_told = True
+            logger.warning(
+                "the graph is full: nodes or endpoints that other processes announce are left out, "
+                "from now on without a word. It keeps %.3g MiB, about %d endpoints, and an eighth "
+                "of that from one process. AIONODE_GRAPH_BYTES, or Context(graph_bytes=…), sets "
+                "the limit",
+                self._limit_bytes / 2**20,
+                self._limit_bytes // (TOKEN_BYTES + 200),
+            )

@@ -1,0 +1,106 @@
+"""How much is kept of what others announce."""
+
+from __future__ import annotations
+
+import pytest
+
+from aionode.context import Context
+from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
+from aionode.interfaces.std_msgs.msg import Int32
+from aionode.message import type_name
+from aionode.qos import QoSProfile
+from aionode.transport.zenoh import _announced as announced
+from aionode.transport.zenoh import _graph_watcher as graph_watcher
+from aionode.transport.zenoh._announced import AnnouncedLimit
+from aionode.wire._liveliness import endpoint_token
+from aionode.wire.typehash import type_hash
+from tests.support.peers import DOMAIN_ID, quiet_node, raw_session
+
+LIMIT = 4_000_000
+
+
+def taken(limit: AnnouncedLimit, participant: str, count: int) -> int:
+    """Return how many of some tokens of a participant were taken."""
+    return sum(limit.take(participant, f"{participant} {number:04}") for number in range(count))
+
+
+def test_one_participant_gets_an_eighth() -> None:
+    """One flood leaves room for everyone else."""
+    limit = AnnouncedLimit(LIMIT)
+
+    assert taken(limit, "liar", 10_000) == LIMIT // 8 // (announced.TOKEN_BYTES + 9)
+
+
+def test_the_size_of_a_token_counts() -> None:
+    """A name may have thousands of characters."""
+    limit = AnnouncedLimit(LIMIT)
+
+    assert not limit.take("liar", "x" * (LIMIT // 8))
+    assert limit.take("liar", "x" * (LIMIT // 16))
+
+
+def test_a_connected_participant_keeps_its_place() -> None:
+    """Invented names, which are unlimited in number, take the rest only."""
+    limit = AnnouncedLimit(LIMIT)
+    for number in range(100):
+        taken(limit, f"invented{number}", 100)
+    limit.note_connected("robot", is_so=True)
+
+    assert taken(limit, "late", 1) == 0
+    assert taken(limit, "robot", 100) == 100
+    assert taken(limit, "robot", 1000) < 1000
+
+
+def test_what_has_gone_leaves_its_place(caplog: pytest.LogCaptureFixture) -> None:
+    """The log says once that something was left out, and which limit it was."""
+    limit = AnnouncedLimit(LIMIT)
+    count = taken(limit, "a", 10_000)
+    for number in range(count):
+        limit.give_back("a", f"a {number:04}")
+
+    assert taken(limit, "a", 10_000) == count
+    assert limit.left_out == 2 * (10_000 - count)
+    (record,) = caplog.records
+    assert "AIONODE_GRAPH_BYTES" in record.getMessage()
+
+
+async def test_a_flood_is_left_out_of_the_graph_and_has_its_place_when_there_is_room(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Others that come later are in it all the same."""
+    monkeypatch.setattr(announced, "RESERVED_BYTES", 10_000)
+    monkeypatch.setattr(graph_watcher, "FILL_S", 0.05)
+    async with quiet_node("a", Context(graph_bytes=100_000)) as a:
+        with raw_session() as session:
+            liar = NodeInfo(str(session.zid()), 0, "liar", "/", "/")
+            publishers = [
+                EndpointInfo(
+                    EndpointKind.PUBLISHER,
+                    liar,
+                    number,
+                    f"/topic_{number}",
+                    type_name(Int32),
+                    type_hash(Int32),
+                    QoSProfile(depth=1),
+                    b"",
+                )
+                for number in range(20)
+            ]
+            held = [
+                session.liveliness().declare_token(endpoint_token(DOMAIN_ID, each))
+                for each in publishers
+            ]
+            async with quiet_node("b") as b:
+                b.create_publisher(Int32, "late", 1)
+                await a.graph.until(lambda: bool(a.graph.count(EndpointKind.PUBLISHER, "/late")))
+                kept = [each for each in a.graph.endpoints() if each.node == liar]
+                assert 0 < len(kept) < 20
+
+                for token in held[:15]:
+                    token.undeclare()
+                await a.graph.until(
+                    lambda: (
+                        {each.name for each in a.graph.endpoints() if each.node == liar}
+                        == {f"/topic_{number}" for number in range(15, 20)}
+                    )
+                )
