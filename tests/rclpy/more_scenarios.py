@@ -31,6 +31,7 @@ from rclpy.qos import (
 from rclpy.service_introspection import ServiceIntrospectionState
 from rclpy.task import Future
 from rclpy.time import Time
+from rclpy.timer import TimerInfo
 from rclpy.waitable import NumberOfEntities, Waitable
 from scenarios import PATIENCE_S, Trace, attempt, main, scene, thread_name, until
 from service_msgs.msg import ServiceEventInfo
@@ -327,6 +328,60 @@ def clocks_let_threads_sleep(trace: Trace) -> None:
     ros = ROSClock()
     trace("types", ros.clock_type.name, clock.clock_type.name, ros.ros_time_is_active)
     attempt(trace, "Clock of ROS", lambda: type(Clock(clock_type=ClockType.ROS_TIME)).__name__)
+
+
+@scene
+def timers_on_a_clock_that_is_set(trace: Trace) -> None:
+    node = rclpy.create_node("set_clock")
+    clock = ROSClock()
+    clock._set_ros_time_is_active(True)
+
+    def at(seconds: float) -> None:
+        clock.set_ros_time_override(Time(seconds=seconds, clock_type=ClockType.ROS_TIME))
+
+    def state(name: str) -> None:
+        until_ns, since_ns = timer.time_until_next_call(), timer.time_since_last_call()
+        trace(name, timer.is_ready(), until_ns, since_ns)
+
+    def called(info: TimerInfo) -> None:
+        trace("call", info.expected_call_time.nanoseconds, info.actual_call_time.nanoseconds)
+
+    called.__annotations__["info"] = TimerInfo  # rclpy takes no text for it
+    at(10)
+    timer = node.create_timer(1.0, called, clock=clock)
+    state("new")
+    at(10.5)
+    state("before")
+    for seconds in (11, 13, 13, 13, 15.5):
+        at(seconds)
+        state("due")
+        spin(node)
+        state("called")
+    at(5)
+    state("back")
+    at(6.25)
+    spin(node)
+    state("again")
+    timer.timer_period_ns = 500_000_000
+    at(7)
+    spin(node)
+    state("faster")
+    timer.cancel()
+    at(9)
+    trace("cancelled", timer.is_ready(), timer.time_until_next_call())
+    timer.reset()
+    state("reset")
+    at(9.25)
+    for active in (False, True):
+        clock._set_ros_time_is_active(active)
+        until_ns, since_ns = timer.time_until_next_call(), timer.time_since_last_call()
+        trace("switched", timer.is_ready(), 2e8 < until_ns < 3e8, 2e8 < since_ns < 3e8)
+    clock._set_ros_time_is_active(False)
+    at(0)
+    clock._set_ros_time_is_active(True)
+    trace("without time", timer.is_ready())
+    at(20)
+    state("first time")
 
 
 @scene

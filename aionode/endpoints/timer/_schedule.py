@@ -95,9 +95,9 @@ class Schedule:
 
     def carry_over(self, old_now_ns: int, new_now_ns: int) -> None:
         """Keep the rest of the period when the clock switches to another source of time."""
-        left_ns = max(self.next_ns - old_now_ns, 0)
-        self.last_ns += new_now_ns - old_now_ns
-        self.next_ns = new_now_ns + left_ns
+        left_ns = self.next_ns - old_now_ns
+        self.next_ns = new_now_ns + max(left_ns, 0)
+        self.last_ns = new_now_ns + left_ns - self.period_ns  # as rcl, also after a reset
 
 
 def checked_period(period_ns: int) -> int:

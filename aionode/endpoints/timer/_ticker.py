@@ -14,34 +14,80 @@ if TYPE_CHECKING:
     from aionode.clock import Clock, TimeJump
     from aionode.clock._time_base import Alarm
 
-__all__ = ["Ticker"]
+__all__ = ["ClockedSchedule", "Ticker"]
 
 # Jumps forward need no callback: they end the waits for what has become due.
 JUMPS = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
 
 
-class Ticker:
-    """Follows a schedule by a clock, through jumps of ROS time and changes of its source.
+class ClockedSchedule:
+    """A schedule that goes by a clock, through jumps of ROS time and changes of its source.
+
+    Args:
+        clock: The clock.
+        period_ns: From one call to the next.
+        autostart: Whether it starts now.
+        jumps: The jumps of ROS time after which `wake` is called.
 
     Attributes:
         clock: The clock.
         schedule: What is due when, in the time of the clock.
     """
 
-    __slots__ = ("_before_jump_ns", "_jumps", "_waiters", "clock", "schedule")
+    __slots__ = ("_before_jump_ns", "_jumps", "clock", "schedule")
 
-    def __init__(self, clock: Clock, period_ns: int, *, autostart: bool = True) -> None:
+    def __init__(
+        self,
+        clock: Clock,
+        period_ns: int,
+        *,
+        autostart: bool = True,
+        jumps: JumpThreshold = JUMPS,
+    ) -> None:
         self.clock = clock
         self.schedule = Schedule(period_ns, clock.now_ns(), autostart=autostart)
         self._before_jump_ns = 0
-        self._waiters: dict[asyncio.Future[None], None] = {}  # a dict, to wake them in order
         self._jumps = (
             clock.create_jump_callback(
-                JUMPS, pre_callback=self._before_jump, post_callback=self._after_jump
+                jumps, pre_callback=self._before_jump, post_callback=self._after_jump
             )
             if clock.clock_type is ClockType.ROS_TIME
             else None
         )
+
+    def wake(self) -> None:
+        """Have those that wait look again, because the schedule has changed."""
+
+    def close(self) -> None:
+        """Stop following the clock."""
+        if self._jumps is not None:
+            self._jumps.unregister()
+        self.wake()
+
+    def _before_jump(self) -> None:
+        self._before_jump_ns = self.clock.now_ns()
+
+    def _after_jump(self, jump: TimeJump) -> None:
+        now_ns = self.clock.now_ns()
+        if jump.clock_change is ClockChange.ROS_TIME_NO_CHANGE:
+            self.schedule.look_back(now_ns)
+        else:
+            self._switch(self._before_jump_ns, now_ns)
+        self.wake()
+
+    def _switch(self, old_now_ns: int, new_now_ns: int) -> None:
+        """Go on by another source of time."""
+        self.schedule.carry_over(old_now_ns, new_now_ns)
+
+
+class Ticker(ClockedSchedule):
+    """A schedule by a clock that tasks wait for."""
+
+    __slots__ = ("_waiters",)
+
+    def __init__(self, clock: Clock, period_ns: int, *, autostart: bool = True) -> None:
+        super().__init__(clock, period_ns, autostart=autostart)
+        self._waiters: dict[asyncio.Future[None], None] = {}  # a dict, to wake them in order
 
     def is_ready(self) -> bool:
         """Return whether a call is due."""
@@ -104,20 +150,3 @@ class Ticker:
         for waiter in self._waiters:
             if not waiter.done():
                 waiter.set_result(None)
-
-    def close(self) -> None:
-        """End all waits, and stop following the clock."""
-        if self._jumps is not None:
-            self._jumps.unregister()
-        self.wake()
-
-    def _before_jump(self) -> None:
-        self._before_jump_ns = self.clock.now_ns()
-
-    def _after_jump(self, jump: TimeJump) -> None:
-        now_ns = self.clock.now_ns()
-        if jump.clock_change is ClockChange.ROS_TIME_NO_CHANGE:
-            self.schedule.look_back(now_ns)
-        else:
-            self.schedule.carry_over(self._before_jump_ns, now_ns)
-        self.wake()
