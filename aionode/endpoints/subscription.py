@@ -262,6 +262,10 @@ class Subscription(Endpoint, Generic[ItemT]):
         while not self._reader:
             self._refuse_if_destroyed("read messages")
             await self._reader.wait()
+        return self._take()
+
+    def _take(self) -> ItemT:
+        """Take the oldest message and count it."""
         entered_ns, item = self._reader.pop()
         self.stats.received += 1
         self.stats.queue_wait.record(perf_ns() - entered_ns)

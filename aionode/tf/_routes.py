@@ -18,7 +18,7 @@ MAX_ROUTES = 1_000
 
 
 class Route:
-    """The frames between two frames, all of which have had one parent only."""
+    """The frames between two frames; they, and all above, have had one parent only."""
 
     __slots__ = ("down", "names", "up")
 
@@ -85,7 +85,8 @@ class Routes:
         up = above_source[: above_source.index(common)]
         down = above_target[: above_target.index(common)]
         frames = self._frames
-        if any(frames[name].reparented for name in (*up, *down)):
+        # Also above the common ancestor: at another time, the walk may have met the target there.
+        if any(frames[name].reparented for name in (*above_source, *down) if name in frames):
             return None
         return Route([frames[name] for name in up], [frames[name] for name in down], [*up, *down])
 

@@ -415,6 +415,18 @@ def test_a_frame_may_change_its_parent() -> None:
         core.lookup_transform_core("old", "c", at(3.5))
 
 
+def test_of_two_ways_the_one_from_the_source_upwards_is_taken() -> None:
+    """A frame that was below another, and is now above it, leads there in both directions."""
+    core = core_with(
+        transform("b", "a", 1.0, (3.0, 0.0, 0.0)), transform("root", "a", 9.0, (5.0, 0.0, 0.0))
+    )
+    core.set_transform_static(transform("a", "b", 1.0, (7.0, 0.0, 0.0)), "me")
+    core.can_transform_core("b", "a", LATEST)
+
+    assert parts(core.lookup_transform_core("b", "a", at(1)))[0] == 3.0
+    assert parts(core.lookup_transform_core("b", "a", at(9)))[0] == -7.0
+
+
 def test_static_and_dynamic_transforms_replace_each_other() -> None:
     """The last one says what a frame is."""
     core = core_with(transform("p", "c", 1.0))

@@ -100,10 +100,14 @@ class MessageQueue(InlineCall, Generic[T]):
         """How many items wait."""
         return len(self.items)
 
-    async def wait(self) -> None:
-        """Wait for an item, or for `wake`. Cancelling loses nothing."""
+    async def wait(self, waiter: asyncio.Future[None] | None = None) -> None:
+        """Wait for an item, or for `wake`. Cancelling loses nothing.
+
+        Args:
+            waiter: What else ends the wait when it is done; an item or `wake` makes it so.
+        """
         if not self.items:
-            waiter = asyncio.get_running_loop().create_future()
+            waiter = waiter or asyncio.get_running_loop().create_future()
             self._readers.append(waiter)
             try:
                 await waiter

@@ -1,0 +1,261 @@
+"""A tree of frames whose transforms can be awaited, fed by the topics of a node."""
+
+from __future__ import annotations
+
+import asyncio
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from aionode.clock import S_TO_NS, ClockChange, Duration, JumpThreshold, Time
+from aionode.endpoints._core.entity import Entity
+from aionode.errors import TimeoutException, TransformException
+from aionode.tf._arithmetic import unit
+from aionode.tf._buffer_core import CACHE_TIME_SEC, BufferCore, time_ns_of
+from aionode.tf._listener import STATIC_TOPIC, TOPIC, TransformListener
+from aionode.tf._texts import seconds_text
+from aionode.tf._waiters import Part, Waiter, Waiters, problem_of
+from aionode.tf._walk import Failure
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.clock import Alarm, Clock, TimeJump
+    from aionode.interfaces.geometry_msgs.msg import TransformStamped
+    from aionode.node import Node
+    from aionode.qos import QoSProfile
+    from aionode.tf._arithmetic import Pose
+    from aionode.tf._frames import Frame
+
+__all__ = ["LATEST", "AwaitableCore"]
+
+LATEST = Time()
+"""The latest common time, as tf2 writes it."""
+
+
+class BufferEnd(Entity):
+    """What ends with the node: it wakes all who wait for transforms of its buffer."""
+
+    def __init__(self, subject: str, on_close: Callable[[], None]) -> None:
+        super().__init__(subject)
+        self._on_close = on_close
+
+    def _close(self) -> None:
+        self._on_close()
+
+
+class AwaitableCore(BufferCore):
+    """A core that ends with its node, and in which one can wait; see `Buffer`."""
+
+    def __init__(
+        self,
+        node: Node,
+        *,
+        cache_time: Duration | float = CACHE_TIME_SEC,
+        qos: QoSProfile | int | None = None,
+        static_qos: QoSProfile | int | None = None,
+        tf_topic: str = TOPIC,
+        tf_static_topic: str = STATIC_TOPIC,
+    ) -> None:
+        super().__init__(cache_time)
+        self._logger = node.get_logger()
+        self._clock: Clock = node.get_clock()
+        self._waiters = Waiters(self._frames, self._cache_ns)
+        self._followers: dict[str, dict[asyncio.Future[None], None]] = {}
+        # Each pending wait, with what ends it and, if it has a limit, its length in nanoseconds.
+        self._pending: dict[asyncio.Future[Any], tuple[int, Alarm | None]] = {}
+        self.listener = TransformListener(
+            self,
+            node,
+            qos=qos,
+            static_qos=static_qos,
+            tf_topic=tf_topic,
+            tf_static_topic=tf_static_topic,
+        )
+        self._entity = node._add_entity(
+            BufferEnd(f"transform buffer of {node.get_fully_qualified_name()}", self._end_waits)
+        )
+        self._jumps = self._clock.create_jump_callback(
+            JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1)),
+            post_callback=self._on_jump,
+        )
+
+    # Waiting
+
+    async def wait_for_transform(
+        self,
+        target_frame: str,
+        source_frame: str,
+        time: Any = LATEST,
+        *,
+        timeout_sec: float | None = None,
+    ) -> TransformStamped:
+        """Wait until a transform is available, and return it.
+
+        Cancelling ends the wait and changes nothing else; the CancelledError has a note that says
+        why the transform was not there, which also `asyncio.timeout` shows.
+
+        Args:
+            target_frame: The frame to express things in.
+            source_frame: The frame that they are in.
+            time: When; by default the latest common time.
+            timeout_sec: How long to wait, in seconds of the node's clock; None for ever.
+
+        Raises:
+            TimeoutException: it was not available in time; the text says why (a TimeoutError).
+            ExtrapolationException: the time is older than the transforms that are kept.
+            InvalidArgumentException: a name is empty or begins with a slash (a ValueError).
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+            asyncio.CancelledError: it was destroyed, and the current task is one of its own.
+        """
+        parts = ((target_frame, source_frame, time_ns_of(time)),)
+        return await self._wait(
+            parts,
+            partial(self.lookup_transform_core, target_frame, source_frame, time),
+            timeout_sec,
+        )
+
+    async def wait_for_transform_full(
+        self,
+        target_frame: str,
+        target_time: Any,
+        source_frame: str,
+        source_time: Any,
+        fixed_frame: str,
+        *,
+        timeout_sec: float | None = None,
+    ) -> TransformStamped:
+        """Wait until a transform between two times is available, and return it.
+
+        See `lookup_transform_full_core` for the arguments, and `wait_for_transform` for the rest.
+        """
+        parts = (
+            (target_frame, fixed_frame, time_ns_of(target_time)),
+            (fixed_frame, source_frame, time_ns_of(source_time)),
+        )
+        return await self._wait(
+            parts,
+            partial(
+                self.lookup_transform_full_core,
+                target_frame,
+                target_time,
+                source_frame,
+                source_time,
+                fixed_frame,
+            ),
+            timeout_sec,
+        )
+
+    # Within
+
+    async def _wait(
+        self,
+        parts: tuple[Part, ...],
+        look_up: Callable[[], TransformStamped],
+        timeout_sec: float | None,
+    ) -> TransformStamped:
+        self._entity._refuse_if_destroyed("wait for a transform")
+        self._expect_names(*(frame for part in parts for frame in part[:2]))
+        ended: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
+        # The answer is taken when it is there: until the task runs, the data may have gone.
+        waiter = Waiter(
+            parts,
+            lambda failure: settle(ended, look_up if failure is None else failure.exception()),
+        )
+        self._waiters.add(waiter)
+        if not ended.done():
+            limit_ns = 0 if timeout_sec is None else max(round(timeout_sec * S_TO_NS), 1)
+            self._pending[ended] = limit_ns, self._alarm(ended, limit_ns)
+        try:
+            found = await ended
+        except asyncio.CancelledError as cancelled:
+            cancelled.add_note(self._reason(parts))
+            raise
+        finally:
+            self._waiters.remove(waiter)
+            _, alarm = self._pending.pop(ended, (0, None))
+            if alarm is not None:
+                alarm.cancel()
+        if found is DESTROYED:
+            raise self._entity._end_of_wait()
+        if found is TIMED_OUT:
+            raise TimeoutException(f"{self._reason(parts)}; waited {timeout_sec:g} s")
+        return found  # type: ignore[no-any-return]  # a future has one type only
+
+    def _reason(self, parts: tuple[Part, ...]) -> str:
+        """Return what is waited for, and why it is not there."""
+        failure, _ = problem_of(self._frames, parts)
+        reason = "it is available now" if failure is None else failure.text
+        for part in parts:
+            for frame in part[:2]:
+                if frame not in self._frames.names:
+                    reason = f'frame "{frame}" does not exist; no transform has named it'
+        target, source = parts[0][0], parts[-1][1]
+        at = seconds_text(parts[-1][2]) if parts[-1][2] else "the latest time"
+        return f"Timed out waiting for transform from [{source}] to [{target}] at {at}: {reason}"
+
+    def _expect_names(self, *frames: str) -> None:
+        """Refuse names that no frame can have, as `lookup_transform_core` does."""
+        for frame in frames:
+            if not frame or frame.startswith("/"):
+                self._expect_frame("wait_for_transform", frame)
+
+    def _alarm(self, ended: asyncio.Future[Any], limit_ns: int) -> Alarm | None:
+        """Return what ends a wait when its limit is over, on the node's clock."""
+        if not limit_ns:
+            return None
+        until_ns = self._clock.now_ns() + limit_ns
+        return self._clock.call_at(until_ns, lambda: settle(ended, lambda: TIMED_OUT))
+
+    def _changed(self, child: str, frame: Frame, before: tuple[int, str] | None) -> None:
+        self._waiters.changed(child, frame, before)
+        if self._followers:
+            for follower in self._followers.pop(child, ()):
+                settle(follower, lambda: None)
+
+    def _latest_pose(self, target: str, source: str) -> tuple[Pose, int] | None:
+        """Return the latest pose of a frame and its stamp; None if there is none."""
+        found = self._find(target, source, 0)
+        return None if isinstance(found, Failure) else (unit(found[0]), found[1])
+
+    def clear(self) -> None:
+        """Forget the history of all frames; static transforms, names and waits stay."""
+        super().clear()
+        self._waiters.ask_all()
+
+    def _on_jump(self, jump: TimeJump) -> None:
+        """Clear the buffer: its transforms are from another time."""
+        self._logger.warning("Detected jump back in time. Clearing tf buffer.")
+        self.clear()
+        if jump.clock_change is ClockChange.ROS_TIME_NO_CHANGE:
+            return
+        for ended, (limit_ns, alarm) in list(self._pending.items()):
+            if alarm is not None:  # it belongs to the time that was followed before
+                alarm.cancel()
+                self._pending[ended] = limit_ns, self._alarm(ended, limit_ns)
+
+    def _end_waits(self) -> None:
+        self._jumps.unregister()
+        self.listener.unregister()
+        for ended in list(self._pending):
+            settle(ended, lambda: DESTROYED)
+        for followers in list(self._followers.values()):
+            for follower in list(followers):
+                settle(follower, lambda: None)
+        self._followers.clear()
+
+
+TIMED_OUT: Any = object()
+DESTROYED: Any = object()
+
+
+def settle(future: asyncio.Future[Any], outcome: Callable[[], Any] | Exception) -> None:
+    """End a wait with what a function returns, or with an error; no effect if it has ended."""
+    if future.done():
+        return
+    if isinstance(outcome, Exception):
+        future.set_exception(outcome)
+        return
+    try:
+        future.set_result(outcome())
+    except TransformException as error:
+        future.set_exception(error)

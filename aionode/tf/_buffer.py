@@ -1,0 +1,193 @@
+"""A buffer that follows /tf, and whose transforms can be awaited."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from aionode.tf._apply import transformer_of
+from aionode.tf._awaitable_core import LATEST, AwaitableCore
+from aionode.tf._changes import Changes
+from aionode.tf._filter import Filtered
+
+if TYPE_CHECKING:
+    from aionode.endpoints.subscription import Subscription
+    from aionode.interfaces.geometry_msgs.msg import TransformStamped
+
+__all__ = ["Buffer"]
+
+StampedT = TypeVar("StampedT")
+
+
+class Buffer(AwaitableCore):
+    """Keeps the transforms of /tf and /tf_static, and answers for any two frames.
+
+    ::
+
+        buffer = aionode.tf.Buffer(node)
+        stamped = await buffer.wait_for_transform("map", "base_link")
+
+    It has the methods of tf2's BufferCore as well. It is cleared when the clock of the node jumps
+    back, as tf2 does, and when simulated time is switched on or off. Time limits run in that clock.
+
+    Args:
+        node: The node that subscribes; the buffer ends with it.
+        cache_time: How long transforms are kept: a Duration, or seconds.
+        qos: A profile or depth for /tf; by default 100 messages.
+        static_qos: The same for /tf_static; by default also transient local.
+        tf_topic: The topic of transforms that change.
+        tf_static_topic: The topic of transforms that do not.
+
+    Raises:
+        TypeError: `cache_time` is neither a duration nor a number.
+        ValueError: it is negative.
+        EntityDestroyedError: the node was destroyed (a RuntimeError).
+    """
+
+    # Without waiting
+
+    def lookup_transform(
+        self, target_frame: str, source_frame: str, time: Any = LATEST
+    ) -> TransformStamped:
+        """Return the transform that expresses in `target_frame` what is given in `source_frame`.
+
+        It never waits; see `wait_for_transform`.
+
+        Args:
+            target_frame: The frame to express things in.
+            source_frame: The frame that they are in.
+            time: When; by default the latest common time.
+
+        Raises:
+            TransformException: it is not available; the class and the text say why.
+        """
+        return self.lookup_transform_core(target_frame, source_frame, time)
+
+    def lookup_transform_full(
+        self,
+        target_frame: str,
+        target_time: Any,
+        source_frame: str,
+        source_time: Any,
+        fixed_frame: str,
+    ) -> TransformStamped:
+        """Return the transform between two times; see `lookup_transform_full_core`.
+
+        Raises:
+            TransformException: it is not available; the class and the text say why.
+        """
+        return self.lookup_transform_full_core(
+            target_frame, target_time, source_frame, source_time, fixed_frame
+        )
+
+    def can_transform(
+        self,
+        target_frame: str,
+        source_frame: str,
+        time: Any = LATEST,
+        *,
+        return_debug_tuple: bool = False,
+    ) -> bool | tuple[bool, str]:
+        """Return whether a transform is available, with `return_debug_tuple` also why not."""
+        found = self.can_transform_core(target_frame, source_frame, time)
+        return found if return_debug_tuple else found[0]
+
+    def can_transform_full(
+        self,
+        target_frame: str,
+        target_time: Any,
+        source_frame: str,
+        source_time: Any,
+        fixed_frame: str,
+        *,
+        return_debug_tuple: bool = False,
+    ) -> bool | tuple[bool, str]:
+        """Return whether a transform between two times is available; see `can_transform`."""
+        found = self.can_transform_full_core(
+            target_frame, target_time, source_frame, source_time, fixed_frame
+        )
+        return found if return_debug_tuple else found[0]
+
+    # Waiting; `wait_for_transform` is in the base class
+
+    async def transform(
+        self, object_stamped: StampedT, target_frame: str, *, timeout_sec: float | None = None
+    ) -> StampedT:
+        """Return a message in another frame, as soon as its transform is available.
+
+        Args:
+            object_stamped: A message with a header: one of geometry_msgs, a PointCloud2, or of a
+                type that `register_transform` knows.
+            target_frame: The frame to express it in.
+            timeout_sec: As for `wait_for_transform`.
+
+        Raises:
+            TypeError: there is no function for this type.
+            TransformException: as `wait_for_transform`.
+        """
+        apply = transformer_of(type(object_stamped))
+        header = object_stamped.header  # type: ignore[attr-defined]  # of what is registered
+        found = await self.wait_for_transform(
+            target_frame, header.frame_id, header.stamp, timeout_sec=timeout_sec
+        )
+        result: StampedT = apply(object_stamped, found)
+        return result
+
+    async def transform_full(
+        self,
+        object_stamped: StampedT,
+        target_frame: str,
+        target_time: Any,
+        fixed_frame: str,
+        *,
+        timeout_sec: float | None = None,
+    ) -> StampedT:
+        """Return a message in another frame at another time; see `transform`.
+
+        Raises:
+            TypeError: there is no function for this type.
+            TransformException: as `wait_for_transform_full`.
+        """
+        apply = transformer_of(type(object_stamped))
+        header = object_stamped.header  # type: ignore[attr-defined]  # of what is registered
+        found = await self.wait_for_transform_full(
+            target_frame,
+            target_time,
+            header.frame_id,
+            header.stamp,
+            fixed_frame,
+            timeout_sec=timeout_sec,
+        )
+        result: StampedT = apply(object_stamped, found)
+        return result
+
+    def follow(self, target_frame: str, source_frame: str) -> Changes:
+        """Return an iterator over the latest transform between two frames: each time it changes.
+
+        ``async for stamped in buffer.follow("map", "base_link")``. A slow loop gets the newest one
+        only. It waits while there is none.
+
+        Raises:
+            InvalidArgumentException: a name is empty or begins with a slash (a ValueError).
+        """
+        self._expect_names(target_frame, source_frame)
+        return Changes(self, target_frame, source_frame)
+
+    def filter(
+        self, subscription: Subscription[StampedT], target_frame: str, *, queue_size: int = 100
+    ) -> Filtered[StampedT]:
+        """Return an iterator over messages whose transform is available: tf2's MessageFilter.
+
+        ``async for msg, stamped in buffer.filter(subscription, "map")``.
+
+        Args:
+            subscription: A subscription without a callback, of messages with headers; the iterator
+                reads it.
+            target_frame: The frame to express the messages in.
+            queue_size: How many messages wait; beyond that the oldest one is dropped.
+
+        Raises:
+            ValueError: `queue_size` is less than 1.
+            InvalidArgumentException: the name is empty or begins with a slash (a ValueError).
+        """
+        self._expect_names(target_frame)
+        return Filtered(self, subscription, target_frame, queue_size)

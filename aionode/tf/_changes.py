@@ -1,0 +1,61 @@
+"""The changes of the transform between two frames, one after the other."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING
+
+from aionode.tf._walk import ancestors
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator
+
+    from aionode.interfaces.geometry_msgs.msg import TransformStamped
+    from aionode.tf._arithmetic import Pose
+    from aionode.tf._awaitable_core import AwaitableCore
+
+__all__ = ["Changes"]
+
+
+class Changes:
+    """Iterates over the latest transform between two frames; see `Buffer.follow`."""
+
+    def __init__(self, buffer: AwaitableCore, target: str, source: str) -> None:
+        self._buffer = buffer
+        self._target = target
+        self._source = source
+        self._last: tuple[Pose, int] | None = None
+
+    def __aiter__(self) -> AsyncIterator[TransformStamped]:
+        """Iterate until the node of the buffer is destroyed."""
+        return self
+
+    async def __anext__(self) -> TransformStamped:
+        """Wait for a transform that differs from the last one. Cancelling loses nothing."""
+        buffer = self._buffer
+        while not buffer._entity.destroyed:
+            found = buffer._latest_pose(self._target, self._source)
+            if found is not None and found != self._last:
+                self._last = found
+                pose, stamp_ns = found
+                return buffer._message(self._target, self._source, pose, stamp_ns)
+            await self._change()
+        raise StopAsyncIteration
+
+    async def _change(self) -> None:
+        """Wait until a frame on the way has new data."""
+        buffer = self._buffer
+        changed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        tree = buffer._frames
+        frames = {*ancestors(tree, self._source), *ancestors(tree, self._target)}
+        for frame in frames:
+            buffer._followers.setdefault(frame, {})[changed] = None
+        try:
+            await changed
+        finally:
+            for frame in frames:
+                waiting = buffer._followers.get(frame)
+                if waiting is not None:
+                    waiting.pop(changed, None)
+                    if not waiting:
+                        del buffer._followers[frame]

@@ -1,0 +1,143 @@
+"""Messages that wait until their transform is available: tf2's MessageFilter."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import Counter, deque
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from weakref import finalize, ref
+
+from aionode._concurrency import SLICE_NS, checkpoint
+from aionode.clock import perf_ns
+from aionode.tf._buffer_core import time_ns_of
+from aionode.tf._texts import seconds_text
+from aionode.tf._waiters import Waiter
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator
+
+    from aionode.endpoints.subscription import Subscription
+    from aionode.interfaces.geometry_msgs.msg import TransformStamped
+    from aionode.tf._awaitable_core import AwaitableCore
+    from aionode.tf._waiters import Waiters
+    from aionode.tf._walk import Failure
+
+__all__ = ["Filtered"]
+
+MsgT = TypeVar("MsgT")
+
+EMPTY = "the frame id of the message is empty"
+FULL = "discarding message because the queue is full"
+OLD = "the timestamp on the message is earlier than all the data in the transform cache"
+
+
+class Filtered(Generic[MsgT]):
+    """Iterates over pairs of a message and its transform; see `Buffer.filter`.
+
+    Attributes:
+        dropped: How many messages were dropped, by reason.
+    """
+
+    def __init__(
+        self, buffer: AwaitableCore, subscription: Subscription[MsgT], target: str, queue_size: int
+    ) -> None:
+        if queue_size < 1:
+            raise ValueError(f"queue_size={queue_size}; it must be at least 1")
+        self.dropped: Counter[str] = Counter()
+        self._buffer = buffer
+        self._subscription = subscription
+        self._target = target
+        self._queue_size = queue_size
+        self._waiting: dict[Waiter, None] = {}  # the oldest first
+        self._ready: deque[tuple[MsgT, TransformStamped]] = deque()
+        self._wake: asyncio.Future[None] | None = None
+        self._turn_ends_ns = 0
+        # An iterator that is left behind leaves no waiters in the buffer.
+        finalize(self, remove_all, buffer._waiters, self._waiting)
+
+    @property
+    def waiting(self) -> int:
+        """How many messages wait for their transform."""
+        return len(self._waiting)
+
+    def __aiter__(self) -> AsyncIterator[tuple[MsgT, TransformStamped]]:
+        """Iterate until the subscription is destroyed."""
+        return self
+
+    async def __anext__(self) -> tuple[MsgT, TransformStamped]:
+        """Return the next message whose transform is available. Cancelling loses nothing."""
+        subscription = self._subscription
+        subscription._refuse_if_it_has_a_callback()
+        if perf_ns() >= self._turn_ends_ns:
+            # With messages that are all ready this never waits, so nothing else would run.
+            await checkpoint()
+            self._turn_ends_ns = perf_ns() + SLICE_NS
+        while True:
+            while subscription._reader and not self._ready:
+                self._take(subscription._take())
+            if self._ready:
+                return self._ready.popleft()
+            if subscription.destroyed or self._buffer._entity.destroyed:
+                raise StopAsyncIteration
+            self._wake = asyncio.get_running_loop().create_future()
+            await subscription._reader.wait(self._wake)
+
+    def _take(self, msg: Any) -> None:
+        """Let a message wait for its transform, if it has to."""
+        header = msg.header
+        source = header.frame_id.removeprefix("/")
+        if not source:
+            self._drop(msg, EMPTY)
+            return
+        if len(self._waiting) + len(self._ready) >= self._queue_size:
+            self._drop_oldest()
+        weak = ref(self)
+
+        def end(failure: Failure | None) -> None:
+            filtered = weak()
+            if filtered is not None:
+                filtered._end(waiter, msg, source, failure)
+
+        waiter = Waiter(((self._target, source, time_ns_of(header.stamp)),), end)
+        self._waiting[waiter] = None
+        self._buffer._waiters.add(waiter)
+
+    def _end(self, waiter: Waiter, msg: Any, source: str, failure: Failure | None) -> None:
+        """Take a message whose wait has ended."""
+        self._waiting.pop(waiter, None)
+        if failure is not None:
+            self._drop(msg, OLD)
+            return
+        found = self._buffer.lookup_transform_core(self._target, source, msg.header.stamp)
+        self._ready.append((msg, found))
+        if self._wake is not None and not self._wake.done():
+            self._wake.set_result(None)
+
+    def _drop_oldest(self) -> None:
+        if self._ready:
+            msg, _ = self._ready.popleft()
+            self._drop(msg, FULL)
+            return
+        waiter = next(iter(self._waiting))
+        del self._waiting[waiter]
+        self._buffer._waiters.remove(waiter)
+        self._count(FULL, waiter.parts[0][1], waiter.parts[0][2])
+
+    def _drop(self, msg: Any, reason: str) -> None:
+        self._count(reason, msg.header.frame_id, time_ns_of(msg.header.stamp))
+
+    def _count(self, reason: str, frame: str, time_ns: int) -> None:
+        """Count a dropped message; the log tells of the first one for each reason."""
+        self.dropped[reason] += 1
+        if self.dropped[reason] == 1:
+            topic = self._subscription.topic_name
+            self._buffer._logger.warning(
+                f"Message Filter dropping message: frame '{frame}' at time {seconds_text(time_ns)} "
+                f"for reason '{reason}'; further ones of {topic} are only counted"
+            )
+
+
+def remove_all(waiters: Waiters, waiting: dict[Waiter, None]) -> None:
+    """End the waits of an iterator that is gone."""
+    for waiter in list(waiting):
+        waiters.remove(waiter)

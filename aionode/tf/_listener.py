@@ -1,0 +1,95 @@
+"""Subscriptions of /tf and /tf_static that feed a buffer."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from aionode.graph import EndpointKind
+from aionode.interfaces.tf2_msgs.msg import TFMessage
+from aionode.qos import DurabilityPolicy, QoSProfile
+
+if TYPE_CHECKING:
+    from aionode.endpoints.subscription import MessageInfo, Subscription
+    from aionode.node import Node
+    from aionode.tf._buffer_core import BufferCore
+
+__all__ = ["STATIC_TOPIC", "TOPIC", "TransformListener"]
+
+TOPIC = "/tf"
+STATIC_TOPIC = "/tf_static"
+
+DEPTH = 100
+"""How many messages of each topic wait, as in tf2."""
+
+MAX_SENDERS = 1_000
+"""For how many publishers the name of their node is remembered."""
+
+
+class TransformListener:
+    """Puts the transforms of /tf and /tf_static into a buffer, as in tf2_ros.
+
+    A `Buffer` makes its own; this is for a `BufferCore`, and for transforms of other topics. The
+    authority of a transform is the node that has published it.
+
+    Args:
+        buffer: Where the transforms go.
+        node: The node that subscribes. In a managed node, transforms arrive in every state.
+        qos: A profile or depth for /tf; by default 100 messages.
+        static_qos: The same for /tf_static; by default also transient local.
+        tf_topic: The topic of transforms that change.
+        tf_static_topic: The topic of transforms that do not.
+    """
+
+    def __init__(
+        self,
+        buffer: BufferCore,
+        node: Node,
+        *,
+        qos: QoSProfile | int | None = None,
+        static_qos: QoSProfile | int | None = None,
+        tf_topic: str = TOPIC,
+        tf_static_topic: str = STATIC_TOPIC,
+    ) -> None:
+        static_qos = static_qos or QoSProfile(
+            depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL
+        )
+        self.buffer = buffer
+        self.node = node
+        self._senders: dict[bytes, str] = {}
+        self.tf_sub: Subscription[TFMessage] = node.create_subscription(
+            TFMessage, tf_topic, self.callback, qos or DEPTH
+        )
+        self.tf_static_sub: Subscription[TFMessage] = node.create_subscription(
+            TFMessage, tf_static_topic, self.static_callback, static_qos
+        )
+
+    def callback(self, data: TFMessage, info: MessageInfo) -> None:
+        """Take transforms that may change."""
+        authority = self._sender(info["publisher_gid"])
+        for transform in data.transforms:
+            self.buffer.set_transform(transform, authority)
+
+    def static_callback(self, data: TFMessage, info: MessageInfo) -> None:
+        """Take transforms that hold at any time."""
+        authority = self._sender(info["publisher_gid"])
+        for transform in data.transforms:
+            self.buffer.set_transform_static(transform, authority)
+
+    def _sender(self, gid: bytes) -> str:
+        """Return the full name of the node of a publisher; its gid while that is not known."""
+        known = self._senders.get(gid)
+        if known is not None:
+            return known
+        topics = {self.tf_sub.topic_name, self.tf_static_sub.topic_name}
+        for endpoint in self.node.graph.endpoints(EndpointKind.PUBLISHER):
+            if endpoint.gid == gid and endpoint.name in topics:
+                if len(self._senders) >= MAX_SENDERS:
+                    self._senders.clear()
+                name = self._senders[gid] = endpoint.node.fully_qualified_name
+                return name
+        return f"publisher {gid.hex()}"
+
+    def unregister(self) -> None:
+        """Destroy both subscriptions."""
+        self.tf_sub.destroy()
+        self.tf_static_sub.destroy()
