@@ -16,12 +16,18 @@ __all__ = ["main"]
 
 USAGE = """\
 usage: python -m aionode.rclpy [--interfaces FOLDER] (PROGRAM.py | -m MODULE) [ARGUMENT...]
+       python -m aionode.rclpy [--interfaces FOLDER] --check (PROGRAM.py | FOLDER)...
 
 Runs a program that imports rclpy, with aionode in the place of ROS 2.
 
   --interfaces FOLDER  message packages that the program uses; may be repeated
   -m MODULE            run a module, as python -m does
+  --check              run nothing: list what programs import, and whether it is there; the exit
+                       status is 1 if something is missing
 """
+
+
+CHECK = "--check"
 
 
 def main(argv: Sequence[str]) -> None:
@@ -37,6 +43,8 @@ def main(argv: Sequence[str]) -> None:
         install(interfaces=folders)
     except (AionodeError, OSError) as error:
         fail(str(error))
+    if name == CHECK:
+        list_imports(arguments)
     sys.excepthook = report
     code, module = (of_module if is_module else of_file)(name)
     sys.argv = [str(module.__file__), *arguments]
@@ -55,6 +63,8 @@ def parsed(argv: Sequence[str]) -> tuple[list[str], bool, str, list[str]]:
             raise SystemExit(0)
         if first == "--interfaces" and given:
             folders.append(given.pop(0))
+        elif first == CHECK and given:
+            return folders, False, CHECK, given
         elif first == "-m" and given:
             return folders, True, given[0], given[1:]
         elif first.startswith("-"):
@@ -63,6 +73,23 @@ def parsed(argv: Sequence[str]) -> tuple[list[str], bool, str, list[str]]:
             return folders, False, first, given
     sys.stderr.write(USAGE)
     raise SystemExit(2)
+
+
+def list_imports(paths: Sequence[str]) -> NoReturn:
+    """Print what programs import and whether it is there; nothing of them is run.
+
+    Raises:
+        SystemExit: With status 1 if something is missing.
+    """
+    from aionode.rclpy._check import check  # which programs that run do not need
+
+    del sys.path[0]  # the current folder, which is not where a program looks
+    try:
+        text, complete = check(paths)
+    except OSError as error:
+        fail(str(error))
+    sys.stdout.write(text)
+    raise SystemExit(0 if complete else 1)
 
 
 def of_file(name: str) -> tuple[CodeType, ModuleType]:
@@ -119,11 +146,28 @@ def fail(problem: str) -> NoReturn:
 def report(
     kind: type[BaseException], error: BaseException, traceback: TracebackType | None
 ) -> None:
-    """Print an exception that the program did not catch, without the lines of what runs it."""
+    """Print an exception that the program did not catch, without the lines of what runs it.
+
+    Below a missing module of ROS stands what to do about it.
+    """
     own = [entry for entry in entries(traceback) if entry.tb_frame.f_globals is globals()]
     if own:
         error = error.with_traceback(own[-1].tb_next)
     sys.__excepthook__(kind, error, error.__traceback__)
+    if isinstance(error, Exception):
+        advise(error)
+
+
+def advise(error: Exception) -> None:
+    """Print what to do about the modules of ROS that an exception did not find."""
+    from aionode.rclpy._finder import ALIASES
+    from aionode.rclpy._missing import advice, missing_modules
+    from aionode.rclpy._rosidl import has_interfaces
+
+    for module in missing_modules(error):
+        text = advice(module, frozenset(ALIASES))
+        if text is not None and not has_interfaces(module.partition(".")[0]):
+            sys.stderr.write(f"aionode.rclpy: {text}\n")
 
 
 def entries(traceback: TracebackType | None) -> Iterator[TracebackType]:

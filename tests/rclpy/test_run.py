@@ -171,3 +171,59 @@ def test_options_of_programs_are_refused_for_nodes(folder: Path) -> None:
 
     assert done.returncode == 2
     assert "--interfaces are for programs of rclpy" in done.stderr
+
+
+def test_a_missing_package_of_ros_says_what_to_do(folder: Path) -> None:
+    """At the end of the traceback, and below a cause, too."""
+    (folder / "own.py").write_text("import rclpy\nfrom nav2_msgs.action import NavigateToPose\n")
+
+    done = run(folder, "own.py")
+
+    *_, error, hint = done.stderr.splitlines()
+    assert done.returncode == 1
+    assert error == "ModuleNotFoundError: No module named 'nav2_msgs'"
+    assert hint.startswith("aionode.rclpy: nav2_msgs is a package of messages that aionode does")
+    assert "aionode run --interfaces FOLDER PROGRAM" in hint
+
+
+def test_a_folder_of_messages_beside_the_program_is_no_package(folder: Path) -> None:
+    """Python takes it for a package without modules, and misses the class, not the package."""
+    (folder / "run_msgs" / "msg").mkdir(parents=True)
+    (folder / "own.py").write_text("from run_msgs.msg import Score\n")
+
+    done = run(folder, "own.py")
+
+    assert done.stderr.splitlines()[-1].startswith("aionode.rclpy: run_msgs is a package of mess")
+
+
+def test_a_name_that_a_package_of_aionode_does_not_have_is_shown_as_usual(folder: Path) -> None:
+    """Messages by the name of another package are no reason for advice."""
+    (folder / "own.py").write_text("from std_msgs.msg import Strin\n")
+
+    assert run(folder, "own.py").stderr.splitlines()[-1].startswith("ImportError: cannot import")
+
+
+def test_what_programs_import_is_listed_and_nothing_runs(folder: Path) -> None:
+    """What is missing shows before anything moves."""
+    (folder / "own.py").write_text("from nav2_msgs.msg import Costmap\nprint('runs')\n")
+
+    done = run(folder, "run", "--check", "program.py", "own.py", module="aionode")
+
+    assert done.returncode == 1
+    assert [line[:32] for line in done.stdout.splitlines()] == [
+        "program.py",
+        "  helper        beside the program"[:32],
+        "  std_msgs.msg  aionode",
+        "own.py",
+        "  nav2_msgs.msg  missing: nav2_msgs"[:32],
+    ]
+    assert run(folder, "--check", "program.py").returncode == 0
+
+
+@pytest.mark.parametrize("command", [("--check",), ("--check", "-m", "program")])
+def test_a_check_without_files_is_refused(folder: Path, command: tuple[str, ...]) -> None:
+    """A module would have to be imported to be found."""
+    done = run(folder, "run", *command, module="aionode")
+
+    assert done.returncode == 2
+    assert "--check takes files and folders" in done.stderr

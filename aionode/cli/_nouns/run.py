@@ -43,8 +43,13 @@ FITS = "expected MODULE:CLASS, such as my_robot.nodes:Talker or talker.py:Talker
     metavar="FOLDER",
     help="Message packages that a program of rclpy uses; may be repeated.",
 )
+@click.option(
+    "--check",
+    is_flag=True,
+    help="List what programs import, and whether it is there; run nothing. Takes folders as well.",
+)
 def run_command(
-    args: tuple[str, ...], module: str | None, rclpy: bool, interfaces: tuple[str, ...]
+    args: tuple[str, ...], module: str | None, rclpy: bool, interfaces: tuple[str, ...], check: bool
 ) -> None:
     """Run node classes together in one process, or a program of rclpy.
 
@@ -54,9 +59,16 @@ def run_command(
 
     A file that imports rclpy, or a message package such as std_msgs, runs as it is, without ROS:
     aionode takes their place. What follows the name of the file are its own arguments.
+
+    With --check, nothing runs: for each file, and each Python file of a folder, there is a list of
+    what it imports and where that is. The exit status is 1 if something is missing.
     """
     from aionode.runner import run
 
+    if check and (module is not None or not args):
+        raise click.UsageError("--check takes files and folders, such as src/my_robot/talker.py.")
+    if check:
+        run_program(interfaces, ("--check", *args))
     if module is not None:
         run_program(interfaces, ("-m", module, *args))
     elif args and (rclpy or is_rclpy_program(args[0])):

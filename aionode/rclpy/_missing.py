@@ -1,0 +1,122 @@
+"""What to do about a module of ROS that aionode does not have."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Final
+
+__all__ = ["advice", "missing_modules"]
+
+INTERFACES: Final = re.compile(r"\w+_(msgs|interfaces|srvs|actions?)|turtlesim")
+"""The names of packages that define messages, services or actions; any author's."""
+
+PURE_PYTHON: Final = """
+    action_tutorials_py camera_info_manager_py diagnostic_common_diagnostics diagnostic_updater
+    interactive_markers joint_state_publisher laser_geometry launch_param_builder
+    moveit_configs_utils nav2_common nav2_simple_commander py_trees_ros rclpy_message_converter
+    resource_retriever ros2_numpy ros2action ros2cli ros2component ros2doctor ros2interface
+    ros2lifecycle ros2node ros2param ros2pkg ros2run ros2service ros2topic rosapi rosbridge_library
+    rosbridge_server rosidl_adapter rosidl_cli rosidl_pycommon rpyutils smach smach_ros
+    teleop_twist_joy teleop_twist_keyboard tf2_tools tf_transformations twist_stamper urdf_parser_py
+"""
+"""Packages of ROS without compiled modules, whose source works where it lies."""
+
+INSTEAD: Final = {
+    "cv_bridge": "`aionode.image` converts images",
+    "message_filters": "`aionode.message_filters` has its names",
+    "launch": "start each node with `aionode run`",
+    "launch_ros": "start each node with `aionode run`",
+    "launch_testing": "aionode's fixtures for pytest start nodes in tests",
+    "rosbag2_py": "the distribution rosbags (`pip install rosbags`) reads and writes bags",
+    "tf2_ros": "`aionode.tf.BufferCore` has tf2's rules in Python",
+    "tf2_py": "`aionode.tf.BufferCore` has tf2's rules in Python",
+    "tf2_geometry_msgs": "`aionode.tf.BufferCore` has tf2's rules in Python",
+    "tf2_sensor_msgs": "`aionode.tf.BufferCore` has tf2's rules in Python",
+    "tf2_kdl": "tf_transformations computes with rotations in numpy",
+    "PyKDL": "tf_transformations computes with rotations in numpy",
+    "image_geometry": "OpenCV (`pip install opencv-python-headless`) has its functions",
+    "xacro": "`pip install xacro` has it",
+    "rospkg": "`pip install rospkg` has it",
+    "catkin_pkg": "`pip install catkin_pkg` has it",
+    "osrf_pycommon": "`pip install osrf-pycommon` has it",
+    "transforms3d": "`pip install transforms3d` has it",
+    "cv2": "`pip install opencv-python-headless` has it",
+}
+"""What serves in the place of a package, or where it comes from."""
+
+COMPILED: Final = """
+    controller_manager image_transport_py moveit point_cloud_transport_py python_qt_binding
+    qt_dotgraph qt_gui rmw_implementation rosidl_generator_py rosidl_runtime_c rqt rqt_gui
+    rqt_gui_py rqt_py_common sros2
+"""
+"""Packages with compiled modules, or that need a ROS 2 that is installed."""
+
+ROS_1: Final = """
+    actionlib dynamic_reconfigure message_generation roslaunch roslib rosnode rosparam rospy rostest
+    rostopic tf tf_conversions
+"""
+"""Packages of ROS 1 alone."""
+
+NOT_OF_ROS: Final = ("cv2", "transforms3d")
+
+
+def advice(module: str, supplied: frozenset[str] = frozenset()) -> str | None:
+    """Return what a missing module of ROS is, and what to do; None if its name is not known.
+
+    Args:
+        module: The whole name of the module.
+        supplied: The packages that aionode has, in the place of ROS.
+    """
+    package = module.partition(".")[0]
+    if package in supplied:
+        return (
+            f"{package} is from aionode here, which does not have {module}; docs/compatibility.md "
+            "says what differs"
+        )
+    if package in INSTEAD:
+        what = "a package" if package in NOT_OF_ROS else "a package of ROS 2"
+        return f"{package} is {what} that aionode does not have; {INSTEAD[package]}"
+    if package in ROS_1.split():
+        return f"{package} is a package of ROS 1; aionode runs programs of ROS 2"
+    if package in COMPILED.split():
+        return (
+            f"{package} is a package of ROS 2 that aionode does not have, and needs compiled "
+            "modules; run the program where ROS 2 is installed, and aionode's nodes beside it"
+        )
+    if package in PURE_PYTHON.split():
+        return (
+            f"{package} is a package of ROS 2 that aionode does not have; it is pure Python: get "
+            "its source, and put the folder that holds its Python package on PYTHONPATH"
+        )
+    if INTERFACES.fullmatch(package):
+        return (
+            f"{package} is a package of messages that aionode does not have; get its definitions "
+            f"({package}/msg/*.msg and the like), and name the folder that holds {package}: "
+            "aionode run --interfaces FOLDER PROGRAM; packages of a sourced workspace "
+            "(AMENT_PREFIX_PATH) are found without it"
+        )
+    return None
+
+
+def missing_modules(error: BaseException | None) -> list[str]:
+    """Return the modules that an exception, its causes and its parts did not find, each once."""
+    return list(dict.fromkeys(found_missing(error, set())))
+
+
+def found_missing(error: BaseException | None, seen: set[int]) -> Iterator[str]:
+    """Yield the module of each failed import that a traceback of the exception shows."""
+    if error is None or id(error) in seen:
+        return
+    seen.add(id(error))
+    hidden = error.__suppress_context__ and error.__cause__ is None
+    yield from found_missing(error.__cause__, seen)
+    if not hidden and error.__cause__ is None:
+        yield from found_missing(error.__context__, seen)
+    if isinstance(error, BaseExceptionGroup):
+        for part in error.exceptions:
+            yield from found_missing(part, seen)
+    # A folder beside the program has been taken for a package, such as that of a message package.
+    is_folder = isinstance(error, ImportError) and "(unknown location)" in str(error)
+    if isinstance(error, ModuleNotFoundError) or is_folder:
+        yield getattr(error, "name", None) or ""

@@ -1,0 +1,118 @@
+"""What programs import is listed without running them."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from aionode.rclpy._check import check
+
+
+@pytest.fixture
+def program(tmp_path: Path) -> Path:
+    """A program that is not written yet, alone in its folder."""
+    return tmp_path / "program.py"
+
+
+def findings(file: Path, source: str) -> tuple[dict[str, str], bool]:
+    """Return what is said of each import of a program, up to a colon, and whether all is there."""
+    file.write_text(source)
+    text, complete = check([str(file)])
+    first, *lines = text.splitlines()
+    assert first == str(file)
+    found = (line.split(maxsplit=1) for line in lines)
+    return {name: where.partition(":")[0] for name, where in found}, complete
+
+
+def test_each_import_has_its_source(program: Path) -> None:
+    """Python's own modules are always there, and would hide the rest."""
+    (program.parent / "helper.py").write_text("raise SystemExit\n")
+
+    found, complete = findings(
+        program,
+        "import os, numpy.linalg\nimport rclpy.node, helper\n"
+        "from std_msgs.msg import String, String_\n"
+        "from . import beside\nfrom __future__ import annotations\n",
+    )
+
+    assert found == {
+        "numpy.linalg": "installed",
+        "rclpy.node": "aionode",
+        "helper": "beside the program",
+        "std_msgs.msg": "aionode",
+    }
+    assert complete
+
+
+@pytest.mark.parametrize(
+    ("line", "shown"),
+    [
+        ("import nav2_msgs.msg", "nav2_msgs.msg"),
+        ("import rclpy.nothing", "rclpy.nothing"),
+        ("from rclpy import nothing", "rclpy.nothing"),
+        ("from rclpy.node import Nodes", "rclpy.node.Nodes"),
+        ("from std_msgs.msg import Strin", "std_msgs.msg.Strin"),
+        ("from std_msgs import srv", "std_msgs.srv"),
+        ("import numpy.nothing", "numpy.nothing"),
+        ("def late():\n    import nothing_at_all", "nothing_at_all"),
+    ],
+)
+def test_what_is_missing_is_found(program: Path, line: str, shown: str) -> None:
+    """Modules, names that aionode's do not have, and imports within functions."""
+    assert findings(program, line) == ({shown: "missing"}, False)
+
+
+def test_an_import_that_may_fail_is_optional(program: Path) -> None:
+    """The program has another way."""
+    source = "try:\n    import nothing_at_all\nexcept ImportError:\n    pass\n"
+
+    assert findings(program, source) == ({"nothing_at_all": "missing, optional"}, True)
+
+
+@pytest.mark.parametrize("condition", ["TYPE_CHECKING", "typing.TYPE_CHECKING"])
+def test_imports_for_type_checkers_are_left_out(program: Path, condition: str) -> None:
+    """They do not happen."""
+    source = f"import typing\nif {condition}:\n    import nothing_at_all\n"
+
+    assert findings(program, source) == ({}, True)
+
+
+def test_a_folder_stands_for_its_programs(tmp_path: Path) -> None:
+    """Those of a package find one another; what a build has copied is left out."""
+    package = tmp_path / "src" / "my_robot" / "my_robot"
+    package.mkdir(parents=True)
+    (package / "__init__.py").write_text("")
+    (package / "driver.py").write_text("from my_robot.wheels import turn\n")
+    (package / "wheels.py").write_text("")
+    for copied in ("build", ".venv"):
+        (tmp_path / copied).mkdir()
+        (tmp_path / copied / "old.py").write_text("import nothing_at_all\n")
+
+    text, complete = check([str(tmp_path)])
+
+    assert [line for line in text.splitlines() if not line.endswith(".py")] == [
+        "  my_robot.wheels  beside the program"
+    ]
+    assert complete
+
+
+def test_a_file_that_python_cannot_read_is_named(program: Path) -> None:
+    """The other files are listed all the same."""
+    program.write_text("def work(:\n")
+
+    text, complete = check([str(program)])
+
+    assert text.startswith(f"{program}\n  cannot be read: ")
+    assert not complete
+
+
+def test_nothing_of_a_program_is_imported(program: Path) -> None:
+    """Its modules may move a robot when they are imported."""
+    (program.parent / "mover").mkdir()
+    (program.parent / "mover" / "__init__.py").write_text("raise SystemExit\n")
+    (program.parent / "mover" / "arm.py").write_text("raise SystemExit\n")
+
+    assert findings(program, "import mover.arm\n") == ({"mover.arm": "beside the program"}, True)
+    assert "mover" not in sys.modules

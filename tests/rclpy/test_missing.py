@@ -1,0 +1,75 @@
+"""What is said about a package of ROS that is missing."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+import pytest
+
+from aionode.rclpy._missing import advice, missing_modules
+
+
+@pytest.mark.parametrize(
+    ("module", "part"),
+    [
+        ("my_robot_msgs.msg", "--interfaces FOLDER"),
+        ("my_robot_interfaces", "--interfaces FOLDER"),
+        ("turtlesim.srv", "--interfaces FOLDER"),
+        ("launch_ros.actions", "`aionode run`"),
+        ("rosbag2_py", "rosbags"),
+        ("ros2topic.api", "PYTHONPATH"),
+        ("rqt_gui_py", "where ROS 2 is installed"),
+        ("rospy", "ROS 1"),
+        ("tf2_geometry_msgs", "aionode.tf"),
+    ],
+)
+def test_a_known_package_has_its_own_way(module: str, part: str) -> None:
+    """Messages need definitions, Python its source, and the rest something in its place."""
+    text = advice(module)
+
+    assert text is not None
+    assert text.startswith(module.partition(".")[0])
+    assert part in text
+
+
+def test_nothing_is_said_about_other_modules() -> None:
+    """They are not ROS's, and pip's own words fit better."""
+    assert advice("requests") is None
+    assert advice("helper") is None
+
+
+def test_a_module_of_a_package_that_aionode_has_is_told_apart() -> None:
+    """To get the package from elsewhere would not help."""
+    text = advice("rclpy.nothing", frozenset({"rclpy"}))
+
+    assert text is not None
+    assert text.startswith("rclpy is from aionode here, which does not have rclpy.nothing")
+
+
+def failed(module: str) -> ModuleNotFoundError:
+    """The exception of an import."""
+    with pytest.raises(ModuleNotFoundError) as raised:
+        import_module(module)
+    return raised.value
+
+
+def test_missing_modules_are_found_where_a_traceback_shows_them() -> None:
+    """In causes, in what was being handled, and in groups; each once."""
+    cause, handled, part = map(failed, ("no_cause_msgs", "no_context_msgs", "no_part_msgs"))
+    above = RuntimeError("above")
+    above.__cause__ = cause
+    later = RuntimeError("later")
+    later.__context__ = handled
+
+    group = ExceptionGroup("all", [above, later, part, part])
+
+    assert missing_modules(group) == ["no_cause_msgs", "no_context_msgs", "no_part_msgs"]
+
+
+def test_what_a_traceback_does_not_show_is_not_missing() -> None:
+    """``raise … from None`` says that the import does not matter."""
+    error = RuntimeError("another reason")
+    error.__context__ = failed("no_context_msgs")
+    error.__suppress_context__ = True
+
+    assert missing_modules(error) == []
