@@ -7,7 +7,7 @@ log messages to the node's event loop.
 from __future__ import annotations
 
 import contextlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from aionode import qos
 from aionode.errors import QueueFullError
@@ -19,15 +19,12 @@ from aionode.interfaces.rcl_interfaces.msg import (
     SetLoggerLevelsResult,
 )
 from aionode.interfaces.rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
-from aionode.interfaces.type_description_interfaces.msg import TypeSource
 from aionode.interfaces.type_description_interfaces.srv import GetTypeDescription
 from aionode.logging import LoggingSeverity, get_logger_level, set_logger_level
-from aionode.message import type_name
 from aionode.parameter import parameter_services
-from aionode.wire.typehash import description_message, referenced_types, type_hash
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from aionode._node.endpoints import NodeEndpoints
     from aionode.clock import Clock
@@ -155,45 +152,12 @@ def serve_type_descriptions(node: NodeEndpoints) -> None:
     def describe(
         request: GetTypeDescription.Request, response: GetTypeDescription.Response
     ) -> GetTypeDescription.Response:
-        found = [kind for kind in types_of(node) if type_name(kind) == request.type_name]
-        if not found:
-            response.failure_reason = f"{request.type_name} is not in use by this node"
-            return response
-        known = {type_hash(kind): kind for kind in found}
-        kind = known.get(request.type_hash) if request.type_hash else found[0]
-        if kind is None:
-            response.failure_reason = (
-                f"{request.type_name} has the hash {', '.join(known)} here, not {request.type_hash}"
-            )
-            return response
-        response.successful = True
-        response.type_description = description_message(kind)
-        if request.include_type_sources:
-            response.type_sources = [source_of(part) for part in (kind, *referenced_types(kind))]
-        return response
+        from aionode._node.type_descriptions import describe_type, type_of  # rarely asked for
+
+        entities = (*node.publishers, *node.subscriptions, *node.services, *node.clients)
+        answer: GetTypeDescription.Response = describe_type(
+            map(type_of, entities), request, response
+        )
+        return answer
 
     node.create_service(GetTypeDescription, "~/get_type_description", describe)
-
-
-def types_of(node: NodeEndpoints) -> Iterator[Any]:
-    """Yield the types of all endpoints of the node, and the types nested in them."""
-    kinds: list[Any] = [publisher.msg_type for publisher in node.publishers]
-    kinds += [subscription.msg_type for subscription in node.subscriptions]
-    kinds += [service.srv_type for service in node.services]
-    kinds += [client.srv_type for client in node.clients]
-    for kind in dict.fromkeys(kinds):
-        yield kind
-        yield from referenced_types(kind)
-
-
-def source_of(kind: Any) -> TypeSource:
-    """Return the definition of a type, as text."""
-    # Imported on demand: rarely requested, and slow to import.
-    from aionode.idl import definition_text
-
-    name = type_name(kind)
-    return TypeSource(
-        type_name=name,
-        encoding=name.split("/")[1],
-        raw_file_contents=definition_text(kind),
-    )

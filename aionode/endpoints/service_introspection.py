@@ -51,16 +51,16 @@ class Introspection:
     Args:
         srv_type: The service class.
         service_name: Full name of the service.
-        create_publisher: The node's method.
+        create_publisher: Returns a publisher for a type, a topic and a profile.
     """
 
     def __init__(
-        self, srv_type: Any, service_name: str, create_publisher: Callable[..., Publisher[Any]]
+        self, srv_type: Any, service_name: str, create_publisher: Callable[..., Any]
     ) -> None:
         self._srv_type = srv_type
         self._topic = service_name + TOPIC_SUFFIX
         self._create_publisher = create_publisher
-        self._publisher: Publisher[Any] | None = None
+        self._publisher: Any = None
         self._qos: QoSProfile | int | None = None
         self._clock: Clock | None = None
         self._state = ServiceIntrospectionState.OFF
@@ -106,16 +106,12 @@ class Introspection:
         publisher = self._publisher
         if publisher is None or publisher.destroyed or self._clock is None:
             return
-        from aionode.interfaces.service_msgs.msg import ServiceEventInfo  # rarely used
-
-        event = self._srv_type.Event(
-            info=ServiceEventInfo(
-                event_type=event_type,
-                stamp=self._clock.now().to_msg(),
-                client_gid=list(sample_info.gid),
-                sequence_number=sample_info.sequence,
-            )
-        )
+        event = self._srv_type.Event()
+        info = event.info
+        info.event_type = event_type
+        info.stamp = self._clock.now().to_msg()
+        info.client_gid = list(sample_info.gid)
+        info.sequence_number = sample_info.sequence
         if self._state is ServiceIntrospectionState.CONTENTS:
             if event_type in (REQUEST_SENT, REQUEST_RECEIVED):
                 event.request = [content]

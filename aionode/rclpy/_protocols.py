@@ -26,6 +26,7 @@ class NodeLike(Protocol):
     """A node, as executors and its own services see it."""
 
     executor: Any
+    _publishers: list[Any]
     _timers: list[Any]
     _subscriptions: list[Any]
     _guards: list[Any]

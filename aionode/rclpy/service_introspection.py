@@ -1,5 +1,5 @@
 """What services tell of their calls on ``<service>/_service_event``."""
 
-from aionode.rclpy._impl.introspection import ServiceIntrospectionState
+from aionode.endpoints.service_introspection import ServiceIntrospectionState
 
 __all__ = ["ServiceIntrospectionState"]

@@ -196,7 +196,7 @@ async def test_a_full_reader_does_not_disturb_the_calls(
     publisher = server._introspection._publisher
     assert publisher is not None
     for writer in publisher._writers:
-        writer.has_room = lambda: False  # type: ignore[method-assign]
+        writer.has_room = lambda: False
         writer.bounded = True
 
     assert (await client.call(Request(a=1, b=1))).sum == 2

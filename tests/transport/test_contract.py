@@ -126,7 +126,7 @@ async def test_service_events_arrive_from_both_sides(pair: Pair) -> None:
     await client.wait_for_service()
     while reader.get_publisher_count() < 2:
         await pair.left.graph.changed()
-    await server._introspection._publisher.wait_for_subscribers()  # type: ignore[union-attr]
+    await server._introspection._publisher.wait_for_subscribers()
 
     await client.call(Request(int64_value=2, int32_value=3))
     events = [await reader.receive() for _ in range(4)]

@@ -8,9 +8,15 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from aionode.clock import MachineTime
+from aionode.endpoints.service_introspection import (
+    REQUEST_RECEIVED,
+    REQUEST_SENT,
+    RESPONSE_RECEIVED,
+    RESPONSE_SENT,
+)
 from aionode.errors import DecodeError
 from aionode.rclpy._impl.destroyable import Destroyable
-from aionode.rclpy._impl.introspection import Introspection, ServiceEvent
+from aionode.rclpy._impl.introspection import Introspection
 from aionode.rclpy._impl.qos import profile_of
 from aionode.rclpy._impl.typesupport import service_support
 
@@ -18,10 +24,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.bare_node import BareClient, BareEndpoint
+    from aionode.endpoints.service_introspection import ServiceIntrospectionState
     from aionode.errors import ServiceError
     from aionode.graph import EndpointInfo
     from aionode.rclpy._impl.destroyable import Arrivals
-    from aionode.rclpy._impl.introspection import ServiceIntrospectionState
     from aionode.rclpy._impl.node import NodeHandle
     from aionode.rclpy._impl.timers import ClockHandle
     from aionode.transport.base import Request
@@ -130,9 +136,7 @@ class ServiceHandle(Destroyable):
             info = request.sample_info
             request_id = rmw_request_id_t(info.sequence, info.gid)
             self._taken[request_id] = request
-            self._introspection.tell(
-                ServiceEvent.REQUEST_RECEIVED, info.gid, info.sequence, request=message
-            )
+            self._introspection.tell(REQUEST_RECEIVED, info.gid, info.sequence, message)
             return message, rmw_service_info_t(request_id, info.source_ns, received_ns)
 
     def service_send_response(self, response: Any, request_id: rmw_request_id_t) -> None:
@@ -143,10 +147,7 @@ class ServiceHandle(Destroyable):
             return
         self._io.send(partial(request.reply, self._support.wire_type.Response(data)))
         self._introspection.tell(
-            ServiceEvent.RESPONSE_SENT,
-            request_id.writer_guid,
-            request_id.sequence_number,
-            response=response,
+            RESPONSE_SENT, request_id.writer_guid, request_id.sequence_number, response
         )
 
     def service_send_error(self, error_type: str, text: str, request_id: rmw_request_id_t) -> None:
@@ -159,7 +160,7 @@ class ServiceHandle(Destroyable):
         self, clock: ClockHandle, qos_profile: Any, state: ServiceIntrospectionState
     ) -> None:
         """Tell of calls on ``<service>/_service_event``."""
-        self._introspection.configure(clock, qos_profile, state)
+        self._introspection.configure(clock.clock, qos_profile, state)
 
     def give_up(self, request_id: rmw_request_id_t) -> None:
         """Leave the request of this id without an answer; its client goes on waiting.
@@ -243,9 +244,7 @@ class ClientHandle(Destroyable):
         sequence = self._sequence
         if on_response is not None:
             self._replies.blocked[sequence] = on_response
-        self._introspection.tell(
-            ServiceEvent.REQUEST_SENT, self.endpoint.gid, sequence, request=request
-        )
+        self._introspection.tell(REQUEST_SENT, self.endpoint.gid, sequence, request)
         self._io.send(
             partial(self._send, sequence, self._support.wire_type.Request(data), now_ns())
         )
@@ -276,16 +275,14 @@ class ClientHandle(Destroyable):
             DecodeError: the bytes are no response.
         """
         response = self._support.response.decode(data)
-        self._introspection.tell(
-            ServiceEvent.RESPONSE_RECEIVED, self.endpoint.gid, sequence, response=response
-        )
+        self._introspection.tell(RESPONSE_RECEIVED, self.endpoint.gid, sequence, response)
         return response
 
     def configure_introspection(
         self, clock: ClockHandle, qos_profile: Any, state: ServiceIntrospectionState
     ) -> None:
         """Tell of calls on ``<service>/_service_event``."""
-        self._introspection.configure(clock, qos_profile, state)
+        self._introspection.configure(clock.clock, qos_profile, state)
 
     def forget(self, sequence: int) -> None:
         """Forget a request: the server need not begin with it, and its response is dropped."""
