@@ -40,6 +40,8 @@ SHARED = {
     "aionode.message._field_types": "the codec compiles the fields of a message",
     "aionode.message._message": "definitions become message classes",
     "aionode.message._validation": "the codec checks values by the same rules",
+    "aionode.tf._apply": "the command line prints rotations as matrices and angles",
+    "aionode.tf._texts": "the command line shows the rates of frames",
     "aionode.transport._local_sessions": "the id of a context says when it was made",
     "aionode.transport._zenoh_config": "contexts and `aionode router` and `doctor` share settings",
     "aionode.transport.zenoh._session": "`aionode router` is a Zenoh session without nodes",
