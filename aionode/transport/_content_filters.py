@@ -3,6 +3,9 @@
 A subscription announces its filter beside itself, and publishers leave out what no subscription
 wants. Nothing depends on it: a publisher that does not know a filter sends everything, and each
 subscription applies its own filter to what arrives.
+
+A filter counts for a subscription only if its token names that one's context and topic as well, so
+that rules for the topic bind it, and no other context's filters come into it.
 """
 
 from __future__ import annotations
@@ -10,13 +13,15 @@ from __future__ import annotations
 import base64
 import json
 import re
-from typing import TYPE_CHECKING, Any, Final
+from collections import Counter
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from aionode.content_filter import ContentFilterOptions, compile_filter
 from aionode.errors import ContentFilterError
+from aionode.wire._key_expression import demangle, mangle
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Mapping
 
 __all__ = ["ContentFilters", "filter_from_text", "filter_token", "text_of_filter"]
 
@@ -25,11 +30,17 @@ GID: Final = re.compile("[0-9a-f]{32}")
 MAX_SIZE: Final = 4096
 """Longer filters, as text, are not announced, nor taken from others."""
 
-KIND: Final = "filter/1/"
+KIND: Final = "filter/2/"
 """What the token of a filter has after the participant: a word, and the version of its form."""
+
+CHUNKS: Final = 3
+"""What follows: the topic as in tokens of ROS, the gid of the subscription, and the filter."""
 
 MAX_FILTERS: Final = 2_000
 """How many announced filters are known at most, of all other contexts: 8 MB of text."""
+
+MAX_FILTERS_PER_CONTEXT: Final = 1_000
+"""How many of them one context may have: it must not take the place of all others."""
 
 MAX_FILTERS_PER_READER: Final = 4
 """How many of them one subscription may have; it has two while it changes its filter."""
@@ -51,9 +62,9 @@ def text_of_filter(content_filter: ContentFilterOptions) -> str:
     return text if content_filter.filter_expression and len(text) <= MAX_SIZE else ""
 
 
-def filter_token(domain_id: int, participant: str, gid: bytes, text: str) -> str:
+def filter_token(domain_id: int, participant: str, topic: str, gid: bytes, text: str) -> str:
     """Return the liveliness token that announces the filter of a subscription."""
-    return f"@aionode/{domain_id}/{participant}/{KIND}{gid.hex()}/{text}"
+    return f"@aionode/{domain_id}/{participant}/{KIND}{mangle(topic)}/{gid.hex()}/{text}"
 
 
 def filter_from_text(text: str) -> ContentFilterOptions | None:
@@ -121,8 +132,16 @@ class AnnouncedFilter:
         return self._compiled[msg_type]
 
 
+class Subscriber(NamedTuple):
+    """Whose filter a token announces."""
+
+    participant: str
+    topic: str
+    gid: bytes
+
+
 class ContentFilters:
-    """The announced filters of subscriptions, by the gid of the subscription.
+    """The announced filters of subscriptions.
 
     While a subscription changes its filter, both are known, and what either wants is sent. A filter
     of another process may cost this one little: a publisher that would do too much work for them
@@ -136,56 +155,63 @@ class ContentFilters:
     def __init__(self) -> None:
         self.changes = 0
         self.on_change: list[Callable[[], None]] = []
-        self._by_gid: dict[bytes, dict[str, AnnouncedFilter]] = {}
-        self._count = 0  # of all filters
+        self._by_subscriber: dict[Subscriber, dict[str, AnnouncedFilter]] = {}
+        self._counts: Counter[str] = Counter()  # of all filters, by context
         # Subscriptions that announced more than a subscription may have: they get everything.
-        self._excessive: set[bytes] = set()
+        self._excessive: set[Subscriber] = set()
         self._budget = Budget()
 
     def __bool__(self) -> bool:
-        return bool(self._by_gid)
+        return bool(self._by_subscriber)
 
-    def take_token(self, what: str, *, present: bool) -> None:
+    def take_token(self, participant: str, what: str, *, present: bool) -> None:
         """Add or remove what a token announces; others than those of filters are ignored.
 
         Args:
+            participant: The context of which the token says that it is its own.
             what: The token without the participant and what is before it.
             present: Whether the token was declared, and not undeclared.
         """
-        gid_text, _, text = what.removeprefix(KIND).partition("/")
-        if not what.startswith(KIND) or not GID.fullmatch(gid_text):
+        chunks = what.removeprefix(KIND).split("/")
+        if not what.startswith(KIND) or len(chunks) != CHUNKS or not GID.fullmatch(chunks[1]):
             return
-        gid = bytes.fromhex(gid_text)
-        known = self._by_gid.get(gid, {})
+        topic, gid_text, text = chunks
+        subscriber = Subscriber(participant, demangle(topic), bytes.fromhex(gid_text))
+        known = self._by_subscriber.get(subscriber, {})
         if present:
-            self._add(gid, known, text)
+            self._add(subscriber, known, text)
         elif text in known:
             del known[text]
-            self._count -= 1
+            self._counts[participant] -= 1
             if not known:
-                del self._by_gid[gid]
+                del self._by_subscriber[subscriber]
         else:
             return
         self._changed()
 
-    def _add(self, gid: bytes, known: dict[str, AnnouncedFilter], text: str) -> None:
+    def _add(self, subscriber: Subscriber, known: dict[str, AnnouncedFilter], text: str) -> None:
         """Take a filter that is well-formed, unless there are too many."""
         options = filter_from_text(text)
         if options is None or text in known:
             return
-        if self._count >= MAX_FILTERS or len(known) >= MAX_FILTERS_PER_READER:
+        participant = subscriber.participant
+        if (
+            len(known) >= MAX_FILTERS_PER_READER
+            or self._counts[participant] >= MAX_FILTERS_PER_CONTEXT
+            or self._counts.total() >= MAX_FILTERS
+        ):
             if len(self._excessive) < MAX_FILTERS:
-                self._excessive.add(gid)
+                self._excessive.add(subscriber)
             return
         known[text] = AnnouncedFilter(options, self._budget)
-        self._by_gid[gid] = known
-        self._count += 1
+        self._by_subscriber[subscriber] = known
+        self._counts[participant] += 1
 
     def clear(self) -> None:
         """Forget all filters: the session has ended."""
-        if self._by_gid:
-            self._by_gid.clear()
-            self._count = 0
+        if self._by_subscriber:
+            self._by_subscriber.clear()
+            self._counts.clear()
             self._excessive.clear()
             self._changed()
 
@@ -194,16 +220,24 @@ class ContentFilters:
         for listener in self.on_change:
             listener()
 
-    def wanted_by(self, gids: Iterable[bytes], msg_type: type[Any]) -> Callable[[Any], bool] | None:
+    def wanted_by(
+        self, topic: str, readers: Mapping[bytes, str], msg_type: type[Any]
+    ) -> Callable[[Any], bool] | None:
         """Return whether a message is wanted by any of some subscriptions.
 
         None if one of them wants all messages, if there are none, or if a filter does not fit the
         type: then everything is sent.
+
+        Args:
+            topic: The topic.
+            readers: The subscriptions, by gid, each with its context.
+            msg_type: The type of the messages.
         """
         predicates: list[Callable[[Any], bool]] = []
-        for gid in gids:
-            announced = self._by_gid.get(gid)
-            if not announced or gid in self._excessive:
+        for gid, participant in readers.items():
+            subscriber = Subscriber(participant, topic, gid)
+            announced = self._by_subscriber.get(subscriber)
+            if not announced or subscriber in self._excessive:
                 return None
             for one in announced.values():
                 predicate = one.predicate(msg_type)

@@ -1,6 +1,7 @@
 """Acknowledgements between publishers and subscriptions of aionode over Zenoh: their format.
 
-The submessages are those of RTPS. Each is one Zenoh sample for one context; ROS nodes get none::
+The submessages are those of RTPS. Each is one Zenoh sample for one context, on a key below that of
+its topic; ROS nodes get none::
 
     version u8 | kind u8 | zero u16 | writer 16 bytes | reader 16 bytes | first i64 | last i64 |
     rest
@@ -15,9 +16,21 @@ import struct
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
-__all__ = ["MAX_RANGES", "VERSION", "Submessage", "SubmessageKind", "pack", "pack_ranges", "unpack"]
+from aionode.wire._key_expression import Side, side_key
 
-VERSION: Final = 1
+__all__ = [
+    "MAX_RANGES",
+    "VERSION",
+    "Submessage",
+    "SubmessageKind",
+    "pack",
+    "pack_ranges",
+    "submessage_key",
+    "unpack",
+]
+
+VERSION: Final = 2
+"""Of the format and of its keys; contexts of different versions do not acknowledge."""
 
 MAX_RANGES: Final = 64
 """How many ranges of missing messages one ACKNACK names at most."""
@@ -59,6 +72,17 @@ class Submessage(NamedTuple):
         """Return the missing ranges of an ACKNACK, first and last of each."""
         size = min(len(self.rest) // RANGE.size, MAX_RANGES) * RANGE.size
         return list(RANGE.iter_unpack(self.rest[:size]))
+
+
+def submessage_key(key: str, side: Side, participant: str) -> str:
+    """Return the key of submessages to one context.
+
+    Args:
+        key: That of the topic.
+        side: Who sends them: subscriptions send ACKNACK, publishers everything else.
+        participant: The context that gets them.
+    """
+    return side_key(key, side, f"reliable/{VERSION}/{participant}")
 
 
 def pack(

@@ -4,15 +4,21 @@ A key is ``<domain>/<name>/<DDS type>/<type hash>``, with the name's leading sla
 type of ``std_msgs/msg/String`` is ``std_msgs::msg::dds_::String_``.
 
 Unknown parts are wildcards of Zenoh: ``*`` for one chunk, ``**`` for any number of chunks.
+
+What contexts of aionode tell each other about a topic lies below its key, so that a rule for the
+topic can bind it: ``<key>/@aionode/pub/…`` is said by publishers, ``<key>/@aionode/sub/…`` by
+subscriptions. No wildcard matches a chunk with an ``@``, so no subscriber of the topic gets it.
 """
 
 from __future__ import annotations
 
+import enum
 from typing import NamedTuple
 
 __all__ = [
     "BUFFER_SUFFIX",
     "DataKey",
+    "Side",
     "buffer_key",
     "data_key",
     "dds_type",
@@ -20,6 +26,7 @@ __all__ = [
     "mangle",
     "parse_data_key",
     "ros_type",
+    "side_key",
 ]
 
 BUFFER_SUFFIX = "_buf_cpu"
@@ -37,6 +44,13 @@ class DataKey(NamedTuple):
     type_name: str
     """ROS name of the type, such as ``std_msgs/msg/String``."""
     type_hash: str
+
+
+class Side(enum.Enum):
+    """Who says something about a topic."""
+
+    PUBLISHERS = "pub"
+    SUBSCRIPTIONS = "sub"
 
 
 def dds_type(type_name: str) -> str:
@@ -68,6 +82,11 @@ def data_key(
 def buffer_key(key: str) -> str:
     """Return the second key, on which ROS 2 Lyrical publishers send plain bytes."""
     return f"{key}/{BUFFER_SUFFIX}"
+
+
+def side_key(key: str, side: Side, what: str) -> str:
+    """Return the key below that of a topic on which one side of it says something."""
+    return f"{key}/@aionode/{side.value}/{what}"
 
 
 def parse_data_key(key: str) -> DataKey | None:

@@ -75,7 +75,6 @@ def all_attacks() -> list[Attack]:
             pair(env=rules.robot),
             around=rules,
             env=rules.visitor,
-            issue=OPEN,
         ),
         Attack(
             "a batch in the talker's name, as if from its link",

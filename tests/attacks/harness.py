@@ -59,17 +59,6 @@ LOG_LINE = re.compile(r"\[(?:WARN|ERROR|FATAL)\].*|.*Traceback.*|.*panicked.*")
 
 CONFIGS = ROOT / "examples" / "security"
 
-VISITOR = (
-    '"id": "everything",',
-    (
-        '"id": "visit", "permission": "allow", "flows": ["ingress", "egress"],'
-        ' "messages": ["put", "declare_subscriber", "liveliness_token", "liveliness_query",'
-        ' "declare_liveliness_subscriber"],'
-        ' "key_exprs": ["42/scan/**", "@ros2_lv/**", "@aionode/**"]}, {"id": "everything",'
-    ),
-)
-"""What is put in place of what in the rules of the how-to, so that a visitor may publish /scan."""
-
 
 class Found(msgspec.Struct):
     """What came of one attack.
@@ -304,10 +293,7 @@ class AccessControl:
             (self._folder / f"{name}.json5").write_text(
                 text.replace("certs/", f"{self._folder}/"), encoding="utf-8"
             )
-        rules = (CONFIGS / "router.txt").read_text(encoding="utf-8").replace(*VISITOR)
-        rules = rules.replace(
-            '"subjects": [{', '"subjects": [{"id": "visitor", "cert_common_names": ["visitor"]}, {'
-        ).replace('"policies": [', '"policies": [{"rules": ["visit"], "subjects": ["visitor"]}, ')
+        rules = (CONFIGS / "router.txt").read_text(encoding="utf-8")
         words = ("-m", "aionode", "router", "--listen", f"tls/localhost:{self._port}")
         env = {"ZENOH_CONFIG_OVERRIDE": rules.replace("certs/", f"{self._folder}/")}
         self._stack.enter_context(Process(*words, env=env)).expect("Router is listening")

@@ -22,7 +22,7 @@ from aionode.wire import _acknack as acknack
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
 from aionode.wire._acknack import SubmessageKind
-from aionode.wire._key_expression import data_key
+from aionode.wire._key_expression import Side, data_key
 from aionode.wire._liveliness import endpoint_token, gid_of, node_token, parse_token
 from aionode.wire.typehash import type_hash
 from tests.support.peers import raw_session
@@ -170,9 +170,16 @@ class Liar:
         self.hold(token)
         return gid_of(token)
 
-    def announce_filter(self, gid: bytes, text: str) -> None:
-        """Announce the content filter of a subscription, as its text in a token."""
-        self.hold(filter_token(self.domain, self.participant, gid, text))
+    def announce_filter(self, topic: str, gid: bytes, text: str, participant: str = "") -> None:
+        """Announce the content filter of a subscription, as its text in a token.
+
+        Args:
+            topic: That of the subscription.
+            gid: The subscription.
+            text: The filter.
+            participant: The context under whose key it stands; its own by default.
+        """
+        self.hold(filter_token(self.domain, participant or self.participant, topic, gid, text))
 
     # What it sends
 
@@ -201,11 +208,17 @@ class Liar:
         rest: bytes = b"",
     ) -> None:
         """Send one in the name of a writer to a reader of it, or for an ACKNACK the reverse."""
-        target = writer if kind is SubmessageKind.ACKNACK else reader
-        self.put(
-            f"@aionode/{self.domain}/{target.node.participant}/reliable/{acknack.VERSION}",
-            acknack.pack(kind, writer.gid, reader.gid, first, last, rest),
-        )
+        key = self.submessage_key(kind, writer, reader)
+        self.put(key, acknack.pack(kind, writer.gid, reader.gid, first, last, rest))
+
+    def submessage_key(
+        self, kind: SubmessageKind, writer: EndpointInfo, reader: EndpointInfo
+    ) -> str:
+        """Return the key on which a writer or reader of a topic would send one."""
+        key = data_key(self.domain, writer.name, writer.type_name, writer.type_hash)
+        if kind is SubmessageKind.ACKNACK:
+            return acknack.submessage_key(key, Side.SUBSCRIPTIONS, writer.node.participant)
+        return acknack.submessage_key(key, Side.PUBLISHERS, reader.node.participant)
 
     def post(self, reader: EndpointInfo, batch: bytes) -> None:
         """Send frames to a context, as what a link could not deliver."""

@@ -73,7 +73,7 @@ def lie_in_filter(liar: Liar, chance: random.Random) -> None:
     """Subscribe with a filter of any length and depth."""
     gid = liar.announce(EndpointKind.SUBSCRIPTION, "/clouds", String, QoSProfile(depth=10))
     for _ in range(30 if chance.random() < RARELY else 1):
-        liar.announce_filter(gid, filter_text(chance))
+        liar.announce_filter("/clouds", gid, filter_text(chance))
 
 
 def filter_text(chance: random.Random) -> str:

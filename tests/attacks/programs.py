@@ -27,6 +27,7 @@ from aionode.qos import DurabilityPolicy, HistoryPolicy, LivelinessPolicy, QoSPr
 from aionode.transport._local_sessions import announce
 from aionode.transport.ipc import _protocol as protocol
 from aionode.transport.ipc._continuation import STOPS, seal
+from aionode.wire import _acknack as acknack
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
 from aionode.wire._acknack import SubmessageKind
@@ -144,14 +145,19 @@ def pretend_sessions(seconds: float, _: Sequence[int]) -> int:
 
 
 def forge_data(liar: Liar, seconds: float) -> int:
-    """Send DATA in the talker's name on the key of the listener's acknowledgements."""
+    """Send DATA in the talker's name, on keys of both topics; and plain messages."""
     talker, listener = ends(liar)
+    own_key = liar.submessage_key(SubmessageKind.DATA, replace(talker, name="/scan"), listener)
     begun()
     # Whatever number the listener expects next is among them.
-    for number in pace(seconds, 5000):
+    for number in pace(seconds, 2000):
         payload = cdr.encode(String(data=forged_text(number)))
-        liar.submessage(SubmessageKind.DATA, talker, listener, number + 1, time.time_ns(), payload)
-    return number + 1
+        fields = number + 1, time.time_ns(), payload
+        liar.submessage(SubmessageKind.DATA, talker, listener, *fields)
+        data = acknack.pack(SubmessageKind.DATA, talker.gid, listener.gid, *fields)
+        liar.put(own_key, data)
+        liar.publish("/chatter", String(data=forged_text(number)), number + 1, talker.gid)
+    return 3 * (number + 1)
 
 
 def post_batch(liar: Liar, seconds: float) -> int:
@@ -195,7 +201,7 @@ def send_absurd_submessages(liar: Liar, seconds: float) -> int:
         rest = chance.randbytes(chance.choice((0, 7, 16, 160, 1600)))
         liar.submessage(SubmessageKind.ACKNACK, talker, listener, first, 0, rest)
         liar.put(
-            f"@aionode/{liar.domain}/{listener.node.participant}/reliable/1", chance.randbytes(64)
+            liar.submessage_key(SubmessageKind.ACKNACK, talker, listener), chance.randbytes(64)
         )
     return tries
 
@@ -280,7 +286,7 @@ def filter_costly(liar: Liar, seconds: float) -> int:
     begun()
     for number in range(50):
         gid = liar.announce(EndpointKind.SUBSCRIPTION, "/clouds", String)
-        liar.announce_filter(gid, like_text(4096 - number))
+        liar.announce_filter("/clouds", gid, like_text(4096 - number))
     time.sleep(seconds)
     return 50
 
@@ -292,7 +298,7 @@ def filter_often(liar: Liar, seconds: float) -> int:
     gid = liar.announce(EndpointKind.SUBSCRIPTION, "/clouds", String)
     for number in pace(seconds, 4000):
         text = json.dumps([f"data LIKE '%{number}%'", []]).encode()
-        liar.announce_filter(gid, base64.urlsafe_b64encode(text).decode().rstrip("="))
+        liar.announce_filter("/clouds", gid, base64.urlsafe_b64encode(text).decode().rstrip("="))
         if number == 9999:
             break
     return number + 1

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import base64
+from collections.abc import Callable
 from contextlib import AsyncExitStack
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -19,6 +20,7 @@ from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from aionode.testing import local_context, settle
+from aionode.transport import _content_filters as content_filters
 from aionode.transport._content_filters import (
     ContentFilters,
     filter_from_text,
@@ -329,6 +331,13 @@ async def test_a_callback_is_called_with_what_passes(node: Node) -> None:
 # How they are announced
 
 
+def wanted(
+    filters: ContentFilters, gids: list[bytes], msg_type: type[Any] = Int32, by: str = "abc"
+) -> Callable[[Any], bool] | None:
+    """Return what subscriptions of one context want of a topic."""
+    return filters.wanted_by("/words", dict.fromkeys(gids, by), msg_type)
+
+
 def test_an_announced_filter_can_be_read_back() -> None:
     """As text that may be part of a Zenoh key."""
     given = ContentFilterOptions("data LIKE %0 AND 'a/b#?*$' <> data", ["'ä%'"])
@@ -344,7 +353,7 @@ def test_a_damaged_filter_is_ignored(text: str) -> None:
     """It comes from the network: the publisher goes on sending everything."""
     filters = ContentFilters()
 
-    filters.take_token(f"filter/1/{'ab' * 16}/{text}", present=True)
+    filters.take_token("abc", f"filter/2/%words/{'ab' * 16}/{text}", present=True)
 
     assert not filters
 
@@ -355,9 +364,9 @@ def test_nothing_from_the_network_raises(text: str) -> None:
     filters = ContentFilters()
 
     for present in (True, False):
-        filters.take_token(f"filter/1/{'ab' * 16}/{text}", present=present)
-        filters.take_token(f"filter/1/{text}", present=present)
-        filters.wanted_by([bytes.fromhex("ab" * 16)], Int32)
+        filters.take_token("abc", f"filter/2/%words/{'ab' * 16}/{text}", present=present)
+        filters.take_token("abc", f"filter/2/{text}", present=present)
+        wanted(filters, [bytes.fromhex("ab" * 16)])
 
     assert not filters
 
@@ -372,12 +381,52 @@ def test_a_filter_that_does_not_fit_the_type_wants_everything() -> None:
     """The reader knows better which messages it means."""
     filters = ContentFilters()
     gid = bytes(range(16))
-    token = filter_token(0, "abc", gid, text_of_filter(ContentFilterOptions("nothing = 1")))
+    token = filter_token(
+        0, "abc", "/words", gid, text_of_filter(ContentFilterOptions("nothing = 1"))
+    )
 
-    filters.take_token(token.split("/", 3)[3], present=True)
+    filters.take_token("abc", token.split("/", 3)[3], present=True)
 
     assert filters
-    assert filters.wanted_by([gid], Int32) is None
+    assert wanted(filters, [gid]) is None
+
+
+@pytest.mark.parametrize(
+    "token",
+    [
+        "other/filter/2/%words/{gid}/{text}",
+        "abc/filter/2/%other/{gid}/{text}",
+        "abc/filter/2/%words/{other}/{text}",
+    ],
+    ids=["context", "topic", "subscription"],
+)
+def test_a_filter_counts_only_for_the_subscription_under_whose_key_it_stands(token: str) -> None:
+    """One token of another process would else silence a subscription."""
+    filters = ContentFilters()
+    gid, other = gid_of(1), gid_of(2)
+    announced(filters, gid, "data = 1")
+    text = text_of_filter(ContentFilterOptions("data = 2 AND data = 3"))
+    participant, _, what = token.format(gid=gid.hex(), other=other.hex(), text=text).partition("/")
+    filters.take_token(participant, what, present=True)
+
+    wants = wanted(filters, [gid])
+    assert wants is not None
+    assert [wants(Int32(data=number)) for number in (1, 2)] == [True, False]
+    filters.take_token("abc", what, present=False)
+    assert wanted(filters, [gid]) is not None
+
+
+def test_too_many_filters_of_one_context_take_no_place_from_others() -> None:
+    """And more than four of one subscription, under another context's key, turn off nothing."""
+    filters = ContentFilters()
+    announced(filters, gid_of(1), "data = 1")
+    for number in range(3_000):
+        text = text_of_filter(ContentFilterOptions(f"data = {number}"))
+        filters.take_token("liar", f"filter/2/%words/{gid_of(1).hex()}/{text}", present=True)
+        filters.take_token("liar", f"filter/2/%words/{gid_of(number).hex()}/{text}", present=True)
+    announced(filters, gid_of(2), "data = 2")
+
+    assert wanted(filters, [gid_of(1), gid_of(2)]) is not None
 
 
 # What filters of others may cost
@@ -387,7 +436,7 @@ def announced(filters: ContentFilters, gid: bytes, *expressions: str) -> None:
     """Announce filters of one subscription."""
     for expression in expressions:
         text = text_of_filter(ContentFilterOptions(expression))
-        filters.take_token(f"filter/1/{gid.hex()}/{text}", present=True)
+        filters.take_token("abc", f"filter/2/%words/{gid.hex()}/{text}", present=True)
 
 
 def gid_of(number: int) -> bytes:
@@ -401,7 +450,7 @@ def test_filters_that_cost_too_much_want_everything_for_a_while() -> None:
     gids = [gid_of(number) for number in range(50)]
     for number, gid in enumerate(gids):
         announced(filters, gid, f"data LIKE '%{'a' * 2900}_{number}%'")
-    wants = filters.wanted_by(gids, String)
+    wants = wanted(filters, gids, String)
     assert wants is not None
 
     costly, cheap = String(data="a" * 10_000), String(data="b")
@@ -415,11 +464,11 @@ def test_a_subscription_with_more_filters_than_a_change_needs_wants_everything()
     """One subscription of another process had 20,000, and each was compiled."""
     filters = ContentFilters()
     announced(filters, gid_of(1), *(f"data = {number}" for number in range(4)))
-    assert filters.wanted_by([gid_of(1)], Int32) is not None
+    assert wanted(filters, [gid_of(1)]) is not None
 
     announced(filters, gid_of(1), "data = 4")
 
-    assert filters.wanted_by([gid_of(1)], Int32) is None
+    assert wanted(filters, [gid_of(1)]) is None
 
 
 def test_a_publisher_applies_some_filters_and_otherwise_sends_everything() -> None:
@@ -429,23 +478,26 @@ def test_a_publisher_applies_some_filters_and_otherwise_sends_everything() -> No
     for gid in gids:
         announced(filters, gid, "data = 1")
 
-    assert filters.wanted_by(gids[:100], Int32) is not None
-    assert filters.wanted_by(gids, Int32) is None
+    assert wanted(filters, gids[:100]) is not None
+    assert wanted(filters, gids) is None
 
 
-def test_filters_of_all_others_are_bounded_and_leave_room_when_they_go() -> None:
+def test_filters_of_all_others_are_bounded_and_leave_room_when_they_go(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """Whatever tokens there are, their texts take 8 MB at most."""
     filters = ContentFilters()
+    monkeypatch.setattr(content_filters, "MAX_FILTERS_PER_CONTEXT", 2_000)
     for number in range(2_000):
         announced(filters, gid_of(number), "data = 1")
 
     announced(filters, gid_of(2_000), "data = 1")
-    assert filters.wanted_by([gid_of(2_000)], Int32) is None
+    assert wanted(filters, [gid_of(2_000)]) is None
 
     text = text_of_filter(ContentFilterOptions("data = 1"))
-    filters.take_token(f"filter/1/{gid_of(0).hex()}/{text}", present=False)
+    filters.take_token("abc", f"filter/2/%words/{gid_of(0).hex()}/{text}", present=False)
     announced(filters, gid_of(2_001), "data = 1")
-    assert filters.wanted_by([gid_of(2_001)], Int32) is not None
+    assert wanted(filters, [gid_of(2_001)]) is not None
 
 
 def test_a_filter_is_compiled_once_for_each_type(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -461,6 +513,6 @@ def test_a_filter_is_compiled_once_for_each_type(monkeypatch: pytest.MonkeyPatch
     announced(filters, gid_of(1), "data = 1")
 
     for _ in range(3):
-        filters.wanted_by([gid_of(1)], Int32)
+        wanted(filters, [gid_of(1)])
 
     assert compiled == ["data = 1"]

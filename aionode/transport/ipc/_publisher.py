@@ -140,7 +140,8 @@ class IpcWriter(Writer):
         """Find out which processes want all messages, after a change of subscriptions."""
         filters = self._registry.content_filters
         for send_queue in self._send_queues.values():
-            send_queue.wants = filters.wanted_by(send_queue.readers, self._msg_type)
+            readers = dict.fromkeys(send_queue.readers, send_queue.connection.participant)
+            send_queue.wants = filters.wanted_by(self.endpoint.name, readers, self._msg_type)
         self._targets_changed()
 
     def _targets_changed(self) -> None:

@@ -1,9 +1,12 @@
 """Acknowledgements between contexts of aionode over Zenoh: their keys, and their timer.
 
 Zenoh's own reliable delivery, congestion control BLOCK, stalls the whole process behind one frozen
-reader. Reliable publishers and subscriptions of aionode use acknowledgements instead, on one key of
-each context, which ROS nodes neither subscribe nor publish to. A context that supports them
+reader. Reliable publishers and subscriptions of aionode use acknowledgements instead, on keys below
+that of their topic, which ROS nodes neither subscribe nor publish to. A context that supports them
 declares a token; readers in other contexts depend on Zenoh (`_publisher`).
+
+A submessage counts only for endpoints of the topic on whose key it came: whoever may publish on one
+topic speaks for no other.
 """
 
 from __future__ import annotations
@@ -18,7 +21,8 @@ import zenoh
 from aionode.transport._loop_waker import ThreadsafeQueue
 from aionode.transport.zenoh._handlers import LOOP_PRIORITY, direct, reason, translated
 from aionode.wire import _acknack as acknack
-from aionode.wire._acknack import Submessage
+from aionode.wire._acknack import Submessage, SubmessageKind
+from aionode.wire._key_expression import Side
 
 if TYPE_CHECKING:
     from aionode.transport._loop_waker import LoopWaker
@@ -60,6 +64,23 @@ class StatefulReader(Protocol):
 
     def tick(self) -> bool:
         """Do what is due; return whether to call again."""
+
+
+class Listening:
+    """A subscriber for what one side of a topic tells this context.
+
+    Attributes:
+        key: That of the topic.
+        side: Who tells it.
+        subscriber: The subscriber.
+        users: How many endpoints need it.
+    """
+
+    def __init__(self, key: str, side: Side, subscriber: zenoh.Subscriber[None]) -> None:
+        self.key = key
+        self.side = side
+        self.subscriber = subscriber
+        self.users = 1
 
 
 class Repeater:
@@ -111,8 +132,8 @@ class Acknowledgements:
     Attributes:
         participants: The other contexts that acknowledge, those that have gone included.
         present: Those of them whose tokens are there.
-        writers: The publishers of this context that want acknowledgements, by gid.
-        readers: The subscriptions of this context that acknowledge, by gid.
+        writers: The publishers of this context that want acknowledgements, by key and gid.
+        readers: The subscriptions of this context that acknowledge, by key and gid.
     """
 
     def __init__(
@@ -125,8 +146,10 @@ class Acknowledgements:
     ) -> None:
         self.participants: set[str] = set()
         self.present: set[str] = set()
-        self.writers: dict[bytes, StatefulWriter] = {}
-        self.readers: dict[bytes, StatefulReader] = {}
+        self.writers: dict[tuple[str, bytes], StatefulWriter] = {}
+        self.readers: dict[tuple[str, bytes], StatefulReader] = {}
+        # What is subscribed to, by the whole key.
+        self._listening: dict[str, Listening] = {}
         self._participant = participant
         self._note_malformed = note_malformed
         self._on_participant = on_participant
@@ -140,13 +163,12 @@ class Acknowledgements:
         self._probes = Repeater(PROBE_S)
 
     def start(self, session: zenoh.Session) -> None:
-        """Subscribe, and declare the token. To be called before any endpoint is declared."""
+        """Declare the token. To be called before any endpoint is declared."""
         self._session = session
         liveliness = session.liveliness()
         own = self.token_of(self._participant)
         with translated("acknowledgements"):
             self._declared = [
-                session.declare_subscriber(own, direct(self._queue.put)),
                 liveliness.declare_subscriber(
                     self.token_of("*"), direct(self._tokens.put), history=True
                 ),
@@ -157,6 +179,8 @@ class Acknowledgements:
         """Undeclare everything."""
         self._session = None
         declared, self._declared = self._declared, []
+        declared += [each.subscriber for each in self._listening.values()]
+        self._listening.clear()
         for declaration in reversed(declared):
             declaration.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
         self._queue.clear()
@@ -171,24 +195,48 @@ class Acknowledgements:
         return {self.token_of(each) for each in (self._participant, *self.present)}
 
     def token_of(self, participant: str) -> str:
-        """Return the token of a context that acknowledges; also its key for submessages."""
+        """Return the token of a context that acknowledges."""
         return self._prefix + participant + self._suffix
 
-    def send(self, participant: str, data: bytes, priority: zenoh.Priority = LOOP_PRIORITY) -> None:
-        """Send a submessage to another context; it may be lost. Large ones go from a thread."""
+    def listen(self, key: str, side: Side) -> None:
+        """Hear what one side of a topic tells this context, until `unlisten` was called as often.
+
+        One subscriber for each topic, as a rule for one topic would refuse one for all of them.
+        """
+        session, whole_key = self._session, acknack.submessage_key(key, side, self._participant)
+        listening = self._listening.get(whole_key)
+        if listening is not None:
+            listening.users += 1
+        elif session is not None:
+            with translated(key):
+                subscriber = session.declare_subscriber(whole_key, direct(self._queue.put))
+            self._listening[whole_key] = Listening(key, side, subscriber)
+
+    def unlisten(self, key: str, side: Side) -> None:
+        """Hear it no more, unless another endpoint does."""
+        whole_key = acknack.submessage_key(key, side, self._participant)
+        listening = self._listening.get(whole_key)
+        if listening is not None:
+            listening.users -= 1
+            if not listening.users:
+                del self._listening[whole_key]
+                listening.subscriber.undeclare()
+
+    def send(self, key: str, data: bytes, priority: zenoh.Priority = LOOP_PRIORITY) -> None:
+        """Send a submessage; it may be lost. Large ones go from a thread."""
         session = self._session
         if session is None:
             return
         try:
             session.put(
-                self.token_of(participant),
+                key,
                 data,
                 congestion_control=zenoh.CongestionControl.DROP,
                 priority=priority,
                 allowed_destination=zenoh.Locality.REMOTE,
             )
         except zenoh.ZError as error:
-            logger.debug("%s: not sent: %s", participant, reason(error))
+            logger.debug("%s: not sent: %s", key, reason(error))
 
     def watch(self, endpoint: StatefulWriter | StatefulReader) -> None:
         """Call `endpoint.tick` from now on until it returns False."""
@@ -201,16 +249,20 @@ class Acknowledgements:
             self._probes.add(writer.probe)
 
     def _take(self, sample: zenoh.Sample) -> None:
+        whole_key = str(sample.key_expr)
+        listening = self._listening.get(whole_key)
+        if listening is None:  # its last endpoint was just closed
+            return
         submessage = acknack.unpack(sample.payload.to_bytes())
         if submessage is None:
-            self._note_malformed(str(sample.key_expr), "an acknowledgement")
-        elif submessage.kind is acknack.SubmessageKind.ACKNACK:
-            writer = self.writers.get(submessage.writer)
-            if writer is not None:
+            self._note_malformed(whole_key, "an acknowledgement")
+        elif submessage.kind is SubmessageKind.ACKNACK:
+            writer = self.writers.get((listening.key, submessage.writer))
+            if writer is not None and listening.side is Side.SUBSCRIPTIONS:
                 writer.take_acknack(submessage)
         else:
-            reader = self.readers.get(submessage.reader)
-            if reader is not None:
+            reader = self.readers.get((listening.key, submessage.reader))
+            if reader is not None and listening.side is Side.PUBLISHERS:
                 reader.take_submessage(submessage)
 
     def _take_token(self, sample: zenoh.Sample) -> None:

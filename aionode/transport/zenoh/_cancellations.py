@@ -1,8 +1,10 @@
 """Sending servers the cancellations of requests.
 
 ROS has no message for this, and a Zenoh query cannot be cancelled at its queryable. So each context
-subscribes to a key of its own, and the context of the client publishes the sequence number of the
-request there. ROS nodes do not take part.
+subscribes to keys of its own, one for each service, and the context of the client publishes the
+sequence number of the request there. ROS nodes do not take part.
+
+The name of the service is a chunk of the key, as in the tokens of ROS, so that a rule can bind it.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ import zenoh
 from aionode.transport._loop_waker import ThreadsafeQueue
 from aionode.transport.zenoh._handlers import LOOP_PRIORITY, direct
 from aionode.wire import _attachment as attachment
+from aionode.wire._key_expression import demangle, mangle
 
 if TYPE_CHECKING:
     from aionode.transport._loop_waker import LoopWaker
@@ -29,7 +32,7 @@ class Cancellations:
     """The cancellations that this context sends and receives.
 
     Attributes:
-        listeners: Called with the gid of the client and its number of the request.
+        listeners: Called with the gid of a client and its number of a request, by service.
     """
 
     def __init__(
@@ -39,7 +42,7 @@ class Cancellations:
         waker: LoopWaker,
         note_malformed: Callable[[str, str], None],
     ) -> None:
-        self.listeners: dict[Callable[[bytes, int], None], None] = {}
+        self.listeners: dict[str, dict[Callable[[bytes, int], None], None]] = {}
         self._participant = participant
         self._domain_id = domain_id
         self._note_malformed = note_malformed
@@ -51,7 +54,7 @@ class Cancellations:
         """Subscribe."""
         self._session = session
         self._subscriber = session.declare_subscriber(
-            self._key(self._participant), direct(self._queue.put)
+            self._prefix(self._participant) + "*", direct(self._queue.put)
         )
 
     def stop(self) -> None:
@@ -61,26 +64,38 @@ class Cancellations:
         if subscriber is not None:
             subscriber.undeclare()
 
-    def tell(self, participants: Iterable[str], gid: bytes, sequence: int) -> None:
-        """Send the cancellation of a request to some contexts."""
+    def listen(self, service: str, listener: Callable[[bytes, int], None]) -> None:
+        """Call `listener` for each request of a service that is cancelled."""
+        self.listeners.setdefault(service, {})[listener] = None
+
+    def unlisten(self, service: str, listener: Callable[[bytes, int], None]) -> None:
+        """Call `listener` no more, if it is known."""
+        listeners = self.listeners.get(service, {})
+        listeners.pop(listener, None)
+        if not listeners:
+            self.listeners.pop(service, None)
+
+    def tell(self, participants: Iterable[str], service: str, gid: bytes, sequence: int) -> None:
+        """Send the cancellation of a request to some contexts with servers of its service."""
         if self._session is not None:
             for participant in participants:
                 self._session.put(
-                    self._key(participant),
+                    self._prefix(participant) + mangle(service),
                     b"",
                     attachment=attachment.pack(sequence, 0, gid),
                     congestion_control=zenoh.CongestionControl.DROP,
                     priority=LOOP_PRIORITY,
                 )
 
-    def _key(self, participant: str) -> str:
-        return f"@aionode/{self._domain_id}/{participant}/cancel"
+    def _prefix(self, participant: str) -> str:
+        return f"@aionode/{self._domain_id}/{participant}/cancel/"
 
     def _take(self, sample: zenoh.Sample) -> None:
         extra = sample.attachment
         request = None if extra is None else attachment.unpack(extra.to_bytes())
         if request is None:
-            self._note_malformed(self._key(self._participant), "a cancellation")
+            self._note_malformed(self._prefix(self._participant) + "*", "a cancellation")
         else:
-            for listener in list(self.listeners):
+            service = demangle(str(sample.key_expr).rpartition("/")[2])
+            for listener in list(self.listeners.get(service, ())):
                 listener(request.gid, request.sequence)

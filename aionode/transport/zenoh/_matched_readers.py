@@ -25,13 +25,13 @@ class MatchedReaders:
         state: The state of the session.
 
     Attributes:
-        gids: All of them.
+        participants: The context of each, by gid.
         acknowledging: Those that acknowledge, each with its context.
         others: Those of contexts that do not acknowledge, whatever their reliability.
     """
 
     def __init__(self, endpoint: EndpointInfo, state: SessionState) -> None:
-        self.gids: set[bytes] = set()
+        self.participants: dict[bytes, str] = {}
         self.acknowledging: dict[bytes, str] = {}
         self.others: set[bytes] = set()
         self._endpoint = endpoint
@@ -40,13 +40,13 @@ class MatchedReaders:
     def update(self, graph: Graph, reader: EndpointInfo | None, *, present: bool) -> None:
         """Take a reader that has appeared or vanished, or find all of them if it is None."""
         if reader is None:
-            self.gids.clear()
+            self.participants.clear()
             self.others.clear()
             self.acknowledging.clear()
             for each in graph.endpoints(EndpointKind.SUBSCRIPTION, name=self._endpoint.name):
                 self._add(each)
         else:
-            self.gids.discard(reader.gid)
+            self.participants.pop(reader.gid, None)
             self.others.discard(reader.gid)
             self.acknowledging.pop(reader.gid, None)
             if present:
@@ -55,8 +55,7 @@ class MatchedReaders:
     def _add(self, reader: EndpointInfo) -> None:
         if not (self._state.reaches(reader.node) and self._endpoint.matches(reader)):
             return
-        self.gids.add(reader.gid)
-        participant = reader.node.participant
+        participant = self.participants[reader.gid] = reader.node.participant
         if participant not in self._state.acknowledgements.participants:
             self.others.add(reader.gid)
         elif reader.qos.resolved().reliability is ReliabilityPolicy.RELIABLE:

@@ -288,7 +288,7 @@ class ZenohPeerDirectory:
                 self._hosts.discard(participant)
         elif what.startswith(FILTER):
             if key.startswith(self._prefix) and participant != self._state.participant:
-                self.content_filters.take_token(what, present=present)
+                self.content_filters.take_token(participant, what, present=present)
         elif what.startswith("link/") and key.startswith(self._prefix):
             self.on_advertisement(key.removeprefix(self._prefix), present)
         self._update()

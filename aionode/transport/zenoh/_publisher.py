@@ -58,7 +58,6 @@ __all__ = ["ZenohWriter"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
-
 LATE = 1_000
 """How many messages of a KEEP_LAST publisher, or as many as its depth, wait for Zenoh while that
 answers a late reader; without one they do not wait."""
@@ -120,7 +119,7 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
             self._history = WriterHistory(
                 self._depth, state.queue_bytes, keep_all=self.bounded, side=self, now_ns=perf_ns
             )
-            state.acknowledgements.writers[self.gid] = self
+            state.acknowledgements.writers[self._key, self.gid] = self
         # Large messages, and small ones after them to keep the order.
         self._large = self._send_queue(state.bulk, self._depth, keep_all=False)
         # Whether any reader wants a message; None if one wants all, or may be there unseen.
@@ -237,6 +236,7 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
 
     def _withdraw(self) -> None:
         """Undeclare, in the thread that may be using the publisher: Zenoh locks it meanwhile."""
+        self.unlisten()
         publisher, self._publisher = self._publisher, None
         patient, self._patient_publisher = self._patient_publisher, None
         if self._patient is not None:
@@ -276,7 +276,7 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
             self._matched.update(graph, reader, present=present)
             # The token of a reader can arrive before Zenoh has told of a match, or has a route to
             # it; what is lost until then is sent again.
-            self.active = self.active or self._is_matching or bool(self._matched.gids)
+            self.active = self.active or self._is_matching or bool(self._matched.participants)
             if history is not None:
                 self._update_readers(history, None if reader is None else reader.gid)
             if not self._transient:  # a late reader may want what all others do not
@@ -289,10 +289,10 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         filters = self.state.content_filters
         if not filters or self.state.has_unannounced_peers:
             return None
-        gids = set(self._matched.gids)
+        readers = dict(self._matched.participants)
         if self._history is not None:
-            gids.update(self._history.readers)  # also those that are away, and may return
-        return filters.wanted_by(gids, self._msg_type)
+            readers |= self._history.participants()  # also those that are away, and may return
+        return filters.wanted_by(self.endpoint.name, readers, self._msg_type)
 
     def _update_readers(self, history: WriterHistory, gid: bytes | None) -> None:
         """Add new and returned readers to the history, and remove those that have vanished.
@@ -307,6 +307,7 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
             for each in found if gid is None else found.keys() & {gid}:
                 reader = history.readers.get(each)
                 if reader is None or reader.away_until_ns:
+                    self.listen()
                     history.add(each, found[each])
         if self.bounded and history.readers:
             self.state.acknowledgements.probe(self)
@@ -356,8 +357,8 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
 
     def _has_unacknowledging(self) -> bool:
         """Return whether there may be readers for which nothing lost is sent again."""
-        gids = self._matched.gids
-        return self._history is None or not gids or not gids <= self._matched.acknowledging.keys()
+        known, acknowledging = self._matched.participants, self._matched.acknowledging
+        return self._history is None or not known or not known.keys() <= acknowledging.keys()
 
     def _watch(self) -> None:
         self._is_watched = True
@@ -473,7 +474,7 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
 
     def assert_liveliness(self) -> None:
         """Tell the subscriptions of other contexts."""
-        self.state.assertions.send(self.gid)
+        self.state.assertions.send(self._key, self.gid)
 
     def has_room(self) -> bool:
         """Return whether one more message can wait to be sent."""
@@ -592,7 +593,7 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
 
     def _forget(self) -> None:
         self.state.own_gids.discard(self.gid)
-        self.state.acknowledgements.writers.pop(self.gid, None)
+        self.state.acknowledgements.writers.pop((self._key, self.gid), None)
         updates = self.state.on_reader.get(self.endpoint.name, {})
         updates.pop(self._update, None)
         if not updates:

@@ -104,7 +104,7 @@ class ZenohServer(Declaration):
         self._queue = state.queue(self._take, ARRIVING_REQUESTS)
         self.unanswered: dict[tuple[bytes, int], ZenohRequest] = {}
         self._clients: dict[bytes, str] = {}
-        state.cancellations.listeners[self.cancel] = None
+        state.cancellations.listen(endpoint.name, self.cancel)
         state.add(self)
 
     def declare_data(self, session: zenoh.Session) -> None:
@@ -127,7 +127,7 @@ class ZenohServer(Declaration):
 
     def close(self) -> None:
         """Withdraw the server for good."""
-        self.state.cancellations.listeners.pop(self.cancel, None)
+        self.state.cancellations.unlisten(self.endpoint.name, self.cancel)
         super().close()
 
     def cancel(self, gid: bytes, sequence: int) -> None:
@@ -318,7 +318,7 @@ class ZenohRequester(Declaration, Requester):
     def tell_cancelled(self, sequence: int) -> None:
         """Tell the servers that a request need not be served."""
         participants = self.participants()
-        self.state.cancellations.tell(participants, self.gid, sequence)
+        self.state.cancellations.tell(participants, self.endpoint.name, self.gid, sequence)
 
     def send(self, request: Any, sample_info: SampleInfo, reply_to: ReplyTo) -> Call:
         """Send `request` to every server of other contexts."""

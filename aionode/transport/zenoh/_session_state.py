@@ -141,7 +141,7 @@ class SessionState:
         self.lies: Counter[str] = Counter()
         self.own_gids: set[bytes] = set()
         self.cancellations = Cancellations(participant, domain_id, self.waker, self.note_malformed)
-        self.assertions = Assertions(participant, domain_id, self.waker, self.note_malformed)
+        self.assertions = Assertions(self.waker, self.note_malformed)
         self.time_base = MachineTime() if time_base is None else time_base
         self.now_ns = self.time_base.system_ns
         self.on_reader: dict[str, dict[ReaderListener, None]] = {}

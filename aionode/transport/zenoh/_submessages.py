@@ -10,6 +10,7 @@ from aionode.transport.zenoh._handlers import BULK_PRIORITY
 from aionode.wire import _acknack as acknack
 from aionode.wire import _attachment as attachment
 from aionode.wire._acknack import SubmessageKind
+from aionode.wire._key_expression import Side
 
 if TYPE_CHECKING:
     from aionode.transport._reliability import Entry, ReaderProxy
@@ -28,6 +29,20 @@ class SubmessageSender:
 
     state: SessionState
     gid: bytes
+    _key: str  # of the topic
+    _listens = False  # whether acknowledgements are heard
+
+    def listen(self) -> None:
+        """Hear the acknowledgements of readers; to be called before anything is sent to them."""
+        if not self._listens:
+            self._listens = True
+            self.state.acknowledgements.listen(self._key, Side.SUBSCRIPTIONS)
+
+    def unlisten(self) -> None:
+        """Hear them no more."""
+        if self._listens:
+            self._listens = False
+            self.state.acknowledgements.unlisten(self._key, Side.SUBSCRIPTIONS)
 
     def heartbeat(self, reader: ReaderProxy, first: int, last: int) -> None:
         """Send a reader a HEARTBEAT; any thread may."""
@@ -49,8 +64,9 @@ class SubmessageSender:
         self, kind: SubmessageKind, reader: ReaderProxy, first: int, last: int, rest: bytes = b""
     ) -> None:
         data = acknack.pack(kind, self.gid, reader.gid, first, last, rest)
+        key = acknack.submessage_key(self._key, Side.PUBLISHERS, reader.participant)
         send = self.state.acknowledgements.send
         if len(data) < BULK_BYTES:
-            send(reader.participant, data)
+            send(key, data)
         else:  # Zenoh sends it in fragments, each of which may wait
-            self.state.bulk.submit(partial(send, reader.participant, data, BULK_PRIORITY))
+            self.state.bulk.submit(partial(send, key, data, BULK_PRIORITY))

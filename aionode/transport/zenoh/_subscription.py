@@ -28,7 +28,7 @@ from aionode.wire import _acknack as acknack
 from aionode.wire import cdr
 from aionode.wire._acknack import SubmessageKind
 from aionode.wire._attachment import unpack_fields
-from aionode.wire._key_expression import buffer_key
+from aionode.wire._key_expression import Side, buffer_key
 from aionode.wire._liveliness import CPU_BACKEND
 
 if TYPE_CHECKING:
@@ -119,15 +119,17 @@ class ZenohReader(Declaration, ReaderRegistration):
         self._subscribers: list[zenoh.Subscriber[None] | ext.AdvancedSubscriber[None]] = []
         self._has_lease = not is_unlimited(endpoint.qos.liveliness_lease_duration)
         if self._has_lease:
-            state.assertions.listen(reader.note_alive)
+            state.assertions.listen(self._key, reader.note_alive)
         self._acknowledges = reliable and bool(token) and self.recovers
         if self._acknowledges:
-            state.acknowledgements.readers[self.gid] = self
+            state.acknowledgements.readers[self._key, self.gid] = self
         state.add(self)
 
     def declare_data(self, session: zenoh.Session) -> None:
         """Declare the subscriber; a transient local one gets the history."""
         self._announce_filter(session)
+        if self._acknowledges:
+            self.state.acknowledgements.listen(self._key, Side.PUBLISHERS)
         put = self._queue.put
         if self._transient:
             reliable = is_reliable(self.endpoint.qos)
@@ -155,6 +157,8 @@ class ZenohReader(Declaration, ReaderRegistration):
     def undeclare_data(self) -> None:
         """Undeclare the subscriber."""
         self._announce_filter(None)
+        if self._acknowledges:
+            self.state.acknowledgements.unlisten(self._key, Side.PUBLISHERS)
         subscribers, self._subscribers = self._subscribers, []
         for subscriber in subscribers:
             subscriber.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
@@ -173,8 +177,9 @@ class ZenohReader(Declaration, ReaderRegistration):
         before, self._filter_token = self._filter_token, None
         with translated(self.token):
             if session is not None and self._filter_text:
+                state, topic = self.state, self.endpoint.name
                 token = filter_token(
-                    self.state.domain_id, self.state.participant, self.gid, self._filter_text
+                    state.domain_id, state.participant, topic, self.gid, self._filter_text
                 )
                 self._filter_token = session.liveliness().declare_token(token)
             if before is not None:
@@ -182,9 +187,9 @@ class ZenohReader(Declaration, ReaderRegistration):
 
     def close(self) -> None:
         """Undeclare the subscription for good."""
-        self.state.acknowledgements.readers.pop(self.gid, None)
+        self.state.acknowledgements.readers.pop((self._key, self.gid), None)
         if self._has_lease:
-            self.state.assertions.unlisten(self._reader.note_alive)
+            self.state.assertions.unlisten(self._key, self._reader.note_alive)
         super().close()
 
     def _take(self, sample: zenoh.Sample) -> None:
@@ -457,4 +462,5 @@ class ZenohReader(Declaration, ReaderRegistration):
         data = acknack.pack(
             SubmessageKind.ACKNACK, proxy.gid, self.gid, first, 0, acknack.pack_ranges(ranges)
         )
-        self.state.acknowledgements.send(proxy.participant, data)
+        key = acknack.submessage_key(self._key, Side.SUBSCRIPTIONS, proxy.participant)
+        self.state.acknowledgements.send(key, data)

@@ -37,7 +37,7 @@ from aionode.qos import (
 from aionode.testing import ManualClock
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
-from aionode.wire._key_expression import data_key
+from aionode.wire._key_expression import Side, data_key, side_key
 from aionode.wire._liveliness import endpoint_token, gid_of
 from aionode.wire.typehash import type_hash
 from tests.endpoints.qos.conftest import next_of, waiting
@@ -275,8 +275,9 @@ async def test_a_malformed_assertion_is_counted_and_renews_nothing(
     ros_node.announce(EndpointKind.PUBLISHER, profile)
     await next_of(subscription.events, QoSLivelinessChangedInfo)
     malformed = transport_of(node).zenoh.malformed  # type: ignore[attr-defined]  # is Zenoh's
+    key = data_key(DOMAIN_ID, "/n", type_name(Int32), type_hash(Int32))
     while not malformed.total():
-        ros_node.put(f"@aionode/{DOMAIN_ID}/{'a' * 32}/alive", b"no gid")
+        ros_node.put(side_key(key, Side.PUBLISHERS, "alive"), b"no gid")
         await checkpoint()
     assert subscription._monitor is not None
     liveliness = subscription._monitor._liveliness

@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from aionode._concurrency import checkpoint
 from aionode.clock import perf_ns
 from aionode.graph import EndpointKind
 from aionode.interfaces.std_msgs.msg import Int32, String
@@ -23,7 +24,9 @@ from aionode.transport.zenoh._acknowledgements import Acknowledgements
 from aionode.transport.zenoh._publisher import ZenohWriter
 from aionode.transport.zenoh._subscription import GONE_TICKS, ZenohReader
 from aionode.wire import _acknack as acknack
+from aionode.wire import cdr
 from aionode.wire._acknack import SubmessageKind
+from aionode.wire._key_expression import Side
 from tests.support.peers import (
     DOMAIN_ID,
     KEEP_ALL,
@@ -63,6 +66,11 @@ async def test_the_log_gives_a_publisher_a_remedy_that_it_does_not_use_yet(
     assert "KEEP_ALL" not in keeps_all
     assert "`await drain()`" in keeps_all
     assert "A greater depth keeps more of them, KEEP_ALL and `await drain()` all" in keeps_last
+
+
+def reader_of(subscription: Any) -> ZenohReader:
+    """Return a subscription's end in Zenoh."""
+    return next(each for each in subscription._registrations if isinstance(each, ZenohReader))
 
 
 async def acknowledged(publisher: Any) -> None:
@@ -240,7 +248,7 @@ async def test_a_slow_stream_is_acknowledged_seldom(qos: QoSProfile) -> None:
     ):
         with raw_session() as session:
             sent = Collector()
-            subscriber = session.declare_subscriber(f"@aionode/{DOMAIN_ID}/*/reliable/1", sent)
+            subscriber = session.declare_subscriber(f"{DOMAIN_ID}/n/*/*/@aionode/*/**", sent)
             publisher = a.create_publisher(Int32, "n", qos)
             subscription = b.create_subscription(Int32, "n", None, qos)
             await publisher.wait_for_subscribers()
@@ -271,19 +279,73 @@ async def test_malformed_acknowledgements_are_ignored() -> None:
         big = 2**63 - 1
         with raw_session() as session:
             for participant in (state.participant, reader):
-                key = f"@aionode/{DOMAIN_ID}/{participant}/reliable/1"
-                for data in (b"", b"\1", bytes(60), b"\1\2" + bytes(50)):
+                side = Side.SUBSCRIPTIONS if participant == state.participant else Side.PUBLISHERS
+                key = acknack.submessage_key(writer._key, side, participant)
+                for data in (b"", b"\2", bytes(60), b"\2\2" + bytes(50)):
                     session.put(key, data)
                 for kind in SubmessageKind:
                     for numbers in ((-5, big), (big, 0), (0, 0), (-big, -big)):
                         rest = acknack.pack_ranges([(-big, big), (5, 3)])
                         for name in (bytes(16), gid):
                             session.put(key, acknack.pack(kind, name, name, *numbers, rest))
-                        if kind is SubmessageKind.ACKNACK:
+                        if kind is not SubmessageKind.DATA:  # that is a message
                             session.put(key, acknack.pack(kind, writer.gid, gid, *numbers, rest))
             for number in range(2, 50):
                 publisher.publish(Int32(data=number))
                 assert (await subscription.receive()).data == number
+
+
+async def test_a_submessage_counts_only_on_the_key_of_its_topic() -> None:
+    """Whoever may publish on one topic would else speak for all of them."""
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        publisher, other = a.create_publisher(Int32, "n", 10), a.create_publisher(Int32, "m", 10)
+        heard: list[int] = []
+        subscription = b.create_subscription(Int32, "n", lambda msg: heard.append(msg.data), 10)
+        b.create_subscription(Int32, "m", None, 10)
+        for each in (publisher, other):
+            await each.wait_for_subscribers()
+        publisher.publish(Int32(data=1))
+        await until(lambda: heard)
+        writer = writer_of(publisher)
+        (gid,) = writer._history.readers  # type: ignore[union-attr]
+        with raw_session() as session:
+            while len(heard) < 2:
+                for key, number in ((writer_of(other)._key, 66), (writer._key, 2)):
+                    payload = cdr.encode(Int32(data=number))
+                    data = acknack.pack(SubmessageKind.DATA, writer.gid, gid, 2, 0, payload)
+                    for side in Side:
+                        session.put(acknack.submessage_key(key, side, second.participant), data)
+                await checkpoint()
+        assert heard == [1, 2]
+        assert not reader_of(subscription).state.malformed
+
+
+async def test_one_subscriber_for_the_acknowledgements_of_a_topic_goes_with_its_last_endpoint() -> (
+    None
+):
+    """Each is announced to every other process."""
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        publishers = [a.create_publisher(Int32, "n", 10) for _ in range(3)]
+        heard = writer_of(publishers[0]).state.acknowledgements._listening
+        at_first = len(heard)
+        subscription = b.create_subscription(Int32, "n", None, 10)
+        for each in publishers:
+            await each.wait_for_subscribers()
+        await until(lambda: all(writer_of(each)._listens for each in publishers))
+
+        assert len(heard) == at_first + 1
+        subscription.destroy()
+        for each in publishers:
+            each.destroy()
+        await until(lambda: len(heard) == at_first)
 
 
 async def test_a_subscription_that_was_frozen_does_not_give_its_publisher_up() -> None:
@@ -345,7 +407,7 @@ async def test_what_is_published_while_a_frozen_reader_is_away_is_sent_on_its_re
             each for each in subscription._registrations if isinstance(each, ZenohReader)
         )
         readers = reader.state.acknowledgements.readers
-        del readers[reader.gid]
+        del readers[reader._key, reader.gid]
         for subscriber in reader._subscribers:
             subscriber.undeclare()
         reader._subscribers.clear()
@@ -359,7 +421,7 @@ async def test_what_is_published_while_a_frozen_reader_is_away_is_sent_on_its_re
         for number in (2, 3):
             publisher.publish(Int32(data=number))
 
-        readers[reader.gid] = reader
+        readers[reader._key, reader.gid] = reader
         reader.declare_data(reader.state.session)
         graph.add_endpoint(info)
         writer._update()

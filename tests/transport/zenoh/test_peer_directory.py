@@ -270,7 +270,7 @@ async def test_nothing_is_declared_without_an_advertisement() -> None:
             keys = [str(reply.ok.key_expr) for reply in replies if reply.ok is not None]
 
             # That it acknowledges messages has nothing to do with links.
-            assert keys == [f"@aionode/{DOMAIN_ID}/a1/reliable/1"]
+            assert keys == [f"@aionode/{DOMAIN_ID}/a1/reliable/2"]
         assert (peer_directory._declared, peer_directory._connected, told.told) == ([], {}, [])
 
 

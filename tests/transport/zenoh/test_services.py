@@ -223,7 +223,9 @@ async def test_a_request_that_was_given_up_is_not_served() -> None:
         await client.wait_for_service()
         told = asyncio.Event()
         transport: Any = first.transports[1]
-        transport._state.cancellations.listeners[lambda _gid, _sequence: told.set()] = None
+        cancellations = transport._state.cancellations
+        cancellations.listen("/other", lambda _gid, _sequence: served.append(0))
+        cancellations.listen("/add", lambda _gid, _sequence: told.set())
         busy = asyncio.gather(client.call(AddTwoInts.Request(a=1)))
         await began.wait()
         with pytest.raises(RequestTimeoutError, match="1 matched server"):
