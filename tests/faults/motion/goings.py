@@ -99,15 +99,15 @@ async def hung_up(play: Play) -> None:
 
 def at_once(fault: Fault) -> Strike:
     """Let a fault strike all movers of a place at once, such as one of the cable between hosts."""
-    begun: list[Stage] = []
-    over = asyncio.Event()
+    ends: dict[Stage, asyncio.Event] = {}  # on another stage, what shows nothing begins anew
 
     async def strike(play: Play) -> None:
         play.struck()
-        if begun:
+        over = ends.get(play.stage)
+        if over is not None:
             await over.wait()
             return
-        begun.append(play.stage)
+        over = ends[play.stage] = asyncio.Event()
         await fault(play.stage)
         over.set()
 
