@@ -90,6 +90,9 @@ def main() -> None:
     )
     options = parser.parse_args()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))  # cleans up
+    # Programs in the background of a shell may ignore both, and all processes of a case inherit it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGQUIT, signal.SIG_DFL)
 
     def chosen(found: list[CaseT]) -> list[CaseT]:
         return [each for each in found if re.search(options.only, each.name)]
