@@ -7,10 +7,10 @@ of programs that have message classes, threads and queues of their own.
 
 Everything here belongs to the thread of the context's event loop, in which the context has been
 opened with ``async with``: make, use and destroy it there. Only the functions and objects that you
-give are called back, in that thread as well; they never wait. If that loop is a
-`aionode.lendable_loop.LendableLoop`, a thread that has borrowed it may send, too: messages,
-requests and responses, with `BarePublisher.publish`, `BarePublisher.publish_elsewhere`,
-`BareClient.send`, `BareCall.cancel` and the methods of `Request`.
+give are called back, in that thread as well; they never wait. Where a loop is lent to other
+threads, as aionode's own for programs of rclpy, the borrower may send, too: messages, requests and
+responses, with `BarePublisher.publish`, `BarePublisher.publish_elsewhere`, `BareClient.send`,
+`BareCall.cancel` and the methods of `Request`.
 """
 
 from __future__ import annotations

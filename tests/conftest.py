@@ -177,8 +177,14 @@ async def context(aionode_context: Context) -> Context:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """Escape lone surrogates in captured output: pytest-xdist cannot send them."""
+    """Escape lone surrogates in captured output: pytest-xdist cannot send them.
+
+    The time limit of pytest-timeout stands still meanwhile: where it ended the making of a report,
+    all other tests would end with it.
+    """
+    left_s, _ = signal.setitimer(signal.ITIMER_REAL, 0)
     report = yield
+    signal.setitimer(signal.ITIMER_REAL, left_s)
     report.sections = [
         (title, text.encode(errors="backslashreplace").decode()) for title, text in report.sections
     ]

@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import os
 import queue
+import signal
 import socket
 import sys
 import threading
+import weakref
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from functools import partial
+from typing import Any
 
 import pytest
 
+from aionode._lendable_loop import LendableLoop, Readers
 from aionode.clock import perf_ns
-from aionode.lendable_loop import LendableLoop, Readers
 
 PATIENCE_S = 10.0
+
+SetHandler = Callable[[Callable[..., Any]], Any]
 
 pytestmark = pytest.mark.timeout(30)
 
@@ -326,6 +333,145 @@ def test_an_exception_of_a_reader_goes_to_the_handler_of_the_loop(
         readers.end()
 
     assert [type(each) for each in handled] == [LookupError]
+
+
+# What runs between two bytecodes of the thread that holds the loop
+
+
+class Hold:
+    """Holds a loop in one of the two ways, and tries what others may do meanwhile.
+
+    Attributes:
+        answers: What `borrow` and `begin` answered to others.
+        done: Set by what they have handed to the loop.
+    """
+
+    def __init__(self, loop: LendableLoop, way: str) -> None:
+        self.loop = loop
+        self.readers = readers_of(loop)
+        self.way = way
+        self.answers: list[bool] = []
+        self.done = threading.Event()
+
+    def __enter__(self) -> None:
+        if self.way == "begin":
+            assert self.readers.begin()
+        borrow(self.loop)
+
+    def __exit__(self, *_: object) -> None:
+        self.loop.give_back()
+        if self.way == "begin":
+            self.readers.end()
+
+    def interrupt(self, *_: object) -> None:
+        """Do what a handler of a signal or a finalizer may do."""
+        self.answers.append(self.loop.borrow())
+        if self.way == "begin":
+            self.answers.append(self.readers.begin())
+        self.readers.rouse()
+        self.loop.call_soon_threadsafe(self.done.set)
+
+
+@pytest.fixture
+def handler() -> Iterator[SetHandler]:
+    """Return a function that sets the handler of SIGUSR1, and restore the former one."""
+    if not hasattr(signal, "SIGUSR1"):
+        pytest.skip("this system has no SIGUSR1")
+    former = signal.getsignal(signal.SIGUSR1)
+    yield partial(signal.signal, signal.SIGUSR1)
+    signal.signal(signal.SIGUSR1, former)
+
+
+WAYS = pytest.mark.parametrize("way", ["borrow", "begin"])
+
+
+@WAYS
+def test_a_handler_of_a_signal_may_hand_work_to_a_loop_that_is_held(
+    handler: SetHandler, way: str
+) -> None:
+    """It runs in the thread that holds the loop, so it must not wait for it, and need not."""
+    with running_loop() as loop:
+        hold = Hold(loop, way)
+        handler(hold.interrupt)
+
+        with hold:
+            signal.raise_signal(signal.SIGUSR1)
+            assert not hold.done.is_set()
+
+        assert hold.done.wait(PATIENCE_S)
+        assert not any(hold.answers)
+
+
+@WAYS
+def test_an_exception_out_of_a_handler_leaves_the_loop_to_who_lets_it_go(
+    handler: SetHandler, way: str
+) -> None:
+    """The work stays half done; with a ``finally`` the loop goes on, and can be borrowed again."""
+
+    def fail(*_: object) -> None:
+        raise LookupError
+
+    with running_loop() as loop:
+        hold, after = Hold(loop, way), threading.Event()
+        handler(fail)
+
+        def work() -> None:
+            with hold:
+                loop.call_soon(hold.done.set)
+                signal.raise_signal(signal.SIGUSR1)
+                loop.call_soon(after.set)
+
+        with pytest.raises(LookupError):
+            work()
+
+        assert hold.done.wait(PATIENCE_S)
+        assert not after.is_set()
+        with Hold(loop, way):
+            pass
+
+
+def test_an_exception_before_the_loop_is_given_back_keeps_it_for_ever(
+    handler: SetHandler,
+) -> None:
+    """So the main thread borrows only where no handler may raise: here nothing lets go."""
+
+    def fail(*_: object) -> None:
+        raise LookupError
+
+    with running_loop() as loop:
+        done = threading.Event()
+        handler(fail)
+
+        borrow(loop)
+        with pytest.raises(LookupError):
+            signal.raise_signal(signal.SIGUSR1)
+        loop.call_soon_threadsafe(done.set)
+
+        assert not done.wait(0.05)
+        loop.give_back()
+        assert done.wait(PATIENCE_S)
+
+
+@WAYS
+def test_a_finalizer_may_hand_work_to_a_loop_that_is_held(way: str) -> None:
+    """The garbage collector calls it in any thread, and what it raises goes no further."""
+
+    class Garbage:
+        def __init__(self, on_end: Callable[[], None]) -> None:
+            self.itself = self
+            weakref.finalize(self, on_end)
+
+    with running_loop() as loop:
+        hold = Hold(loop, way)
+        Garbage(hold.interrupt)
+
+        with hold:
+            gc.collect()
+            assert hold.answers
+            assert not hold.done.is_set()
+
+        assert hold.done.wait(PATIENCE_S)
+        assert not any(hold.answers)
 
 
 # Everything at once

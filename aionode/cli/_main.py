@@ -37,6 +37,7 @@ NOUNS = {
     "router": "Connect machines, as rmw_zenohd does.",
     "run": "Run node classes together in one process.",
     "service": "List, find and call services.",
+    "tf": "Show and publish transforms between frames.",
     "topic": "List, print, publish and measure topics.",
 }
 """For each noun, one line of help; its module has its command, ``topic_command`` of ``topic``."""

@@ -6,24 +6,18 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode.endpoints._core.callback_runner import accepts
 from aionode.errors import brief
-from aionode.interfaces.lifecycle_msgs.msg import State as StateMsg
-from aionode.interfaces.lifecycle_msgs.msg import Transition as TransitionMsg
-from aionode.interfaces.lifecycle_msgs.msg import TransitionDescription, TransitionEvent
+from aionode.interfaces.lifecycle_msgs import msg
 from aionode.interfaces.lifecycle_msgs.srv import (
     ChangeState,
     GetAvailableStates,
     GetAvailableTransitions,
     GetState,
 )
+from aionode.lifecycle._answers import StateAnswers, fill_event
 from aionode.lifecycle._entities import Gate, LifecyclePublisher, LifecycleTimer, ManagedEntity
 from aionode.lifecycle._events import EventSource
 from aionode.lifecycle._runner import SUCCESS, TransitionRunner
-from aionode.lifecycle.states import (
-    ERROR_PROCESSING,
-    STATES,
-    TRANSITIONS,
-    TransitionCallbackReturn,
-)
+from aionode.lifecycle.states import ERROR_PROCESSING, TRANSITIONS, TransitionCallbackReturn
 from aionode.message import Message
 from aionode.node import Node
 from aionode.qos import QoSProfile
@@ -37,7 +31,7 @@ if TYPE_CHECKING:
     from aionode.endpoints.subscription import Subscription, SubscriptionCallback
     from aionode.endpoints.timer import TimerCallback
     from aionode.lifecycle._runner import LifecycleEvent
-    from aionode.lifecycle.states import State, Transition
+    from aionode.lifecycle.states import State
     from aionode.message import ServiceClass
 
     Result: TypeAlias = TransitionCallbackReturn | Any
@@ -89,7 +83,7 @@ class LifecycleNode(Node):
             "on_error", 2, 1, wanted="(state) or (state, error)"
         )
         self._transition_events = self.create_publisher(
-            TransitionEvent, "~/transition_event", EVENT_QOS
+            msg.TransitionEvent, "~/transition_event", EVENT_QOS
         )
         self._transitions = TransitionRunner(
             self.get_fully_qualified_name(),
@@ -305,12 +299,14 @@ class LifecycleNode(Node):
 
     def _serve(self) -> None:
         self.create_service(ChangeState, "~/change_state", self._change_state, concurrent=True)
-        self.create_service(GetState, "~/get_state", self._get_state)
-        self.create_service(GetAvailableStates, "~/get_available_states", self._get_states)
-        self.create_service(
-            GetAvailableTransitions, "~/get_available_transitions", self._get_available
-        )
-        self.create_service(GetAvailableTransitions, "~/get_transition_graph", self._get_graph)
+        answers = StateAnswers(self._transitions.machine, msg.State, msg.TransitionDescription)
+        for srv_type, answer in (
+            (GetState, answers.get_state),
+            (GetAvailableStates, answers.get_available_states),
+            (GetAvailableTransitions, answers.get_available_transitions),
+            (GetAvailableTransitions, answers.get_transition_graph),
+        ):
+            self.create_service(srv_type, f"~/{answer.__name__}", answer)
 
     async def _change_state(
         self, request: ChangeState.Request, response: ChangeState.Response
@@ -338,34 +334,9 @@ class LifecycleNode(Node):
         await self._transitions.wait_idle()
         return True
 
-    def _get_state(self, _: GetState.Request, response: GetState.Response) -> GetState.Response:
-        response.current_state = state_msg(self.lifecycle_state)
-        return response
-
-    def _get_states(
-        self, _: GetAvailableStates.Request, response: GetAvailableStates.Response
-    ) -> GetAvailableStates.Response:
-        response.available_states = [state_msg(state) for state in STATES]
-        return response
-
-    def _get_available(
-        self, _: GetAvailableTransitions.Request, response: GetAvailableTransitions.Response
-    ) -> GetAvailableTransitions.Response:
-        available = self._transitions.machine.available()
-        response.available_transitions = [description_of(one) for one in available]
-        return response
-
-    def _get_graph(
-        self, _: GetAvailableTransitions.Request, response: GetAvailableTransitions.Response
-    ) -> GetAvailableTransitions.Response:
-        response.available_transitions = [description_of(one) for one in TRANSITIONS]
-        return response
-
     def _publish_event(self, start: State, goal: State) -> None:
         if not self._transition_events.destroyed:
-            self._transition_events.publish(
-                TransitionEvent(start_state=state_msg(start), goal_state=state_msg(goal))
-            )
+            self._transition_events.publish(fill_event(msg.TransitionEvent(), start, goal))
 
 
 def is_shutdown(label: str, transition_id: int) -> bool:
@@ -374,18 +345,4 @@ def is_shutdown(label: str, transition_id: int) -> bool:
         return label == "shutdown"
     return any(
         one.label == "shutdown" and one.transition_id == transition_id for one in TRANSITIONS
-    )
-
-
-def state_msg(state: State) -> StateMsg:
-    """Return a state as a message."""
-    return StateMsg(id=state.state_id, label=state.label)
-
-
-def description_of(transition: Transition) -> TransitionDescription:
-    """Return a transition as a message."""
-    return TransitionDescription(
-        transition=TransitionMsg(id=transition.transition_id, label=transition.label),
-        start_state=state_msg(transition.start),
-        goal_state=state_msg(transition.goal),
     )

@@ -5,6 +5,8 @@ from __future__ import annotations
 from bisect import bisect_right
 from typing import TYPE_CHECKING
 
+from aionode.tf._arithmetic import interpolated
+
 if TYPE_CHECKING:
     from aionode.tf._arithmetic import Edge, Pose
 
@@ -110,17 +112,17 @@ class DynamicFrame:
             del self.stamps[: self.first], self.parents[: self.first], self.poses[: self.first]
             self.first = 0
 
-    def edge(self, time_ns: int) -> Edge | None:
-        """Return what `find` does, without the parent; for histories with one parent."""
+    def pose_at(self, time_ns: int) -> Pose | None:
+        """Return the pose at a time, for histories with one parent; None as for `find`."""
         stamps = self.stamps
         index = bisect_right(stamps, time_ns, self.first)
         if self.first < index < len(stamps):
             stamp = stamps[index - 1]
             if stamp != time_ns:
                 ratio = (time_ns - stamp) / (stamps[index] - stamp)
-                return self.poses[index - 1], self.poses[index], ratio
+                return interpolated(self.poses[index - 1], self.poses[index], ratio)
         found = self.find(time_ns)
-        return None if found is None else found[1]
+        return None if found is None else found[1][0]
 
     def find(self, time_ns: int) -> tuple[str, Edge] | None:
         """Return the parent and the pose at a time; None if the history does not reach there.
@@ -194,9 +196,9 @@ class StaticFrame:
         self.parent, self.pose = parent, pose
         return True
 
-    def edge(self, time_ns: int) -> Edge:  # noqa: ARG002  # it is the same at any time
+    def pose_at(self, time_ns: int) -> Pose:  # noqa: ARG002  # it is the same at any time
         """Return the pose."""
-        return self.pose, None, 0.0
+        return self.pose
 
     def find(self, time_ns: int) -> tuple[str, Edge]:  # noqa: ARG002  # it is the same at any time
         """Return the parent and the pose."""

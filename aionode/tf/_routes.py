@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from aionode.tf._arithmetic import Pose, chained, composed, inverted
+from aionode.tf._arithmetic import IDENTITY, Pose, composed, inverted
 from aionode.tf._walk import MAX_DEPTH, lowest
 
 if TYPE_CHECKING:
-    from aionode.tf._arithmetic import Edge
     from aionode.tf._frames import Frame, Tree
 
 __all__ = ["Route", "Routes"]
@@ -42,13 +41,13 @@ class Route:
 
 def pose_over(frames: list[Frame], time_ns: int) -> Pose | None:
     """Return the pose that a series of frames leads to; None if one has no data for the time."""
-    edges: list[Edge] = []
+    total = None
     for frame in frames:
-        edge = frame.edge(time_ns)
-        if edge is None:
+        pose = frame.pose_at(time_ns)
+        if pose is None:
             return None
-        edges.append(edge)
-    return chained(edges)
+        total = pose if total is None else composed(pose, total)
+    return total or IDENTITY
 
 
 class Routes:
@@ -69,14 +68,17 @@ class Routes:
     def find(self, target: str, source: str) -> Route | None:
         """Return the route between two frames; None if only a walk can tell."""
         key = target, source
-        if key in self._known:
-            return self._known[key]
+        known = self._known.get(key)
+        if known is not None or key in self._known:
+            return known
         if len(self._known) >= MAX_ROUTES:
             self._known.clear()
         route = self._known[key] = self._search(target, source)
         return route
 
     def _search(self, target: str, source: str) -> Route | None:
+        if target == source:
+            return None  # its stamp is that of the frame
         above_source = self._above(source)
         above_target = self._above(target)
         common = next((name for name in above_source if name in above_target), None)

@@ -12,6 +12,7 @@ import click
 from aionode._distribution import other_distribution
 from aionode.cli._nouns.doctor_diagnosis import Finding, diagnose
 from aionode.cli._nouns.doctor_routes import link_findings, pairs_of, query_links
+from aionode.cli._nouns.doctor_transforms import transform_findings
 from aionode.cli._support import lookup
 from aionode.cli._support.completion import complete_names
 from aionode.cli._support.options import json_option, ros2_options
@@ -45,24 +46,36 @@ ZENOH = "rmw_zenoh_cpp"
 
 @click.command()
 @click.argument("names", nargs=-1, shell_complete=complete_names("topic"))
+@click.option(
+    "--transform", nargs=2, metavar="TARGET SOURCE", help="Say why this transform is missing."
+)
 @json_option
 @ros2_options
-def doctor_command(names: tuple[str, ...], json: bool) -> None:
+def doctor_command(names: tuple[str, ...], transform: tuple[str, str] | None, json: bool) -> None:
     """Summarize the network, and find out why endpoints do not communicate.
 
     NAMES of nodes, topics and services limit it to those, and show by which route each publisher
     reaches each subscription. The exit status is 1 if a problem was found.
     """
-    run_verb(lambda node, output: doctor(node, names, output=output), json=json)
+    run_verb(
+        lambda node, output: doctor(node, names, output=output, transform=transform), json=json
+    )
 
 
-async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> int:
+async def doctor(
+    node: Node,
+    names: Sequence[str] = (),
+    *,
+    output: Output,
+    transform: tuple[str, str] | None = None,
+) -> int:
     """Print a summary of the network and its problems; return 1 if there is a problem, else 0.
 
     Args:
         node: The command's node.
         names: Consider only these nodes, topics and services, and show the routes of messages.
         output: Where to print.
+        transform: The target and source frame of a transform that is missing.
 
     Raises:
         CommandError: one of the names does not exist.
@@ -113,6 +126,8 @@ async def doctor(node: Node, names: Sequence[str] = (), *, output: Output) -> in
         found += network_findings(
             network, environ, has_router=has_router, domains=domains, alone=not nodes
         )
+    if not names or transform is not None or "/tf" in wanted:
+        found += await transform_findings(node, transform)
     for finding in found:
         output.item(
             f"\n{finding.severity}: {finding.subject}: {finding.text}\n  -> {finding.remedy}",

@@ -11,15 +11,15 @@ from threading import Lock, Thread, get_ident
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode import Context
+from aionode._lendable_loop import LendableLoop
 from aionode.clock import MachineTime
 from aionode.errors import ForkedProcessError
-from aionode.lendable_loop import LendableLoop
 from aionode.rclpy._impl import uninterrupted
 from aionode.rclpy._impl.destroyable import Wakeup
 from aionode.rclpy._impl.errors import InvalidHandle
 
 if TYPE_CHECKING:
-    from aionode.lendable_loop import Readers
+    from aionode._lendable_loop import Readers
 
 __all__ = ["IoThread"]
 

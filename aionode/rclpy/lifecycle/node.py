@@ -5,20 +5,19 @@ from __future__ import annotations
 from traceback import format_exc
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from aionode.lifecycle._answers import StateAnswers
 from aionode.rclpy._impl import messages as msg
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._impl.lifecycle import LifecycleStateMachine, TransitionCallbackReturn
 from aionode.rclpy.lifecycle.managed_entity import ManagedEntity
 from aionode.rclpy.lifecycle.publisher import LifecyclePublisher
 from aionode.rclpy.node import Node
-from aionode.rclpy.qos import QoSProfile
-from aionode.rclpy.service import Service
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.rclpy._impl.services import ServiceHandle
     from aionode.rclpy.callback_groups import CallbackGroup
+    from aionode.rclpy.qos import QoSProfile
 
 __all__ = [
     "LifecycleNode",
@@ -56,7 +55,7 @@ class LifecycleNodeMixin(ManagedEntity):
     """
 
     handle: Any
-    _services: list[Any]
+    create_service: Callable[..., Any]
     default_callback_group: Any
     get_logger: Callable[[], Any]
 
@@ -72,48 +71,47 @@ class LifecycleNodeMixin(ManagedEntity):
             )
         # A dict for its order; rclpy has a set.
         self._managed_entities: dict[ManagedEntity, None] = {}
+        if not isinstance(enable_communication_interface, bool):
+            raise TypeError(
+                "enable_communication_interface must be a bool, not "
+                f"{type(enable_communication_interface).__name__}"
+            )
         with self.handle:
-            self._state_machine = LifecycleStateMachine(self.handle, enable_communication_interface)
+            self._state_machine = LifecycleStateMachine(self.handle)
         if enable_communication_interface:
             self._serve(callback_group or self.default_callback_group)
 
     def _serve(self, group: CallbackGroup) -> None:
         """Answer the services of the state machine."""
         machine = self._state_machine
-
-        def service(
-            handle: ServiceHandle | None, srv_type: Any, callback: Callable[[Any, Any], Any]
-        ) -> Service[Any, Any]:
-            assert handle is not None  # noqa: S101  # the interface is enabled
-            made: Service[Any, Any] = Service(
-                handle, srv_type, handle.service_name, callback, group, QoSProfile(depth=10)
+        answers = StateAnswers(machine.machine, msg.LifecycleState, msg.TransitionDescription)
+        for name, srv_type, callback in (
+            ("change_state", msg.ChangeState, self._on_change_state),
+            ("get_state", msg.GetState, answers.get_state),
+            ("get_available_states", msg.GetAvailableStates, answers.get_available_states),
+            (
+                "get_available_transitions",
+                msg.GetAvailableTransitions,
+                answers.get_available_transitions,
+            ),
+            ("get_transition_graph", msg.GetAvailableTransitions, answers.get_transition_graph),
+        ):
+            service = self.create_service(
+                srv_type,
+                f"~/{name}",
+                self._unless_destroyed(callback),
+                qos_profile=msg.TEN_MESSAGES,
+                callback_group=group,
             )
-            group.add_entity(made)
-            self._services.append(made)
-            self.handle.requests.note()
-            return made
+            setattr(self, f"_service_{name}", service)
+            setattr(machine, f"service_{name}", service.handle)
 
-        self._service_change_state = service(
-            machine.service_change_state, msg.ChangeState, self._on_change_state
-        )
-        self._service_get_state = service(
-            machine.service_get_state, msg.GetState, self._on_get_state
-        )
-        self._service_get_available_states = service(
-            machine.service_get_available_states,
-            msg.GetAvailableStates,
-            self._on_get_available_states,
-        )
-        self._service_get_available_transitions = service(
-            machine.service_get_available_transitions,
-            msg.GetAvailableTransitions,
-            self._on_get_available_transitions,
-        )
-        self._service_get_transition_graph = service(
-            machine.service_get_transition_graph,
-            msg.GetAvailableTransitions,
-            self._on_get_transition_graph,
-        )
+    def _unless_destroyed(self, callback: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
+        def answer(request: Any, response: Any) -> Any:
+            self._check_is_initialized()
+            return callback(request, response)
+
+        return answer
 
     # Transitions
 
@@ -268,7 +266,6 @@ class LifecycleNodeMixin(ManagedEntity):
     # Services
 
     def _on_change_state(self, request: Any, response: Any) -> Any:
-        self._check_is_initialized()
         transition_id = request.transition.id
         if request.transition.label:
             try:
@@ -280,43 +277,6 @@ class LifecycleNodeMixin(ManagedEntity):
                 return response
         response.success = self._change_state(transition_id) is TransitionCallbackReturn.SUCCESS
         return response
-
-    def _on_get_state(self, request: Any, response: Any) -> Any:
-        self._check_is_initialized()
-        state = response.current_state
-        state.id, state.label = self._state_machine.current_state
-        return response
-
-    def _on_get_available_states(self, request: Any, response: Any) -> Any:
-        self._check_is_initialized()
-        response.available_states = [
-            msg.LifecycleState(id=number, label=label)
-            for number, label in self._state_machine.available_states
-        ]
-        return response
-
-    def _on_get_available_transitions(self, request: Any, response: Any) -> Any:
-        self._check_is_initialized()
-        response.available_transitions = [
-            described(each) for each in self._state_machine.available_transitions
-        ]
-        return response
-
-    def _on_get_transition_graph(self, request: Any, response: Any) -> Any:
-        self._check_is_initialized()
-        response.available_transitions = [
-            described(each) for each in self._state_machine.transition_graph
-        ]
-        return response
-
-
-def described(transition: tuple[int, str, int, str, int, str]) -> Any:
-    """Return a transition as a message."""
-    message = msg.TransitionDescription()
-    message.transition.id, message.transition.label = transition[:2]
-    message.start_state.id, message.start_state.label = transition[2:4]
-    message.goal_state.id, message.goal_state.label = transition[4:]
-    return message
 
 
 class LifecycleNode(LifecycleNodeMixin, Node):

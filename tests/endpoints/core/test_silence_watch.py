@@ -401,7 +401,7 @@ async def test_a_callback_in_a_thread_is_waited_for(
         driven.drive(msg)
 
     node.create_subscription(
-        Int32, "n", drive, on_silence=driven.stop, silence_sec=0.02, offload=True
+        Int32, "n", drive, on_silence=driven.stop, silence_sec=0.2, offload=True
     )
     send(node.create_publisher(Int32, "n", 10), 1, 2)
     await logged(caplog, "runs in a thread, which cannot be cancelled")
@@ -425,7 +425,7 @@ async def test_a_callback_that_does_not_end_is_named(
             await go_on.wait()
             driven.drive(msg)
 
-    node.create_subscription(Int32, "n", drive, on_silence=driven.stop, silence_sec=0.02)
+    node.create_subscription(Int32, "n", drive, on_silence=driven.stop, silence_sec=0.2)
     send(node.create_publisher(Int32, "n", 10), 1)
     await logged(caplog, "was cancelled and has not ended")
     assert driven.log == []
@@ -572,13 +572,13 @@ async def test_a_loop_that_stood_still_stops_before_it_handles_what_is_queued(
 ) -> None:
     """The messages are older than `silence_sec`, and were no commands for now."""
     subscription = machine_node.create_subscription(
-        Int32, "n", driven.drive, on_silence=driven.stop, silence_sec=0.05
+        Int32, "n", driven.drive, on_silence=driven.stop, silence_sec=0.2
     )
     publisher = machine_node.create_publisher(Int32, "n", 10)
     send(publisher, 1)
     await settle()
     send(publisher, 2, 3)
-    time.sleep(0.06)  # noqa: ASYNC251  # as a callback that blocks
+    time.sleep(0.21)  # noqa: ASYNC251  # as a callback that blocks
     if another_comes:
         send(publisher, 4)
     await settle()

@@ -10,9 +10,9 @@ from contextlib import asynccontextmanager
 
 from aionode import Context
 from aionode._concurrency import checkpoint
+from aionode._lendable_loop import LendableLoop
 from aionode.bare_node import BareNode, BarePublisher
 from aionode.interfaces.std_msgs.msg import Int32
-from aionode.lendable_loop import LendableLoop
 from aionode.qos import QoSProfile
 from tests.support.links import folder
 from tests.support.peers import quiet_node

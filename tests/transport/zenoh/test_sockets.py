@@ -153,6 +153,7 @@ async def test_a_context_closes_at_once_while_a_connection_is_not_answered(
     who: str, begins: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A program that is frozen accepts, and is accepted, as its system does that for it."""
+    monkeypatch.setattr(_session, "CLOSE_S", 20.0)  # so that the limit below is far away
     if begins == "meanwhile":
         monkeypatch.setattr(_transport, "cut_stuck", not_seen)
     async with AsyncExitStack() as stack:
@@ -173,4 +174,4 @@ async def test_a_context_closes_at_once_while_a_connection_is_not_answered(
         await closing.aclose()
         took_s = asyncio.get_running_loop().time() - began_s
 
-    assert took_s < 0.7
+    assert took_s < 2.5  # Zenoh would wait for 3 s

@@ -144,8 +144,8 @@ async def test_a_turn_that_another_user_keeps_costs_a_third_of_a_second(network:
     async with connecting(network):
         connected_s = loop.time()
 
-    assert met_s - began_s < 1.0
-    assert connected_s - met_s < 1.5
+    assert met_s - began_s < 2.0
+    assert connected_s - met_s < 2.5
 
 
 async def test_it_is_waited_longer_while_others_appear(

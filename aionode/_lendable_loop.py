@@ -9,15 +9,22 @@ A thread that waits for what the loop will read can go further, and wait for the
 itself: `LendableLoop.readers`.
 
 Between `LendableLoop.borrow` and `LendableLoop.give_back`, and between `Readers.begin` and
-`Readers.end`, the loop depends on the thread that does its work. Two rules follow for the callers
-of these methods:
+`Readers.end`, the thread *holds* the loop: nothing else of it runs until the thread lets go. Python
+runs code of others between any two bytecodes of that thread all the same:
 
-- No exception leads past `give_back` or `end`. A ``finally`` is not enough in the main thread: a
-  handler of a signal may raise at the first bytecode of `end` itself. So the main thread calls
-  `borrow` and `begin` only while no handler is installed that may raise.
-- The thread waits for nothing else that needs the loop. Code of others may run in between all the
-  same: finalizers that the garbage collector calls, and handlers. It may use the methods that any
-  thread may call at any time: `borrow` and `begin` answer False then, `Readers.rouse` never waits.
+- *A handler of a signal*, in the main thread. It may call what any thread may call at any time:
+  `call_soon_threadsafe`, whose callback runs once the loop is let go; `Readers.rouse`, which never
+  waits; `borrow` and `begin`, which answer False. It must wait for nothing that needs the loop,
+  which would be a wait for the thread that it has interrupted.
+- *An exception out of a handler*. Work that it leaves half done stays half done, but the loop is
+  let go if a ``finally`` does that. That is not enough in all places: an exception before the
+  ``try``, or at the first bytecode of `give_back` or `end` itself, leaves the loop held for ever.
+  So the main thread calls `borrow` and `begin` only while no handler is installed that may raise.
+- *The garbage collector*, in any thread: finalizers and callbacks of weak references. For them
+  holds what holds for handlers. What they raise, Python prints, and it goes no further.
+
+`aionode.rclpy._impl.uninterrupted` keeps these rules for programs of rclpy, whose threads, handlers
+and finalizers know nothing of them.
 """
 
 from __future__ import annotations
