@@ -29,6 +29,10 @@ ALIASES: Final = {
     "rosidl_runtime_py": "aionode.rclpy._rosidl_runtime_py",
     "sensor_msgs_py": "aionode.rclpy._sensor_msgs_py",
     "ament_index_python": "aionode.rclpy._ament_index_python",
+    "tf2_py": "aionode.rclpy._tf2_py",
+    "tf2_ros": "aionode.rclpy._tf2_ros",
+    "tf2_geometry_msgs": "aionode.rclpy._tf2_geometry_msgs",
+    "tf2_sensor_msgs": "aionode.rclpy._tf2_sensor_msgs",
 }
 """The packages of ROS that are packages of aionode; their modules are the same objects."""
 

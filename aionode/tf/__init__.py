@@ -28,7 +28,7 @@ from aionode.errors import (
     TimeoutException,
     TransformException,
 )
-from aionode.tf._apply import do_transform, register_transform
+from aionode.tf._apply import do_transform, register_transform, rotation_matrix
 from aionode.tf._broadcasters import StaticTransformBroadcaster, TransformBroadcaster
 from aionode.tf._buffer import Buffer
 from aionode.tf._buffer_core import BufferCore
@@ -58,4 +58,5 @@ __all__ = [
     "TransformListener",
     "do_transform",
     "register_transform",
+    "rotation_matrix",
 ]

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from aionode.interfaces.geometry_msgs.msg import TransformStamped
 
-__all__ = ["do_transform", "register_transform", "transformer_of"]
+__all__ = ["do_transform", "register_transform", "rotation_matrix", "transformer_of"]
 
 MessageT = TypeVar("MessageT")
 
@@ -89,7 +89,10 @@ def turned_by(pose: Pose, vector: geometry.Vector3) -> geometry.Vector3:
 def placed(pose: Pose, inner: geometry.Pose) -> geometry.Pose:
     """Return a pose, moved and turned."""
     at, turned = inner.position, inner.orientation
-    x, y, z, i, j, k, w = composed(pose, (at.x, at.y, at.z, turned.x, turned.y, turned.z, turned.w))
+    # A message that nobody has filled in has no rotation, and tf2 takes that for none.
+    w = turned.w or float(not (turned.x or turned.y or turned.z))
+    own = (at.x, at.y, at.z, turned.x, turned.y, turned.z, w)
+    x, y, z, i, j, k, w = unit(composed(pose, own))
     return geometry.Pose(
         position=geometry.Point(x=x, y=y, z=z),
         orientation=geometry.Quaternion(x=i, y=j, z=k, w=w),
@@ -101,6 +104,12 @@ def matrix_of(pose: Pose) -> Matrix:
     turn = (0.0, 0.0, 0.0, *pose[3:])
     columns = [moved_by(turn, *axis) for axis in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
     return tuple(zip(*columns, strict=True))
+
+
+def rotation_matrix(rotation: geometry.Quaternion) -> Matrix:
+    """Return a quaternion as three rows of a matrix, which turns columns."""
+    whole = geometry.Transform(rotation=rotation)
+    return matrix_of(pose_of(geometry.TransformStamped(transform=whole)))
 
 
 def turned_tensor(rotation: Matrix, tensor: Sequence[Sequence[float]]) -> list[list[float]]:

@@ -1,0 +1,49 @@
+"""What programs know as `tf2_ros`: buffers, listeners, broadcasters and clients."""
+
+from __future__ import annotations
+
+from aionode.rclpy._tf2_py import (
+    BufferCore,
+    ConnectivityException,
+    ExtrapolationException,
+    InvalidArgumentException,
+    LookupException,
+    TimeoutException,
+    TransformException,
+)
+from aionode.rclpy._tf2_ros.buffer import Buffer
+from aionode.rclpy._tf2_ros.buffer_client import BufferClient
+from aionode.rclpy._tf2_ros.buffer_interface import (
+    BufferInterface,
+    ConvertRegistration,
+    NotImplementedException,
+    Stamped,
+    TransformRegistration,
+    TypeException,
+    convert,
+)
+from aionode.rclpy._tf2_ros.static_transform_broadcaster import StaticTransformBroadcaster
+from aionode.rclpy._tf2_ros.transform_broadcaster import TransformBroadcaster
+from aionode.rclpy._tf2_ros.transform_listener import TransformListener
+
+__all__ = [
+    "Buffer",
+    "BufferClient",
+    "BufferCore",
+    "BufferInterface",
+    "ConnectivityException",
+    "ConvertRegistration",
+    "ExtrapolationException",
+    "InvalidArgumentException",
+    "LookupException",
+    "NotImplementedException",
+    "Stamped",
+    "StaticTransformBroadcaster",
+    "TimeoutException",
+    "TransformBroadcaster",
+    "TransformException",
+    "TransformListener",
+    "TransformRegistration",
+    "TypeException",
+    "convert",
+]
