@@ -61,7 +61,7 @@ def other_distribution(ros_distro: str, type_hashes: Iterable[str]) -> str | Non
 
     In a network with both, a context hears its own.
     """
-    found = {one == NO_TYPE_HASH for one in type_hashes}
-    if found == {ros_distro != "humble"}:
+    hashless = {hash_ == NO_TYPE_HASH for hash_ in type_hashes}
+    if hashless == {ros_distro != "humble"}:
         return HUMBLE_ALONE if ros_distro == "humble" else HUMBLE_HERE
     return None

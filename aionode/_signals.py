@@ -50,10 +50,10 @@ def signals_to(stop: Callable[[], object]) -> Iterator[None]:
 
 def ending_signals() -> list[signal.Signals]:
     """Return which signals end a program."""
-    found = [signal.SIGINT, signal.SIGTERM]
+    numbers = [signal.SIGINT, signal.SIGTERM]
     if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_DFL:
-        found.append(signal.SIGHUP)
-    return found
+        numbers.append(signal.SIGHUP)
+    return numbers
 
 
 class EndHandler:
@@ -128,9 +128,9 @@ class SuddenEnd:
 
     def begin(self, handler: EndHandler, frame: FrameType | None) -> None:
         """Begin, called by `handler`, which is not needed any more."""
-        for each in signal.valid_signals():
-            if signal.getsignal(each) is handler:
-                signal.signal(each, signal.SIG_IGN)  # a third one has nothing to add
+        for number in signal.valid_signals():
+            if signal.getsignal(number) is handler:
+                signal.signal(number, signal.SIG_IGN)  # a third one has nothing to add
         signal.signal(self._number, self._on_signal)
         start_thread(self._leave_in_time)
         self._on_signal(self._number, frame)

@@ -37,12 +37,12 @@ def standard() -> set[int]:
 
     One that was closed when the process started may have become a file or socket of the program.
     """
-    found = set()
+    descriptors = set()
     for stream in (sys.__stdout__, sys.__stderr__):
         if stream is not None:
             with suppress(OSError, ValueError):  # it was closed meanwhile, or replaced
-                found.add(stream.fileno())
-    return found
+                descriptors.add(stream.fileno())
+    return descriptors
 
 
 def accepts(descriptor: int) -> bool:

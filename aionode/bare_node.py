@@ -275,7 +275,9 @@ class BareNode:
         self._endpoints: dict[BareEndpoint, None] = {}
         self._destroyed = False
         context._add_node(self)
-        self._registrations = self.context._register(lambda one: one.create_node(self.info))
+        self._registrations = self.context._register(
+            lambda transport: transport.create_node(self.info)
+        )
         context.graph.add_node(self.info)
 
     def create_publisher(self, msg_type: Any, topic: str, profile: QoSProfile) -> BarePublisher:
@@ -285,7 +287,9 @@ class BareNode:
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
         endpoint = self._describe(EndpointKind.PUBLISHER, topic, msg_type, profile)
-        writers = self.context._register(lambda one: one.create_writer(endpoint, msg_type))
+        writers = self.context._register(
+            lambda transport: transport.create_writer(endpoint, msg_type)
+        )
         return self._add(BarePublisher(self, endpoint, writers))
 
     def create_subscription(
@@ -302,7 +306,7 @@ class BareNode:
             EndpointKind.SUBSCRIPTION, topic, msg_type, profile
         )
         registrations = self.context._register(
-            lambda one: one.create_reader(endpoint, msg_type, reader)
+            lambda transport: transport.create_reader(endpoint, msg_type, reader)
         )
         return self._add(BareEndpoint(self, endpoint, registrations))
 
@@ -316,7 +320,7 @@ class BareNode:
         """
         endpoint = self._describe(EndpointKind.SERVER, service, srv_type, profile)
         registrations = self.context._register(
-            lambda one: one.create_server(endpoint, srv_type, serve)
+            lambda transport: transport.create_server(endpoint, srv_type, serve)
         )
         return self._add(BareEndpoint(self, endpoint, registrations))
 
@@ -327,7 +331,9 @@ class BareNode:
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
         endpoint = self._describe(EndpointKind.CLIENT, service, srv_type, profile)
-        requesters = self.context._register(lambda one: one.create_requester(endpoint, srv_type))
+        requesters = self.context._register(
+            lambda transport: transport.create_requester(endpoint, srv_type)
+        )
         return self._add(BareClient(self, endpoint, requesters))
 
     def destroy_node(self) -> None:
@@ -354,7 +360,9 @@ class BareNode:
             raise EntityDestroyedError(
                 f"node {self.info.fully_qualified_name}", f"create {kind.value}"
             )
-        others = [each.qos for each in self.context.graph.endpoints(kind.opposite, name=name)]
+        others = [
+            endpoint.qos for endpoint in self.context.graph.endpoints(kind.opposite, name=name)
+        ]
         if kind is EndpointKind.PUBLISHER:
             profile = qos.best_available_for_publisher(profile, others)
         elif kind is EndpointKind.SUBSCRIPTION:

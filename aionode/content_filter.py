@@ -141,7 +141,7 @@ def tokens_of(expression: str) -> list[Token]:
     Raises:
         ContentFilterError: something is not a token of the grammar.
     """
-    found = []
+    tokens = []
     position = 0
     end = len(expression.rstrip())
     while position < end:
@@ -155,9 +155,9 @@ def tokens_of(expression: str) -> list[Token]:
         text = match.group(kind)
         if kind == "name" and text.lower() in WORDS:
             kind, text = "word", text.lower()
-        found.append(Token(kind, text, match.start(str(match.lastgroup))))
+        tokens.append(Token(kind, text, match.start(str(match.lastgroup))))
         position = match.end()
-    return [*found, Token("end", "the end", end)]
+    return [*tokens, Token("end", "the end", end)]
 
 
 class Parser:
@@ -332,10 +332,10 @@ class Parser:
             return self._field(token)
         if token.kind == "parameter":
             return self._parameter(token)
-        found = literal(token)
-        if found is None:
+        operand = literal(token)
+        if operand is None:
             self._fail(f"expected a field or a literal, got {token.text}", token)
-        return found  # type: ignore[return-value]  # _fail raises
+        return operand  # type: ignore[return-value]  # _fail raises
 
     def _parameter(self, token: Token) -> Operand:
         index = int(token.text[1:])
@@ -348,55 +348,55 @@ class Parser:
             first, *rest = tokens_of(text)
         except ContentFilterError:
             first, rest = Token("end", "", 0), []
-        found = literal(first) if len(rest) == 1 else None
-        if found is None:
+        operand = literal(first) if len(rest) == 1 else None
+        if operand is None:
             self._fail(
                 f"{token.text} is {text!r}, no literal; write a number, TRUE, FALSE or \"'text'\"",
                 token,
             )
-        return found  # type: ignore[return-value]  # _fail raises
+        return operand  # type: ignore[return-value]  # _fail raises
 
     def _field(self, token: Token) -> Operand:
         cls: type[Message] | None = self._msg_type
         names: list[str | int] = []
-        found: FieldType | None = None
+        type_: FieldType | None = None
         for part in re.findall(r"\w+|\[\d+\]", token.text):
             if part.startswith("["):
-                found = self._element(token, found, part)
+                type_ = self._element(token, type_, part)
                 names.append(int(part[1:-1]))
                 continue
-            if cls is None or (found is not None and found.container != "single"):
+            if cls is None or (type_ is not None and type_.container != "single"):
                 self._fail(f"{token.text}: {names[-1]} has no fields", token)
                 break
-            found = next((one.type for one in fields(cls) if one.name == part), None)
-            if found is None:
-                known = ", ".join(one.name for one in fields(cls))
+            type_ = next((field.type for field in fields(cls) if field.name == part), None)
+            if type_ is None:
+                known = ", ".join(field.name for field in fields(cls))
                 self._fail(f"{type_name(cls)} has no field {part!r}; it has: {known}", token)
                 break
             names.append(part)
-            cls = found.nested
-        assert found is not None  # noqa: S101  # a name has at least one part
-        if found.container != "single" or found.nested is not None:
-            self._fail(f"{token.text} is {found}; name a number, a string or a bool in it", token)
+            cls = type_.nested
+        assert type_ is not None  # noqa: S101  # a name has at least one part
+        if type_.container != "single" or type_.nested is not None:
+            self._fail(f"{token.text} is {type_}; name a number, a string or a bool in it", token)
         get = getter(names)
-        if found.kind == "byte" and isinstance(names[-1], str):  # bytes of length 1
+        if type_.kind == "byte" and isinstance(names[-1], str):  # bytes of length 1
             return Operand("number", lambda msg: get(msg)[0], token.text, is_field=True)
-        return Operand(kind_of(found), get, token.text, is_field=True)
+        return Operand(kind_of(type_), get, token.text, is_field=True)
 
-    def _element(self, token: Token, found: FieldType | None, part: str) -> FieldType:
-        if found is None or found.container == "single":
+    def _element(self, token: Token, type_: FieldType | None, part: str) -> FieldType:
+        if type_ is None or type_.container == "single":
             self._fail(f"{token.text}: only arrays and sequences have {part}", token)
-        assert found is not None  # noqa: S101  # _fail raises
-        if found.container == "array" and int(part[1:-1]) >= found.size:
-            self._fail(f"{token.text}: the array has {found.size} elements", token)
-        return found.element
+        assert type_ is not None  # noqa: S101  # _fail raises
+        if type_.container == "array" and int(part[1:-1]) >= type_.size:
+            self._fail(f"{token.text}: the array has {type_.size} elements", token)
+        return type_.element
 
 
-def kind_of(found: FieldType) -> str:
+def kind_of(type_: FieldType) -> str:
     """Return the kind of values that a field can be compared with."""
-    if found.kind in {"string", "wstring"}:
+    if type_.kind in {"string", "wstring"}:
         return "text"
-    return "truth" if found.kind == "bool" else "number"
+    return "truth" if type_.kind == "bool" else "number"
 
 
 def literal(token: Token) -> Operand | None:
@@ -500,8 +500,8 @@ class LikePiece:
 
     def __init__(self, piece: str) -> None:
         self.length = len(piece)
-        self._literals = [(one.start(), one[0]) for one in re.finditer("[^_]+", piece)]
-        self._longest = max(self._literals, key=lambda one: len(one[1]), default=(0, ""))
+        self._literals = [(match.start(), match[0]) for match in re.finditer("[^_]+", piece)]
+        self._longest = max(self._literals, key=lambda literal: len(literal[1]), default=(0, ""))
         several = len(self._literals) > 1
         self.work_per_character = self.length if several else min(self.length, NAIVE_LENGTH)
 

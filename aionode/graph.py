@@ -151,13 +151,14 @@ class EndpointInfo:
             return different  # services neither offer nor request QoS
         is_publisher = self.kind is EndpointKind.PUBLISHER
         publisher, subscription = (self, other) if is_publisher else (other, self)
-        found = qos.incompatibilities(publisher.qos, subscription.qos)
+        refusals = qos.incompatibilities(publisher.qos, subscription.qos)
         if publisher.node.bridged or subscription.node.bridged:
             refused = subscription.node.bridged and not publisher.node.bridged
-            found = [one for one in found if refused and one.kind is qos.QoSPolicyKind.DURABILITY]
-        if not found:
+            durability = qos.QoSPolicyKind.DURABILITY
+            refusals = [entry for entry in refusals if refused and entry.kind is durability]
+        if not refusals:
             return None
-        return Mismatch("qos", "; ".join(one.reason for one in found), found[-1].kind)
+        return Mismatch("qos", "; ".join(entry.reason for entry in refusals), refusals[-1].kind)
 
     def _compare_types(self, other: EndpointInfo) -> Mismatch | None:
         if self.type_name != other.type_name:
@@ -183,8 +184,8 @@ class EndpointInfo:
         Between contexts only the types count over rmw_zenoh, which delivers whatever the QoS is;
         over DDS the QoS counts as well.
         """
-        found = self.compare(other) if self.needs_qos(other) else self._compare_types(other)
-        return None if found is None else found.reason
+        mismatch = self.compare(other) if self.needs_qos(other) else self._compare_types(other)
+        return None if mismatch is None else mismatch.reason
 
     def needs_qos(self, other: EndpointInfo) -> bool:
         """Return whether the QoS of both has to fit."""
@@ -415,13 +416,13 @@ class Graph:
     ) -> list[EndpointInfo]:
         """Return the endpoints of these kinds (by default all), this name, and this node."""
         kinds = kinds or tuple(EndpointKind)
-        found: Iterable[EndpointInfo]
+        candidates: Iterable[EndpointInfo]
         if name is not None:
-            found = (e for kind in kinds for e in self._by_name.get((kind, name), ()))
+            candidates = (e for kind in kinds for e in self._by_name.get((kind, name), ()))
         else:
-            found = self._by_node.get(node, ()) if node is not None else self._endpoints
-            found = (e for e in found if e.kind in kinds)
-        return [e for e in found if node is None or e.node == node]
+            candidates = self._by_node.get(node, ()) if node is not None else self._endpoints
+            candidates = (e for e in candidates if e.kind in kinds)
+        return [e for e in candidates if node is None or e.node == node]
 
     def own(self) -> list[EndpointInfo]:
         """Return the endpoints of this context."""

@@ -63,12 +63,12 @@ def encoding_of(encoding: str) -> tuple[np.dtype[Any], int]:
     Raises:
         MessageError: the encoding is unknown (a ValueError).
     """
-    if found := re.fullmatch(r"(mono|rgba?|bgra?)(8|16)", encoding):
-        return np.dtype(f"uint{found[2]}"), len(COLORS[found[1]])
-    if found := re.fullmatch(r"(8U|8S|16U|16S|32S|32F|64F)(?:C([1-9]\d*))?", encoding):
-        return np.dtype(OPENCV_TYPES[found[1]]), int(found[2] or 1)
-    if found := re.fullmatch(r"bayer_(?:rggb|bggr|gbrg|grbg)(8|16)", encoding):
-        return np.dtype(f"uint{found[1]}"), 1
+    if match := re.fullmatch(r"(mono|rgba?|bgra?)(8|16)", encoding):
+        return np.dtype(f"uint{match[2]}"), len(COLORS[match[1]])
+    if match := re.fullmatch(r"(8U|8S|16U|16S|32S|32F|64F)(?:C([1-9]\d*))?", encoding):
+        return np.dtype(OPENCV_TYPES[match[1]]), int(match[2] or 1)
+    if match := re.fullmatch(r"bayer_(?:rggb|bggr|gbrg|grbg)(8|16)", encoding):
+        return np.dtype(f"uint{match[1]}"), 1
     if encoding in YUV:
         return np.dtype(np.uint8), 2
     raise MessageError(
@@ -80,8 +80,8 @@ def encoding_of(encoding: str) -> tuple[np.dtype[Any], int]:
 
 def colors_of(encoding: str) -> str:
     """Return the letters of the channels, such as ``bgr``; empty if they are not colours."""
-    found = re.fullmatch(r"(mono|rgba?|bgra?)(8|16)", encoding)
-    return COLORS[found[1]] if found else ""
+    match = re.fullmatch(r"(mono|rgba?|bgra?)(8|16)", encoding)
+    return COLORS[match[1]] if match else ""
 
 
 # numpy
@@ -153,7 +153,9 @@ def converted(pixels: npt.NDArray[Any], encoding: str, desired: str) -> npt.NDAr
             "here, and the number of bits stays; take passthrough and convert with OpenCV or numpy"
         )
     if want == "m":
-        red, green, blue = (pixels[..., have.index(each)].astype(np.float32) for each in "rgb")
+        red, green, blue = (
+            pixels[..., have.index(channel)].astype(np.float32) for channel in "rgb"
+        )
         return np.asarray(np.round(0.299 * red + 0.587 * green + 0.114 * blue).astype(dtype))
     if have == "m":
         colors = np.repeat(pixels[..., np.newaxis], 3, axis=2)
@@ -258,10 +260,10 @@ def to_pil(image: Image) -> PILImage:
             "use to_numpy, which takes all, and PIL.Image.fromarray"
         )
     native = np.ascontiguousarray(pixels, pixels.dtype.newbyteorder("="))
-    made: PILImage = pillow().frombuffer(
+    picture: PILImage = pillow().frombuffer(
         mode, (image.width, image.height), native.tobytes(), "raw", mode, 0, 1
     )
-    return made
+    return picture
 
 
 def from_pil(picture: PILImage, header: Header | None = None) -> Image:

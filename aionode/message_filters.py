@@ -122,8 +122,8 @@ class ApproximateMatcher(Matcher):
             candidates.append(
                 [stamp_ns] if other == index else sorted(near, key=lambda s: abs(s - stamp_ns))
             )
-        found = next(self._combinations(candidates, []), None)
-        return [] if found is None else [found]
+        combination = next(self._combinations(candidates, []), None)
+        return [] if combination is None else [combination]
 
     def _combinations(self, candidates: list[list[int]], chosen: list[int]) -> Iterator[list[int]]:
         """Yield one stamp of each input, closest to the arrival first, where all are near enough.
@@ -270,13 +270,15 @@ class Cache(SimpleFilter):
 
     def getElemAfterTime(self, stamp: Time) -> Any:  # noqa: N802  # ROS 2's name
         """Return the first message at or after a stamp, or None."""
-        found = (msg for at, msg in self._entries if at.nanoseconds >= stamp.nanoseconds)
-        return next(found, None)
+        later = (msg for at, msg in self._entries if at.nanoseconds >= stamp.nanoseconds)
+        return next(later, None)
 
     def getElemBeforeTime(self, stamp: Time) -> Any:  # noqa: N802  # ROS 2's name
         """Return the last message at or before a stamp, or None."""
-        found = (msg for at, msg in reversed(self._entries) if at.nanoseconds <= stamp.nanoseconds)
-        return next(found, None)
+        earlier = (
+            msg for at, msg in reversed(self._entries) if at.nanoseconds <= stamp.nanoseconds
+        )
+        return next(earlier, None)
 
     def getLastestTime(self) -> Time | None:  # noqa: N802  # ROS 2's name, and its spelling
         """Return the stamp of the last message, or None."""
@@ -438,7 +440,10 @@ class Synchronized:
         """Wait for the next message of any subscription."""
         try:
             async with asyncio.TaskGroup() as group:
-                receiving = [group.create_task(one.receive()) for one in self._subscriptions]
+                receiving = [
+                    group.create_task(subscription.receive())
+                    for subscription in self._subscriptions
+                ]
                 try:
                     await asyncio.wait(receiving, return_when=asyncio.FIRST_COMPLETED)
                 finally:

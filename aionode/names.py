@@ -184,8 +184,8 @@ def token_problem(name: str) -> Problem | None:
             "topic name must not have a tilde '~' that is not followed by a forward slash '/'",
             1,
         )
-    if found := re.search("/(?=[0-9])", name):
-        return "topic name token must not start with a number", found.end()
+    if match := re.search("/(?=[0-9])", name):
+        return "topic name token must not start with a number", match.end()
     return None
 
 
@@ -200,13 +200,13 @@ def full_name_problem(
     if name[-1] == "/":
         unless = ", unless only a '/'" if what == "namespace" else ""
         return f"{what} must not end with a '/'{unless}", len(name) - 1
-    if found := re.search("[^A-Za-z0-9_/]", name):
+    if match := re.search("[^A-Za-z0-9_/]", name):
         return (
             f"{what} must not contain characters other than alphanumerics, '_', or '/'",
-            found.start(),
+            match.start(),
         )
-    if found := re.search("/(?=[/0-9])", name):
-        index = found.end()
+    if match := re.search("/(?=[/0-9])", name):
+        index = match.end()
         if name[index] == "/":
             return f"{what} must not contain repeated '/'", index
         return f"{what} must not have a token that starts with a number", index
@@ -220,10 +220,10 @@ def node_name_problem(name: str) -> Problem | None:
     """Return which rule of rmw a node name breaks, or None."""
     if not name:
         return "node name must not be empty", 0
-    if found := re.search("[^A-Za-z0-9_]", name):
+    if match := re.search("[^A-Za-z0-9_]", name):
         return (
             "node name must not contain characters other than alphanumerics or '_'",
-            found.start(),
+            match.start(),
         )
     if is_digit(name[0]):
         return "node name must not start with a number", 0
@@ -272,11 +272,11 @@ def expand(name: str, node_name: str, namespace: str, *, is_service: bool = Fals
     validate_namespace(namespace)
     substitutions = {"{node}": node_name, "{ns}": namespace, "{namespace}": namespace}
 
-    def fill_in(found: re.Match[str]) -> str:
-        value = substitutions.get(found[0])
+    def fill_in(match: re.Match[str]) -> str:
+        value = substitutions.get(match[0])
         if value is None:
-            problem = f"unknown substitution: {found[0]}"
-            raise name_error(name, (problem, found.start()), is_service=is_service)
+            problem = f"unknown substitution: {match[0]}"
+            raise name_error(name, (problem, match.start()), is_service=is_service)
         return value
 
     expanded = re.sub(r"\{[^}]*\}", fill_in, name)
@@ -434,11 +434,11 @@ class RemapRule:
 
     def new_name(self, name: str, node_name: str, namespace: str) -> str | None:
         """Return what the absolute `name` becomes, or None if the rule does not match it."""
-        found = match_pattern(self.match, node_name, namespace).fullmatch(name)
-        if found is None:
+        match = match_pattern(self.match, node_name, namespace).fullmatch(name)
+        if match is None:
             return None
         new = self.replacement
-        for number, captured in enumerate(found.groups(), start=1):
+        for number, captured in enumerate(match.groups(), start=1):
             new = new.replace(f"\\{number}", captured)
         # `**` in front captures "/a/b" or nothing, so slashes may meet or end the name.
         new = re.sub("/+", "/", new).rstrip("/")

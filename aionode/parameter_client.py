@@ -158,8 +158,8 @@ class AsyncParameterClient:
         Raises:
             ParameterFileError: the file cannot be read, or has no parameters for the node.
         """
-        found = parameter_dict_from_yaml_file(path, use_wildcard, [self.remote_node_name])
-        response = await self._set.call(SetParameters.Request(parameters=list(found.values())))
+        parameters = parameter_dict_from_yaml_file(path, use_wildcard, [self.remote_node_name])
+        response = await self._set.call(SetParameters.Request(parameters=list(parameters.values())))
         results: list[SetParametersResult] = response.results
         return results
 

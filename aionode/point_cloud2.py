@@ -84,11 +84,11 @@ def dtype_from_fields(
             raise MessageError(
                 f"{path}.datatype", f"{field.datatype} is unknown; a constant of PointField fits"
             )
-        one = np.dtype(order + DTYPES[field.datatype])
-        formats.append(one if field.count <= 1 else (one, (field.count,)))
+        dtype = np.dtype(order + DTYPES[field.datatype])
+        formats.append(dtype if field.count <= 1 else (dtype, (field.count,)))
         names.append(name)
         offsets.append(field.offset)
-        end = max(end, field.offset + one.itemsize * max(1, field.count))
+        end = max(end, field.offset + dtype.itemsize * max(1, field.count))
     if point_step is not None and end > point_step:
         raise MessageError(
             f"{SUBJECT}.point_step", f"{point_step}, but its fields need {end} bytes"
@@ -109,16 +109,16 @@ def fields_from_dtype(dtype: npt.DTypeLike) -> list[PointField]:
         raise TypeError(
             f"{dtype}: no structured type; give one such as [('x', 'f4'), ('y', 'f4'), ('z', 'f4')]"
         )
-    made = []
+    fields = []
     for name in dtype.names:
         part, offset = dtype.fields[name][:2]  # type: ignore[index]  # a type with names has fields
         kind = part.base.str[1:]
         if kind not in DATATYPES:
-            fitting = ", ".join(np.dtype(each).name for each in DATATYPES)
+            fitting = ", ".join(np.dtype(known_dtype).name for known_dtype in DATATYPES)
             raise TypeError(f"{name}: {part.base.name} is no type of a PointField; {fitting} fit")
         count = int(np.prod(part.shape, dtype=int))
-        made.append(PointField(name=name, offset=offset, datatype=DATATYPES[kind], count=count))
-    return made
+        fields.append(PointField(name=name, offset=offset, datatype=DATATYPES[kind], count=count))
+    return fields
 
 
 # Reading
@@ -207,15 +207,15 @@ def numbers_of(uvs: Iterable[Any], width: int) -> npt.NDArray[Any]:
 
 def has_nan(points: npt.NDArray[Any]) -> npt.NDArray[np.bool_]:
     """Return for each point whether any of its numbers is NaN."""
-    found = np.zeros(points.shape, bool)
+    has_nan = np.zeros(points.shape, bool)
     for name in points.dtype.names or ():
         values = points[name]
         if values.dtype.kind == "f":
             missing = np.isnan(values)
-            found |= (
+            has_nan |= (
                 missing if missing.ndim == 1 else missing.any(axis=tuple(range(1, values.ndim)))
             )
-    return found
+    return has_nan
 
 
 def read_points_numpy(
@@ -329,10 +329,10 @@ def arranged(points: Any, dtype: np.dtype[Any]) -> npt.NDArray[Any]:
                 f"create_cloud: the points have no {missing[0]!r}; they have "
                 f"{', '.join(points.dtype.names)}"
             )
-        made = np.zeros(points.shape, dtype)
+        filled = np.zeros(points.shape, dtype)
         for name in names:
-            made[name] = points[name]
-        return made
+            filled[name] = points[name]
+        return filled
     array = np.asarray(points if isinstance(points, np.ndarray) else list(points))
     columns = sum(math.prod(dtype[name].shape) for name in names)
     if array.size == 0:

@@ -210,12 +210,12 @@ async def _until_stopped(nodes: Sequence[Runnable], stop: Stop, freeze: Freeze) 
 
 
 def _coroutine_of(node: Runnable) -> Coroutine[Any, Any, None]:
-    made = node if isinstance(node, Node) else node()
-    if isinstance(made, Node):
-        return _run_node(made)
-    if inspect.iscoroutine(made):
-        return made
-    raise TypeError(f"run: {node!r} returned {made!r}, which is neither a node nor a coroutine")
+    work = node if isinstance(node, Node) else node()
+    if isinstance(work, Node):
+        return _run_node(work)
+    if inspect.iscoroutine(work):
+        return work
+    raise TypeError(f"run: {node!r} returned {work!r}, which is neither a node nor a coroutine")
 
 
 async def _run_node(node: Node) -> None:
@@ -278,18 +278,18 @@ def failure_text(error: BaseException) -> str:
 
 def circumstances(error: AionodeError) -> list[str]:
     """Return where `error` came from: the entity, the node, and the line of the user's program."""
-    found = list(getattr(error, "__notes__", ()))
+    lines = list(getattr(error, "__notes__", ()))
     place = None
     for frame, line in traceback.walk_tb(error.__traceback__):
         if is_of_user(frame):
             place = (frame, line)
         owner = frame.f_locals.get("self")
         # A node whose name was rejected has no `_info`.
-        if isinstance(owner, Node) and not found and hasattr(owner, "_info"):
-            found.append(f"in node {owner.get_fully_qualified_name()}")
+        if isinstance(owner, Node) and not lines and hasattr(owner, "_info"):
+            lines.append(f"in node {owner.get_fully_qualified_name()}")
     if place is not None:
         (summary,) = traceback.StackSummary.extract(iter([place]))
         location = f'File "{summary.filename}", line {summary.lineno}, in {summary.name}'
-        found.append(f"{location}: {summary.line}" if summary.line else location)
-        found.append(f"({TRACEBACK_VARIABLE}=1 shows the whole traceback)")
-    return found
+        lines.append(f"{location}: {summary.line}" if summary.line else location)
+        lines.append(f"({TRACEBACK_VARIABLE}=1 shows the whole traceback)")
+    return lines

@@ -244,7 +244,7 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
 
     def _caveat(self) -> str:
         """Return why the matched servers may not answer, if a transport knows."""
-        return next((caveat for one in self._requesters if (caveat := one.caveat)), "")
+        return next((caveat for requester in self._requesters if (caveat := requester.caveat)), "")
 
     def _tell_caveat(self) -> None:
         """Log once why the matched servers may not answer, if a transport knows."""

@@ -73,17 +73,17 @@ class Distribution:
         if not durations_ns:
             return
         ordered = sorted(durations_ns)
-        found: dict[int, int] = {}
+        counts: dict[int, int] = {}
         begin, end = 0, len(ordered)
         while begin < end:
             shifted = ordered[begin] + _OFFSET
             octave = shifted.bit_length() - _SUB_BUCKETS_LOG2 - 1
             bucket = (octave << _SUB_BUCKETS_LOG2) + (shifted >> octave)
             following = bisect_left(ordered, _start_ns(bucket + 1), begin)
-            found[bucket] = following - begin
+            counts[bucket] = following - begin
             begin = following
         for one in (self, *others):
-            one._merge(found, ordered[-1])
+            one._merge(counts, ordered[-1])
 
     def _merge(self, buckets: dict[int, int], longest_ns: int) -> None:
         """Add buckets that were counted elsewhere."""

@@ -77,7 +77,7 @@ def escaped(text: str) -> str:
     """
     if UNSHOWN.search(text) is None:
         return text
-    return UNSHOWN.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
+    return UNSHOWN.sub(lambda match: match[0].encode("unicode_escape").decode(), text)
 
 
 def brief(value: object) -> str:

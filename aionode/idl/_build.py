@@ -73,9 +73,9 @@ class Builder:
         """
         if typename not in self.built:
             self.open.append(typename)
-            made = self.make(self.texts[typename])
+            built = self.make(self.texts[typename])
             self.open.pop()
-            self.built[typename] = (self.reuse and existing(typename, made)) or made
+            self.built[typename] = (self.reuse and existing(typename, built)) or built
         return self.built[typename]
 
     def make(self, text: InterfaceText) -> type[Interface]:
@@ -139,11 +139,11 @@ class Builder:
         if typename in self.open:
             raise RecursionError
         if typename in self.texts:
-            found = self.build(typename)
+            cls = self.build(typename)
         else:
-            found = self.built.get(typename) or get_interface(typename)
-        assert issubclass(found, Message)  # noqa: S101 (the name says msg)
-        return found
+            cls = self.built.get(typename) or get_interface(typename)
+        assert issubclass(cls, Message)  # noqa: S101 (the name says msg)
+        return cls
 
 
 def full_name(type_: TypeText, package: str) -> str:
@@ -157,17 +157,17 @@ def doc(text: InterfaceText, name: str) -> dict[str, str]:
     return {"__doc__": text.parts[0].comment or f"{name}, as in {text.typename}."}
 
 
-def existing(typename: str, made: type[Interface]) -> type[Interface] | None:
+def existing(typename: str, built: type[Interface]) -> type[Interface] | None:
     """Return the class of this name in aionode.interfaces, if its definition is the same.
 
     So a workspace with its own std_msgs can be used together with the shipped one.
     """
     try:
-        found: type[Interface] = get_interface(typename)
+        known: type[Interface] = get_interface(typename)
     except InterfaceNotFoundError:
         return None
     halves = HALVES[split_type_name(typename)[1]]
-    pairs: Any = ((getattr(made, h), getattr(found, h)) if h else (made, found) for h in halves)
+    pairs: Any = ((getattr(built, h), getattr(known, h)) if h else (built, known) for h in halves)
     if all(fields(a) == fields(b) and constants(a) == constants(b) for a, b in pairs):
-        return found
+        return known
     return None

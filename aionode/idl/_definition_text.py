@@ -62,15 +62,17 @@ def definition_text(
     messages = [cls] if issubclass(cls, Message) else [getattr(cls, half) for half in HALVES[kind]]
     parts = source_parts(cls) if comments != "none" else None
     if parts is None:
-        found = [lines(message, package, nested=nested, comments=comments) for message in messages]
+        sections = [
+            lines(message, package, nested=nested, comments=comments) for message in messages
+        ]
         if cls not in messages and comments != "none":
-            found[0] = itertools.chain(summary(cls), found[0])
+            sections[0] = itertools.chain(summary(cls), sections[0])
     else:
-        found = [
+        sections = [
             source_lines(part, message, nested=nested, comments=comments)
             for part, message in zip(parts, messages, strict=True)
         ]
-    return "---\n".join("".join(f"{line}\n" for line in part) for part in found)
+    return "---\n".join("".join(f"{line}\n" for line in part) for part in sections)
 
 
 def lines(
@@ -117,11 +119,11 @@ def nested_lines(field: Field, comments: Comments) -> Iterator[str]:
     inner: Comments = "all" if comments == "all" else "none"
     parts = source_parts(cls) if inner == "all" else None
     if parts is not None:
-        found = source_lines(parts[0], cls, nested=True, comments=inner)
+        nested_lines = source_lines(parts[0], cls, nested=True, comments=inner)
     else:
         package = split_type_name(type_name(cls))[0]
-        found = lines(cls, package, nested=True, comments=inner)
-    for line in found:
+        nested_lines = lines(cls, package, nested=True, comments=inner)
+    for line in nested_lines:
         yield f"\t{line}" if line else ""
 
 

@@ -128,8 +128,8 @@ def package_of(file: Path) -> str:
     manifest = folder / "package.xml"
     name = folder.name
     if manifest.is_file():
-        found = re.search(r"<name>\s*([^<\s]+)\s*</name>", manifest.read_text(errors="replace"))
-        name = found[1] if found else name
+        match = re.search(r"<name>\s*([^<\s]+)\s*</name>", manifest.read_text(errors="replace"))
+        name = match[1] if match else name
     if not PACKAGE_NAME.fullmatch(name):
         problem = f"{name!r} is not a valid package name; use lower-case letters, digits and _"
         raise IdlError(str(file), 0, 0, problem)

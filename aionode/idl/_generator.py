@@ -102,18 +102,18 @@ def docstrings(file: Path) -> dict[tuple[str, ...], str]:
     """Return the docstrings of a module and its classes, by qualified name in parts."""
     if not file.is_file():
         return {}
-    found: dict[tuple[str, ...], str] = {}
+    texts: dict[tuple[str, ...], str] = {}
 
     def collect(node: ast.Module | ast.ClassDef, names: tuple[str, ...]) -> None:
         text = ast.get_docstring(node)
         if text:
-            found[names] = text
+            texts[names] = text
         for inner in node.body:
             if isinstance(inner, ast.ClassDef):
                 collect(inner, (*names, inner.name))
 
     collect(ast.parse(file.read_text(encoding="utf-8")), ())
-    return found
+    return texts
 
 
 class Module:
@@ -216,16 +216,16 @@ class Module:
 
     def annotation(self, type_: FieldType, *, plain: bool) -> str:
         """Return the annotation of a field; `plain` omits the part for type checkers."""
-        one = self.one(type_)
+        element = self.one(type_)
         if type_.container == "single":
-            return one
+            return element
         holder = self.helper("Array" if type_.container == "array" else "Sequence")
         size = f", {type_.size}" if type_.size else ""
-        exact = f"{holder}[{one}{size}]"
+        exact = f"{holder}[{element}{size}]"
         if plain:
             return exact
         if type_.form == "list":
-            seen = f"list[{one if type_.nested else self.builtin('str')}]"
+            seen = f"list[{element if type_.nested else self.builtin('str')}]"
         else:
             seen = self.helper(
                 "Bytes" if type_.form == "bytes" else NUMBERS.get(type_.kind, "Ints")

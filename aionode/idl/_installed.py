@@ -78,19 +78,19 @@ def installed_text(typename: str) -> str | None:
 
 def installed_names(package: str, kind: str) -> Iterator[str]:
     """Yield the ROS names of the types of one kind in a package of the sourced ROS 2."""
-    found = {
+    names = {
         file.stem
         for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
         if prefix
         for file in Path(prefix, "share", package, kind).glob(f"*.{kind}")
         if TYPE_NAME.fullmatch(file.stem)
     }
-    found.update(
+    names.update(
         typename.rpartition("/")[2]
         for typename in DIFFERENCES.get(os.environ.get("ROS_DISTRO", ""), {})
         if typename.startswith(f"{package}/{kind}/")
     )
-    return (f"{package}/{kind}/{name}" for name in sorted(found))
+    return (f"{package}/{kind}/{name}" for name in sorted(names))
 
 
 class InstalledTexts(Mapping[str, InterfaceText]):
@@ -145,7 +145,7 @@ def replaced_types(package: str, kind: str, shipped: Mapping[str, Any]) -> dict[
     a program from the rest of its package.
     """
     builder = Builder(texts := InstalledTexts(package, kind), reuse=True)
-    found: dict[str, type[Any]] = {}
+    classes: dict[str, type[Any]] = {}
     for typename in texts:
         name = split_type_name(typename)[2]
         try:
@@ -155,5 +155,5 @@ def replaced_types(package: str, kind: str, shipped: Mapping[str, Any]) -> dict[
             warnings.warn(text, RuntimeWarning, stacklevel=2)
             continue
         if shipped.get(name) is not cls:
-            found[name] = cls
-    return found
+            classes[name] = cls
+    return classes

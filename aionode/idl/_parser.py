@@ -205,7 +205,7 @@ def written_value(type_: TypeText, line: str, at: int, name: str, *, constant: b
         text = unescaped(without_comment(line[at:]))
         if not text and not constant:
             return None
-        found: object = text
+        value: object = text
     else:
         text = without_comment(line[at:])
         if not text:
@@ -214,21 +214,25 @@ def written_value(type_: TypeText, line: str, at: int, name: str, *, constant: b
             return None
         if type_.name not in PRIMITIVES:
             raise LineError(at, f"a nested message cannot have a default; remove {text!r}")
-        found = literal(type_, text, at)
+        value = literal(type_, text, at)
     if constant and type_.container != "single":
         raise LineError(at, "a constant must be a single value, not an array")
-    return checked(type_, found, at)
+    return checked(type_, value, at)
 
 
-def checked(type_: TypeText, found: object, at: int) -> object:
+def checked(type_: TypeText, default: object, at: int) -> object:
     """Return the value converted to the field's type; raise `LineError` if it does not fit."""
     primitive = type_.primitive()
     unit = FieldType("uint8") if type_.name == "byte" else primitive
     try:
-        if isinstance(found, list):
-            fit(FieldType("string", None, None, type_.container, type_.size), [""] * len(found), "")
-            return tuple(fit_element(unit, item, f"[{i}]") for i, item in enumerate(found))
-        value = fit_element(unit, found, "")
+        if isinstance(default, list):
+            fit(
+                FieldType("string", None, None, type_.container, type_.size),
+                [""] * len(default),
+                "",
+            )
+            return tuple(fit_element(unit, item, f"[{i}]") for i, item in enumerate(default))
+        value = fit_element(unit, default, "")
     except MessageError as error:
         where = f"element {error.path}: " if error.path else ""
         raise LineError(at, f"{where}{error.problem}") from None

@@ -329,7 +329,9 @@ class LifecycleNode(Node):
         # The requester ends the running callback with a result of its choice.
         if transition.label == SUCCESS.to_label() or transition.start == ERROR_PROCESSING:
             return False
-        wanted = next(one for one in TransitionCallbackReturn if one.to_label() == transition.label)
+        wanted = next(
+            result for result in TransitionCallbackReturn if result.to_label() == transition.label
+        )
         self._transitions.cancel(wanted)
         await self._transitions.wait_idle()
         return True
@@ -344,5 +346,6 @@ def is_shutdown(label: str, transition_id: int) -> bool:
     if label:
         return label == "shutdown"
     return any(
-        one.label == "shutdown" and one.transition_id == transition_id for one in TRANSITIONS
+        transition.label == "shutdown" and transition.transition_id == transition_id
+        for transition in TRANSITIONS
     )

@@ -133,12 +133,12 @@ class TransitionRunner:
         While a shutdown waits for a transition to end, it is the only one: a caller that tries
         again as soon as a transition fails would otherwise overtake the shutdown.
         """
-        found = self.machine.find(label, transition_id)
-        return found if found and found.label in self._available_labels() else None
+        transition = self.machine.find(label, transition_id)
+        return transition if transition and transition.label in self._available_labels() else None
 
     def _available_labels(self) -> list[str]:
-        labels = [one.label for one in self.machine.available()]
-        return [one for one in labels if one == "shutdown" or not self._shutdowns_waiting]
+        labels = [transition.label for transition in self.machine.available()]
+        return [label for label in labels if label == "shutdown" or not self._shutdowns_waiting]
 
     async def make_way_for_shutdown(self) -> None:
         """Cancel the running callback, if any, as a failure, and wait until the node is idle."""

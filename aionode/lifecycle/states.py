@@ -132,16 +132,16 @@ class StateMachine:
 
     def available(self) -> list[Transition]:
         """Return the transitions that start in the current state."""
-        return [one for one in TRANSITIONS if one.start == self.state]
+        return [transition for transition in TRANSITIONS if transition.start == self.state]
 
     def find(self, label: str = "", transition_id: int = 0) -> Transition | None:
         """Return an available transition, by its label or, if that is empty, by its number.
 
         That is how `rcl_lifecycle` reads a `ChangeState` request.
         """
-        for one in self.available():
-            if (one.label == label) if label else (one.transition_id == transition_id):
-                return one
+        for transition in self.available():
+            if label == transition.label if label else transition_id == transition.transition_id:
+                return transition
         return None
 
     def begin(self, transition: Transition) -> None:

@@ -129,7 +129,7 @@ class LineFormatter(logging.Formatter):
 
     def __init__(self, text: str = DEFAULT_FORMAT) -> None:
         super().__init__()
-        text = re.sub(r"\\[abnrt]", lambda found: ESCAPES[found[0]], text)
+        text = re.sub(r"\\[abnrt]", lambda match: ESCAPES[match[0]], text)
         parts = re.split(r"\{(" + "|".join(TOKENS) + r")\}", text)
         literals, tokens = parts[::2], parts[1::2]
         self._template = "%s".join(literal.replace("%", "%%") for literal in literals)
@@ -199,7 +199,7 @@ def is_shown_elsewhere(record: logging.LogRecord) -> bool:
         if (
             not isinstance(handler, ConsoleHandler)
             and stream is not None
-            and any(stream is one for one in consoles)
+            and any(stream is own_console for own_console in consoles)
             and record.levelno >= handler.level
         ):
             return True

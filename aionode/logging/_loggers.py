@@ -309,8 +309,8 @@ def configure(
     set_up.remove()
     set_up.ready = True
     set_logger_level("", DEFAULT_LEVEL if level is None else level)
-    for name, each in (levels or {}).items():
-        set_logger_level(name, each)
+    for name, logger_level in (levels or {}).items():
+        set_logger_level(name, logger_level)
     root_is_free = whole_process and not logging.getLogger().handlers
     if console:
         set_up.install(ConsoleHandler(settings), ROOT, OWN, *([""] if root_is_free else []))

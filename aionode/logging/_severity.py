@@ -33,4 +33,6 @@ def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
     try:
         return LoggingSeverity[log_severity.upper()]
     except KeyError:
-        raise InvalidLogLevelError(log_severity, [each.name for each in LoggingSeverity]) from None
+        raise InvalidLogLevelError(
+            log_severity, [severity.name for severity in LoggingSeverity]
+        ) from None

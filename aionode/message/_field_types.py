@@ -174,12 +174,16 @@ def contained(
     annotation: object, container: Literal["array", "bounded", "unbounded"], size: object = 0
 ) -> object:
     """Return the annotation of an array or sequence of `annotation`."""
-    one = field_type(annotation)
-    if one.container != "single":
-        msg = f"{one}: ROS has no arrays of arrays; put the inner array into a message of its own"
+    element = field_type(annotation)
+    if element.container != "single":
+        msg = (
+            f"{element}: ROS has no arrays of arrays; put the inner array into a message of its own"
+        )
         raise TypeError(msg)
-    count = 0 if container == "unbounded" else checked_size(one, size)
-    return Annotated[Any, FieldType(one.kind, one.nested, one.string_bound, container, count)]
+    count = 0 if container == "unbounded" else checked_size(element, size)
+    return Annotated[
+        Any, FieldType(element.kind, element.nested, element.string_bound, container, count)
+    ]
 
 
 def checked_size(one: FieldType, size: object) -> int:
@@ -286,9 +290,9 @@ else:
 
         def __class_getitem__(cls, item: tuple[object, int]) -> object:
             """Return the annotation of a field."""
-            one = field_type(item[0])
-            if one.kind not in {"string", "wstring"} or one.container != "single":
-                msg = f"Bounded: only strings have a bound, not {one}"
+            string = field_type(item[0])
+            if string.kind not in {"string", "wstring"} or string.container != "single":
+                msg = f"Bounded: only strings have a bound, not {string}"
                 raise TypeError(msg)
-            bound = checked_size(one, item[1])
-            return Annotated[str, FieldType(one.kind, string_bound=bound)]
+            bound = checked_size(string, item[1])
+            return Annotated[str, FieldType(string.kind, string_bound=bound)]

@@ -105,17 +105,17 @@ class MessageMeta(msgspec.StructMeta):
 
 def annotations_of(namespace: dict[str, Any], frame: FrameType) -> dict[str, Any]:
     """Return the evaluated annotations of a class that is being created in `frame`."""
-    found: dict[str, Any] | None = namespace.get("__annotations__")
-    if found is None and sys.version_info >= (3, 14):  # annotations are created on demand
+    annotations: dict[str, Any] | None = namespace.get("__annotations__")
+    if annotations is None and sys.version_info >= (3, 14):  # annotations are created on demand
         import annotationlib
 
         make = annotationlib.get_annotate_from_class_namespace(namespace)
         if make is not None:
             form = annotationlib.Format.VALUE
-            found = annotationlib.call_annotate_function(make, form)
+            annotations = annotationlib.call_annotate_function(make, form)
     return {
         key: eval(value, frame.f_globals, frame.f_locals) if isinstance(value, str) else value  # noqa: S307 (an annotation in the source of a class)
-        for key, value in (found or {}).items()
+        for key, value in (annotations or {}).items()
     }
 
 

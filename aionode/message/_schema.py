@@ -62,8 +62,10 @@ def schema_of(
     if text:
         schema["description"] = text
     schema["properties"] = {
-        each.name: with_notes(each, described.get(each.name), value_schema(each.type, nested, real))
-        for each in cls.__ros_fields__
+        field.name: with_notes(
+            field, described.get(field.name), value_schema(field.type, nested, real)
+        )
+        for field in cls.__ros_fields__
     }
     schema["additionalProperties"] = False
     return schema
@@ -173,7 +175,7 @@ def pydantic_json_schema(cls: type[Message], handler: GetJsonSchemaHandler) -> S
     def nested(other: type[Message]) -> Schema:
         # The handler creates references only for the items of a list.
         several = handler(core_schema.list_schema(TypeAdapter(other).core_schema))
-        one: Schema = several["items"]
-        return one
+        item: Schema = several["items"]
+        return item
 
     return schema_of(cls, nested, NUMBER_OR_WORD)

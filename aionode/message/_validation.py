@@ -195,13 +195,13 @@ def fit_list(type_: FieldType, value: object, path: str) -> list[str]:
 def fit_bytes(type_: FieldType, value: object, path: str) -> bytes | bytearray | memoryview:
     """Return a bytes-like object; a view of `value` if it is a buffer of single bytes."""
     if isinstance(value, bytes | bytearray):
-        found: bytes | bytearray | memoryview = value
+        data: bytes | bytearray | memoryview = value
     elif isinstance(value, AbstractSequence) and is_listing(value) and not buffered(value):
-        found = b"".join(byte_of(type_, item, f"{path}[{i}]") for i, item in enumerate(value))
+        data = b"".join(byte_of(type_, item, f"{path}[{i}]") for i, item in enumerate(value))
     else:
-        found = bytes_view(value, path)
-    check_length(type_, len(found), path)
-    return found
+        data = bytes_view(value, path)
+    check_length(type_, len(data), path)
+    return data
 
 
 def buffered(value: object) -> bool:
@@ -419,29 +419,31 @@ BYTES_LIKE = bytes | bytearray | memoryview
 SCALARS = frozenset({int, float, str, bool, bytes})
 
 
-def same(one: Any, other: Any) -> bool:
+def same(value: Any, other: Any) -> bool:
     """Return whether two values of a field are equal, whatever types hold them."""
-    kind = one.__class__
+    kind = value.__class__
     if kind in SCALARS and other.__class__ is kind:
-        return bool(one == other)
-    if is_listing(one) and is_listing(other):
-        return len(one) == len(other) and all(map(same, one, other))
-    if isinstance(one, BYTES_LIKE) and isinstance(other, BYTES_LIKE):
-        return one == other
-    if isinstance(one, BYTES_LIKE | list) and isinstance(other, BYTES_LIKE | list):
-        return list(one) == list(other)
-    if hasattr(one, "__array__") or hasattr(other, "__array__"):
-        return same_numbers(one, other)
-    return bool(one == other)
+        return bool(value == other)
+    if is_listing(value) and is_listing(other):
+        return len(value) == len(other) and all(map(same, value, other))
+    if isinstance(value, BYTES_LIKE) and isinstance(other, BYTES_LIKE):
+        return value == other
+    if isinstance(value, BYTES_LIKE | list) and isinstance(other, BYTES_LIKE | list):
+        return list(value) == list(other)
+    if hasattr(value, "__array__") or hasattr(other, "__array__"):
+        return same_numbers(value, other)
+    return bool(value == other)
 
 
-def same_numbers(one: Any, other: Any) -> bool:
+def same_numbers(value: Any, other: Any) -> bool:
     """Return whether two values are equal, at least one of which is an array."""
     import numpy as np  # numpy is imported on first use
 
     if isinstance(other, BYTES_LIKE):
-        one, other = other, one
-    return np.array_equal(np.frombuffer(one, "B") if isinstance(one, BYTES_LIKE) else one, other)
+        value, other = other, value
+    return np.array_equal(
+        np.frombuffer(value, "B") if isinstance(value, BYTES_LIKE) else value, other
+    )
 
 
 def shown(type_: FieldType, value: Any) -> str:

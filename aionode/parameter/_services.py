@@ -151,7 +151,7 @@ class Answers:
     ) -> srv.SetParameters.Response:
         """Answer set_parameters: one by one, in order."""
         refuse_many(request.parameters)
-        response.results = [self._set([each]) for each in request.parameters]
+        response.results = [self._set([message]) for message in request.parameters]
         return response
 
     def set_atomically(
@@ -166,7 +166,7 @@ class Answers:
 
     def _set(self, messages: list[ParameterMsg]) -> SetParametersResult:
         try:
-            parameters = [self.parameter_class.from_parameter_msg(each) for each in messages]
+            parameters = list(map(self.parameter_class.from_parameter_msg, messages))
         except ValueError as error:  # an unknown type
             return self._failure(error)
         try:

@@ -158,7 +158,8 @@ class ParameterStore(ParameterCallbacks):
             self._declaration(namespace, entry, index, ignore_override)
             for index, entry in enumerate(parameters)
         ]
-        known = [each.name for each, _ in declarations if each.name in self._parameters]
+        names = [parameter.name for parameter, _ in declarations]
+        known = [name for name in names if name in self._parameters]
         if known:
             raise ParameterAlreadyDeclaredException(known)
         for parameter, descriptor in declarations:
@@ -357,7 +358,8 @@ class ParameterStore(ParameterCallbacks):
         if self._pre and not parameters:
             return self._failure(EMPTY_LIST)
         parameters = self._prepared(parameters, self._descriptors)
-        undeclared = [each.name for each in parameters if each.name not in self._parameters]
+        names = [parameter.name for parameter in parameters]
+        undeclared = [name for name in names if name not in self._parameters]
         if undeclared and not self.allow_undeclared:
             raise ParameterNotDeclaredException(undeclared)
         if reason := self._violation(parameters):
@@ -382,7 +384,7 @@ class ParameterStore(ParameterCallbacks):
         empty list gets the type that was declared.
         """
         last = {parameter.name: parameter for parameter in parameters}
-        return [adapted(each, descriptors.get(name)) for name, each in last.items()]
+        return [adapted(parameter, descriptors.get(name)) for name, parameter in last.items()]
 
     def _violation(self, parameters: list[Parameter]) -> str | None:
         for parameter in parameters:

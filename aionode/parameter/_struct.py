@@ -251,7 +251,7 @@ def unwrapped(kind: inspect.Type) -> tuple[inspect.Type, bool, list[inspect.Meta
             metas.append(kind)
             kind = kind.type
             continue
-        others = [each for each in kind.types if not isinstance(each, inspect.NoneType)]
+        others = [type_ for type_ in kind.types if not isinstance(type_, inspect.NoneType)]
         if len(others) != 1 or len(others) == len(kind.types):
             break
         is_optional = True

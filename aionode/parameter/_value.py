@@ -212,7 +212,7 @@ class Parameter:
         )
         if self._type is ParameterType.BYTE_ARRAY:
             message.byte_array_value = b"".join(
-                bytes([each]) if isinstance(each, int) else each for each in self._value
+                bytes([item]) if isinstance(item, int) else item for item in self._value
             )
         elif self._type is not ParameterType.NOT_SET:
             is_list = isinstance(self._value, LISTS)
@@ -242,7 +242,7 @@ def parameter_value_to_python(parameter_value: rcl_msg.ParameterValue) -> Any:
         return None
     value = getattr(parameter_value, FIELDS[type_])
     if type_ is ParameterType.BYTE_ARRAY:
-        return [bytes([each]) for each in bytes(value)]
+        return [bytes([number]) for number in bytes(value)]
     if hasattr(value, "tolist"):
         return value.tolist()  # numpy's numbers are not int and float
     return list(value) if type_ >= ParameterType.BYTE_ARRAY else value
@@ -310,12 +310,12 @@ def parameter_dict_from_yaml_file(
     from aionode.arguments import read_parameter_file  # as above
 
     rules = read_parameter_file(parameter_file)
-    found = {rule.node for rule in rules}
-    wanted = found - {"/**"}
+    given = {rule.node for rule in rules}
+    wanted = given - {"/**"}
     if target_nodes:
         wanted = {name if name.startswith("/") else f"/{name}" for name in target_nodes}
-        if missing := wanted - found:
-            problem = f"nothing for {sorted(missing)}, only for {sorted(found)}"
+        if missing := wanted - given:
+            problem = f"nothing for {sorted(missing)}, only for {sorted(given)}"
             raise ParameterFileError(str(parameter_file), 0, problem)
     ordered = [rule for rule in rules if rule.node == "/**"] if use_wildcard else []
     ordered += [rule for rule in rules if rule.node in wanted]

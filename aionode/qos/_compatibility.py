@@ -50,7 +50,7 @@ class Incompatibility(NamedTuple):
 def incompatibilities(offered: QoSProfile, requested: QoSProfile) -> list[Incompatibility]:
     """Return each policy in which `offered` (a publisher's) is weaker than `requested`."""
     offer, request = offered.resolved(), requested.resolved()
-    found = []
+    refusals = []
     for name, kind, weak, strong in (
         (
             "reliability",
@@ -73,7 +73,7 @@ def incompatibilities(offered: QoSProfile, requested: QoSProfile) -> list[Incomp
     ):
         if getattr(offer, name) is weak and getattr(request, name) is strong:
             reason = f"{name}: offered {weak.short_key}, requested {strong.short_key}"
-            found.append(Incompatibility(kind, reason))
+            refusals.append(Incompatibility(kind, reason))
     for name, kind in (
         ("deadline", QoSPolicyKind.DEADLINE),
         ("liveliness_lease_duration", QoSPolicyKind.LIVELINESS),  # rmw knows no kind of its own
@@ -81,13 +81,13 @@ def incompatibilities(offered: QoSProfile, requested: QoSProfile) -> list[Incomp
         slow, fast = getattr(offer, name), getattr(request, name)
         if slow > fast and DeadlineBestAvailable not in {slow, fast}:
             reason = f"{name}: offered {duration_text(slow)}, requested {duration_text(fast)}"
-            found.append(Incompatibility(kind, reason))
-    return found
+            refusals.append(Incompatibility(kind, reason))
+    return refusals
 
 
 def mismatch(offered: QoSProfile, requested: QoSProfile) -> str | None:
     """Return why `offered` does not satisfy `requested`, or None if it does."""
-    return "; ".join(found.reason for found in incompatibilities(offered, requested)) or None
+    return "; ".join(refusal.reason for refusal in incompatibilities(offered, requested)) or None
 
 
 def incompatible_qos_text(topic: str, kind: QoSPolicyKind, *, publisher: bool) -> str:
@@ -132,7 +132,7 @@ def qos_check_compatible(
         )
         for qos in (publisher_qos, subscription_qos)
     ]
-    errors = [f"ERROR: {found.reason};" for found in incompatibilities(*decided)]
+    errors = [f"ERROR: {refusal.reason};" for refusal in incompatibilities(*decided)]
     if errors:
         return QoSCompatibility.ERROR, "".join(errors)
     doubts = [
@@ -205,7 +205,7 @@ def best_available_for_publisher(
         return weak
 
     def tightest(limits: list[Duration]) -> Duration:
-        return min((each for each in limits if not is_unlimited(each)), default=Duration())
+        return min((limit for limit in limits if not is_unlimited(limit)), default=Duration())
 
     return resolve_best_available(profile, pick, tightest, others)
 

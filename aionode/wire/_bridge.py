@@ -249,8 +249,8 @@ def parse_topic(token: BridgeToken, text: str) -> BridgeToken | None:
     kind, _, depth = history.partition(",")
     if not all(part in {"", "0", "1"} for part in (reliability, durability, kind)):
         return None
-    found = re.search(r"typehash=([^;]*)", fields[4]) if len(fields) > 4 else None
-    type_hash = found[1] if found and HASH.match(found[1]) else ""
+    match = re.search(r"typehash=([^;]*)", fields[4]) if len(fields) > 4 else None
+    type_hash = match[1] if match and HASH.match(match[1]) else ""
     known_depth = int(depth) if depth.isascii() and depth.isdigit() and len(depth) < 10 else 0
     qos = QoSProfile(
         reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
@@ -281,8 +281,8 @@ def bridged_endpoints(token: BridgeToken) -> list[BridgedEndpoint]:
         (topic, "status", "action_msgs/msg/GoalStatusArray", status),
     )
     return [
-        BridgedEndpoint(kind, f"{name}{ACTION_PART}{part}", type_name, each)
-        for kind, part, type_name, each in parts
+        BridgedEndpoint(kind, f"{name}{ACTION_PART}{part}", type_name, hash_)
+        for kind, part, type_name, hash_ in parts
     ]
 
 
@@ -324,15 +324,15 @@ def parse_node(key: str, payload: bytes) -> BridgedNode | None:
         return None
     try:
         described = json.loads(payload)
-        found = {
+        endpoints = {
             (endpoint.kind, endpoint.name)
             for listed, kind in LISTS
-            for each in described.get(listed, ())
-            for endpoint in bridged_endpoints(BridgeToken("", kind, each["name"].strip("/")))
+            for entry in described.get(listed, ())
+            for endpoint in bridged_endpoints(BridgeToken("", kind, entry["name"].strip("/")))
         }
     except (ValueError, TypeError, LookupError, AttributeError, RecursionError):
         return None
-    return BridgedNode(f"/{name}", frozenset(found), gid.startswith(FAST_DDS))
+    return BridgedNode(f"/{name}", frozenset(endpoints), gid.startswith(FAST_DDS))
 
 
 def parse_request_id(extra: bytes) -> tuple[bytes, int] | None:

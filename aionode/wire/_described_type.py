@@ -173,10 +173,10 @@ class DescribedTypes:
         if len(self._open) >= DEEPEST:
             raise self._error(f"its types are nested more than {DEEPEST} deep")
         self._open.append(name)
-        made = self._make(name)
+        cls = self._make(name)
         self._open.pop()
-        self._made[name] = made
-        return made
+        self._made[name] = cls
+        return cls
 
     def _make(self, name: str) -> type[Message]:
         types: dict[str, FieldType] = {}
@@ -195,8 +195,8 @@ class DescribedTypes:
             "__annotations__": {field: Annotated[Any, type_] for field, type_ in types.items()},
             "__doc__": f"{name}, as a node describes it.",
         }
-        made: type[Message] = new_type(Message, name, body)
-        return made
+        cls: type[Message] = new_type(Message, name, body)
+        return cls
 
     def _field_type(self, field: Any) -> FieldType:
         """Return the type of a field; its `type_id` encodes both kind and container."""

@@ -199,15 +199,15 @@ def nested_member(name: str, part: type[Any]) -> FieldDescription:
 
 def referenced_types(cls: type[Any]) -> list[type[Any]]:
     """Return all types that `cls` uses, at any depth, sorted by name."""
-    found: dict[str, type[Any]] = {}
+    parts: dict[str, type[Any]] = {}
     waiting = used_by(cls)
     while waiting:
         part = waiting.pop()
         name = type_name(part)
-        if name not in found:
-            found[name] = part
+        if name not in parts:
+            parts[name] = part
             waiting += used_by(part)
-    return [found[name] for name in sorted(found)]
+    return [parts[name] for name in sorted(parts)]
 
 
 def used_by(cls: type[Any]) -> list[type[Any]]:

@@ -86,7 +86,7 @@ async def doctor(
     nodes, endpoints = chosen(node, names)
     links = await query_links(node)
     bridges = bridges_of(node)
-    domains = await other_domains(node, patient=not nodes and not bridges)
+    domains = await other_domains(node, keep_looking=not nodes and not bridges)
     wanted = full_names(names)
     pairs = [
         pair
@@ -112,29 +112,29 @@ async def doctor(
     if names:
         lines += [f"  {pair.text()}" for pair in pairs]
     output.item("\n".join(lines), record)
-    found = diagnose(nodes, endpoints)
+    findings = diagnose(nodes, endpoints)
     hashes = {end.type_hash for end in endpoints if not end.node.bridged}
     hint = other_distribution(node.context.ros_distro, hashes)
     if hint is not None:
         problem, remedy = hint.split(": ")
-        found.insert(0, Finding("problem", "ROS_DISTRO", problem, remedy))
+        findings.insert(0, Finding("problem", "ROS_DISTRO", problem, remedy))
     if not middleware:
-        found += link_findings(pairs)
-        found += bridge_findings(bridges)
+        findings += link_findings(pairs)
+        findings += bridge_findings(bridges)
         # What a bridge reaches is no matter of this environment's middleware.
         environ = {} if bridges else os.environ
-        found += network_findings(
+        findings += network_findings(
             network, environ, has_router=has_router, domains=domains, alone=not nodes
         )
     if not names or transform is not None or "/tf" in wanted:
-        found += await transform_findings(node, transform)
-    for finding in found:
+        findings += await transform_findings(node, transform)
+    for finding in findings:
         output.item(
             f"\n{finding.severity}: {finding.subject}: {finding.text}\n  -> {finding.remedy}",
             asdict(finding),
         )
-    problems = sum(finding.severity == "problem" for finding in found)
-    output.text(f"\n{problems} problem(s), {len(found) - problems} hint(s)")
+    problems = sum(finding.severity == "problem" for finding in findings)
+    output.text(f"\n{problems} problem(s), {len(findings) - problems} hint(s)")
     return 1 if problems else 0
 
 
@@ -196,34 +196,34 @@ def full_names(names: Sequence[str]) -> set[str]:
 
 def middleware_of(node: Node) -> str:
     """Return the middleware of the installed ROS 2 that the node is on; empty over Zenoh."""
-    found = (getattr(transport, "middleware", "") for transport in node.context.transports)
-    return next(filter(None, found), "")
+    names = (getattr(transport, "middleware", "") for transport in node.context.transports)
+    return next(filter(None, names), "")
 
 
-async def other_domains(node: Node, *, patient: bool) -> list[int]:
+async def other_domains(node: Node, *, keep_looking: bool) -> list[int]:
     """Return the other domains in which reachable nodes have been seen.
 
     Args:
         node: The command's node.
-        patient: Whether to keep looking for `DOMAINS_S`. Where this domain is empty, other domains
+        keep_looking: Whether to look for `DOMAINS_S`. Where this domain is empty, other domains
             are the likely explanation, and on a busy machine finding them takes time.
     """
     ends_ns = perf_ns() + int(DOMAINS_S * 1e9)
     while True:
-        found: set[int] = set()
+        domains: set[int] = set()
         for transport in node.context.transports:
-            found |= set(getattr(transport, "other_domains", ()))
-        if found or not patient or perf_ns() >= ends_ns:
-            return sorted(found)
+            domains |= set(getattr(transport, "other_domains", ()))
+        if domains or not keep_looking or perf_ns() >= ends_ns:
+            return sorted(domains)
         await node.get_clock().sleep(DOMAINS_AGAIN_S)
 
 
 def bridges_of(node: Node) -> dict[str, bool]:
     """Return the Zenoh ids of bridges, each with whether nodes on Fast DDS are behind it."""
-    found: dict[str, bool] = {}
+    bridges: dict[str, bool] = {}
     for transport in node.context.transports:
-        found |= getattr(transport, "dds_bridges", {})
-    return found
+        bridges |= getattr(transport, "dds_bridges", {})
+    return bridges
 
 
 def bridge_findings(bridges: Mapping[str, bool]) -> list[Finding]:
@@ -253,10 +253,10 @@ def network_findings(
     alone: bool,
 ) -> list[Finding]:
     """Return the findings about settings that prevent discovery."""
-    found = []
+    findings = []
     if domains:
         others = ", ".join(map(str, domains))
-        found.append(
+        findings.append(
             Finding(
                 "hint",
                 "domain",
@@ -267,7 +267,7 @@ def network_findings(
         )
     wide = network.discovery_range
     if wide is DiscoveryRange.OFF and not network.static_peers:
-        found.append(
+        findings.append(
             Finding(
                 "problem",
                 "discovery range",
@@ -276,7 +276,7 @@ def network_findings(
             )
         )
     elif wide is DiscoveryRange.SYSTEM_DEFAULT and not has_router:
-        found.append(
+        findings.append(
             Finding(
                 "problem",
                 "router",
@@ -286,7 +286,7 @@ def network_findings(
             )
         )
     elif wide is DiscoveryRange.LOCALHOST and alone and not network.static_peers and not domains:
-        found.append(
+        findings.append(
             Finding(
                 "hint",
                 "discovery range",
@@ -295,7 +295,7 @@ def network_findings(
                 "router",
             )
         )
-    return [*found, *rmw_findings(environ)]
+    return [*findings, *rmw_findings(environ)]
 
 
 def rmw_findings(environ: Mapping[str, str]) -> list[Finding]:

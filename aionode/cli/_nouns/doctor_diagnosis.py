@@ -40,13 +40,13 @@ class Finding:
 
 def diagnose(nodes: Sequence[NodeInfo], endpoints: Sequence[EndpointInfo]) -> list[Finding]:
     """Return all findings, problems first."""
-    found = [
+    findings = [
         *same_names(nodes),
         *same_servers(endpoints),
         *mismatches(endpoints),
         *diagnose_names(endpoints),
     ]
-    unique = list(dict.fromkeys(found))
+    unique = list(dict.fromkeys(findings))
     return sorted(unique, key=lambda finding: finding.severity != "problem")
 
 
@@ -109,8 +109,8 @@ def mismatches(endpoints: Iterable[EndpointInfo]) -> Iterator[Finding]:
 def mismatch(offering: EndpointInfo, requesting: EndpointInfo) -> Iterator[Finding]:
     """Yield why two endpoints of one name do not communicate."""
     pair = f"{described(offering)} and {described(requesting)}"
-    found = offering.compare(requesting)
-    if found is None:
+    difference = offering.compare(requesting)
+    if difference is None:
         return
     differing = {
         "type": (
@@ -128,7 +128,7 @@ def mismatch(offering: EndpointInfo, requesting: EndpointInfo) -> Iterator[Findi
             ),
             "use the same version of the interface package on both sides",
         ),
-    }.get(found.aspect)
+    }.get(difference.aspect)
     if differing is not None:
         text, remedy = differing
         yield Finding("problem", subject_of(offering), f"{pair} do not communicate: {text}", remedy)
@@ -137,21 +137,21 @@ def mismatch(offering: EndpointInfo, requesting: EndpointInfo) -> Iterator[Findi
         yield Finding(
             "problem",
             subject_of(offering),
-            f"{pair} do not communicate: QoS {found.reason}",
+            f"{pair} do not communicate: QoS {difference.reason}",
             "request no more than is offered, or offer more",
         )
     elif requesting.node.bridged:
         yield Finding(
             "hint",
             subject_of(offering),
-            f"{pair} may not communicate through the bridge: QoS {found.reason}",
+            f"{pair} may not communicate through the bridge: QoS {difference.reason}",
             "publish with durability TRANSIENT_LOCAL",
         )
     else:
         yield Finding(
             "hint",
             subject_of(offering),
-            f"{pair} communicate over rmw_zenoh, but would not over DDS: QoS {found.reason}",
+            f"{pair} communicate over rmw_zenoh, but would not over DDS: QoS {difference.reason}",
             "request no more than is offered, or offer more",
         )
 

@@ -150,14 +150,14 @@ def why_unlinked(
 
 def link_findings(pairs: Iterable[Pair]) -> list[Finding]:
     """Return a finding for each two processes that could be linked and are not."""
-    found: dict[frozenset[str], Finding] = {}
+    findings: dict[frozenset[str], Finding] = {}
     for pair in pairs:
         if pair.reason not in HINTS:
             continue
         text, remedy = HINTS[pair.reason]
         participants = {pair.publisher.node.participant, pair.subscription.node.participant}
-        found.setdefault(
+        findings.setdefault(
             frozenset(participants),
             Finding("hint", "link", f"the processes of {' and '.join(pair.nodes)} {text}", remedy),
         )
-    return list(found.values())
+    return list(findings.values())

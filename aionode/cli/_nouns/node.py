@@ -68,8 +68,8 @@ async def info(node: Node, node_name: str, *, output: Output, hidden: bool = Fal
             f'There are {times[name]} nodes in the graph with the exact name "{name}". '
             "You are seeing information about only one of them."
         )
-    found = next(info for info in nodes if info.fully_qualified_name == name)
-    offers = offers_of(node, found, hidden=hidden)
+    shown = next(info for info in nodes if info.fully_qualified_name == name)
+    offers = offers_of(node, shown, hidden=hidden)
     if output.json:
         output.item("", {"name": name, **{key(title): of for title, of in offers.items()}})
         return
@@ -85,14 +85,14 @@ def key(title: str) -> str:
     return title.lower().replace(" ", "_")
 
 
-def offers_of(node: Node, found: NodeInfo, *, hidden: bool) -> dict[str, Offer]:
+def offers_of(node: Node, info: NodeInfo, *, hidden: bool) -> dict[str, Offer]:
     """Return the topics, services and actions of a node, under the headings of ros2."""
 
     def offer(kind: EndpointKind) -> Offer:
-        return lookup.names_and_types(node, kind, hidden=hidden, of=found)
+        return lookup.names_and_types(node, kind, hidden=hidden, of=info)
 
     def actions(kind: EndpointKind) -> Offer:
-        return lookup.actions_and_types(node, kind, of=found)
+        return lookup.actions_and_types(node, kind, of=info)
 
     return {
         "Subscribers": offer(EndpointKind.SUBSCRIPTION),

@@ -195,8 +195,8 @@ async def list_parameters(
     async def ask(name: str) -> list[ParameterDescriptor] | AionodeError:
         try:
             async with parameters_of(node, name, hidden=hidden, timeout=timeout) as client:
-                found = (await client.list_parameters(list(prefixes))).names
-                return await client.describe_parameters(sorted(filter(fits, found)))
+                declared = (await client.list_parameters(list(prefixes))).names
+                return await client.describe_parameters(sorted(filter(fits, declared)))
         except AionodeError as error:
             if node_name is not None:
                 raise
@@ -264,10 +264,10 @@ async def get(
         CommandError: there is no such node or parameter.
     """
     async with parameters_of(node, node_name, **reach) as client:
-        found = await client.get_parameters([parameter_name])
-        if not found:
+        values = await client.get_parameters([parameter_name])
+        if not values:
             raise await not_declared(client, [parameter_name])
-    (parameter,) = found
+    (parameter,) = values
     value = plain(parameter, as_numbers=output.json)
     label = LABELS[parameter.type_]
     text = label if value is None else f"{label} {value}"
@@ -423,10 +423,10 @@ async def describe(
         CommandError: there is no such node or parameter.
     """
     async with parameters_of(node, node_name, **reach) as client:
-        found = await client.describe_parameters(parameter_names)
-        if len(found) < len(parameter_names):
+        descriptors = await client.describe_parameters(parameter_names)
+        if len(descriptors) < len(parameter_names):
             raise await not_declared(client, parameter_names)
-    for descriptor in found:
+    for descriptor in descriptors:
         output.item("\n".join(description(descriptor)), descriptor_record(node_name, descriptor))
 
 
@@ -439,8 +439,10 @@ async def dump(node: Node, node_name: str, *, output: Output, **reach: Any) -> N
     """
     async with parameters_of(node, node_name, **reach) as client:
         names = sorted((await client.list_parameters()).names)
-        found = await get_all(client, names)
-    record = {absolute(node_name): {"ros__parameters": file_form(found, as_numbers=output.json)}}
+        parameters = await get_all(client, names)
+    record = {
+        absolute(node_name): {"ros__parameters": file_form(parameters, as_numbers=output.json)}
+    }
     output.item("" if output.json else file_text(record), record)
 
 
@@ -450,9 +452,9 @@ async def get_all(client: AsyncParameterClient, names: list[str]) -> list[Parame
     A node answers a request that includes a parameter without a value with an empty list; then each
     parameter is requested alone.
     """
-    found = await client.get_parameters(names)
-    if found or not names:
-        return found
+    parameters = await client.get_parameters(names)
+    if parameters or not names:
+        return parameters
     return [parameter for name in names for parameter in await client.get_parameters([name])]
 
 

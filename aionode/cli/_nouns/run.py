@@ -175,12 +175,12 @@ def module_in_file(path: Path, spec: str) -> ModuleType:
         if origin is not None and Path(origin).resolve() == path.resolve():
             return loaded
     sys.path.insert(0, str(path.parent.resolve()))
-    found = importlib.util.spec_from_file_location(path.stem, path)
-    assert found is not None  # noqa: S101  # its name ends in .py
-    assert found.loader is not None  # noqa: S101  # as above
-    module = importlib.util.module_from_spec(found)
+    module_spec = importlib.util.spec_from_file_location(path.stem, path)
+    assert module_spec is not None  # noqa: S101  # its name ends in .py
+    assert module_spec.loader is not None  # noqa: S101  # as above
+    module = importlib.util.module_from_spec(module_spec)
     sys.modules[path.stem] = module
-    found.loader.exec_module(module)
+    module_spec.loader.exec_module(module)
     return module
 
 

@@ -255,8 +255,8 @@ async def class_watched(node: Node, name: str, given: str | None) -> Any:
         )
     action, _, part = types[0].rpartition("_")
     if "/action/" in types[0] and part in ACTION_SERVICES:
-        found = await lookup.type_of_action(node, name.rpartition("/_action/")[0], action)
-        return getattr(found.Impl, ACTION_SERVICES[part])
+        action_type = await lookup.type_of_action(node, name.rpartition("/_action/")[0], action)
+        return getattr(action_type.Impl, ACTION_SERVICES[part])
     if users:
         return await lookup.type_of(node, users)
     return lookup.interface_class("service", types[0])

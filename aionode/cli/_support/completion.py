@@ -191,7 +191,7 @@ def complete_interfaces(kind: str = "") -> Completer:
         package, slash, _ = incomplete.partition("/")
         if not slash:
             return [f"{name}/" for name in sorted(known_packages()) if name.startswith(package)]
-        found: Any = interface_names(package)
-        return [name for name in found if name.startswith(incomplete) and f"/{kind}" in name]
+        types: Any = interface_names(package)
+        return [name for name in types if name.startswith(incomplete) and f"/{kind}" in name]
 
     return complete

@@ -25,7 +25,7 @@ def one_line(error: BaseException) -> str:
 def text_of(error: BaseException) -> str:
     """Return the text of an error on one line."""
     if isinstance(error, NameValidationException):
-        found = error.name[error.invalid_index : error.invalid_index + 1]
-        where = f", at character {error.invalid_index + 1} ({found!r})" if found else ""
+        character = error.name[error.invalid_index : error.invalid_index + 1]
+        where = f", at character {error.invalid_index + 1} ({character!r})" if character else ""
         return f"Invalid {error.name_type} {error.name!r}: {error.error_msg}{where}"
     return "; ".join(line.strip() for line in str(error).splitlines() if line.strip())

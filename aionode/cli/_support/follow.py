@@ -107,8 +107,8 @@ async def wait_for_type(
     Raises:
         CommandError: the type cannot be determined.
     """
-    found = await lookup.topic_type(node, topic, given)
-    if found is None:
+    msg_type = await lookup.topic_type(node, topic, given)
+    if msg_type is None:
         hint = lookup.close_to(topic, lookup.names_and_types(node, *TOPIC_KINDS))
         output.progress(f"WARNING: topic [{topic}] does not appear to be published yet{hint}")
         waiting = output.waiting(f"waiting for a publisher of {topic}")
@@ -116,9 +116,9 @@ async def wait_for_type(
             await node.graph.until(
                 lambda: bool(lookup.endpoints(node, *TOPIC_KINDS, name=topic)), topic
             )
-        found = await lookup.topic_type(node, topic)
-    assert found is not None  # noqa: S101  # the topic has an endpoint now
-    return found
+        msg_type = await lookup.topic_type(node, topic)
+    assert msg_type is not None  # noqa: S101  # the topic has an endpoint now
+    return msg_type
 
 
 def filter_from(text: str | None) -> Callable[[Any], bool]:

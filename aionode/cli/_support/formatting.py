@@ -234,16 +234,16 @@ def field_of(msg: Message, path: str) -> tuple[Any, FieldType | None]:
     value: Any = msg
     type_: FieldType | None = None
     for part in filter(None, path.split(".")):
-        found = FIELD_PART.fullmatch(part)
+        match = FIELD_PART.fullmatch(part)
         types = {f.name: f.type for f in fields(type(value))} if isinstance(value, Message) else {}
-        if found is None or found[1] not in types:
+        if match is None or match[1] not in types:
             where = type_name(type(value)) if isinstance(value, Message) else "a single value"
             has = f" has {', '.join(types)}" if types else " has no fields"
             raise CommandError(f"Invalid field '{path}': no '{part}' in it; {where}{has}")
-        value, type_ = getattr(value, found[1]), types[found[1]]
-        for index in map(int, re.findall(r"[0-9]+", found[2])):
+        value, type_ = getattr(value, match[1]), types[match[1]]
+        for index in map(int, re.findall(r"[0-9]+", match[2])):
             if type_.container == "single" or index >= len(value):
-                problem = f"nothing at [{index}] of {found[1]}, which is {type_}"
+                problem = f"nothing at [{index}] of {match[1]}, which is {type_}"
                 raise CommandError(f"Invalid field '{path}': {problem}")
             value, type_ = value[index], type_.element
             value = value.item() if hasattr(value, "item") else value

@@ -48,12 +48,12 @@ def is_own(node: Node, info: NodeInfo) -> bool:
 
 def node_infos(node: Node, *, hidden: bool = False) -> list[NodeInfo]:
     """Return the other nodes, sorted by name."""
-    found = [
+    others = [
         info
         for info in node.graph.nodes()
         if not is_own(node, info) and (hidden or not info.name.startswith("_"))
     ]
-    return sorted(found, key=lambda info: info.fully_qualified_name)
+    return sorted(others, key=lambda info: info.fully_qualified_name)
 
 
 def endpoints(
@@ -61,9 +61,9 @@ def endpoints(
 ) -> list[EndpointInfo]:
     """Return the endpoints of other nodes."""
     return [
-        found
-        for found in node.graph.endpoints(*kinds, name=name, node=of)
-        if not is_own(node, found.node)
+        endpoint
+        for endpoint in node.graph.endpoints(*kinds, name=name, node=of)
+        if not is_own(node, endpoint.node)
     ]
 
 
@@ -97,14 +97,14 @@ def actions_and_types(
 # Errors with help
 
 
-def likeness(one: str, other: str) -> float:
+def likeness(name: str, other: str) -> float:
     """Return how alike two names are, from 0 to 1: as much as the parts that differ most.
 
     Case is no difference, nor is a namespace that only one of them has. The parts are compared one
     by one, so that a long namespace, or a last part such as ``get_parameters``, which many names
     share, does not make different words alike.
     """
-    pairs = zip(parts(one), parts(other), strict=False)
+    pairs = zip(parts(name), parts(other), strict=False)
     return min(difflib.SequenceMatcher(None, *pair).ratio() for pair in pairs)
 
 
@@ -115,8 +115,8 @@ def parts(name: str) -> list[str]:
 
 def close_to(name: str, names: Iterable[str]) -> str:
     """Return a hint at the name that was probably meant, or an empty string."""
-    known = sorted(names, key=lambda one: (len(one), one))  # of equals the shortest is taken
-    close = max(known, key=lambda one: likeness(name, one), default="")
+    shortest_first = sorted(names, key=lambda known: (len(known), known))
+    close = max(shortest_first, key=lambda known: likeness(name, known), default="")
     return f". Did you mean '{close}'?" if close and likeness(name, close) >= ALIKE else ""
 
 
@@ -165,12 +165,12 @@ def class_given(kind: str, given: str, name: str, used: Collection[str]) -> Any:
     Raises:
         CommandError: there is no such type, or the name has another one.
     """
-    found = interface_class(kind, given)
-    if used and found.__ros_type__ not in used:
+    interface = interface_class(kind, given)
+    if used and interface.__ros_type__ not in used:
         raise CommandError(
             f"The passed {kind} type is invalid: '{name}' has type {', '.join(used)}, not {given}"
         )
-    return found
+    return interface
 
 
 async def topic_type(node: Node, topic: str, given: str | None = None) -> type[Message] | None:
@@ -188,8 +188,8 @@ async def topic_type(node: Node, topic: str, given: str | None = None) -> type[M
     if given is not None:
         users = [user for user in users if user.type_name == given]
         if not users:
-            found: type[Message] = interface_class("message", given)
-            return found
+            given_type: type[Message] = interface_class("message", given)
+            return given_type
     types = sorted({user.type_name for user in users})
     if len(types) > 1:
         raise CommandError(
@@ -218,7 +218,9 @@ async def type_of_action(node: Node, name: str, type_name: str) -> Any:
         CommandError: the type is not known here, and no node describes it.
     """
     hidden = f"{name}/_action/"
-    users = [one for one in endpoints(node, *EndpointKind) if one.name.startswith(hidden)]
+    users = [
+        endpoint for endpoint in endpoints(node, *EndpointKind) if endpoint.name.startswith(hidden)
+    ]
     return await described(node, type_name, name, users)
 
 

@@ -141,9 +141,9 @@ async def wait_until_known(node: Node, output: Output) -> None:
         )
     participant = node.context.participant
     hashes = {
-        one.type_hash
-        for one in node.graph.endpoints()
-        if one.node.participant != participant and not one.node.bridged
+        endpoint.type_hash
+        for endpoint in node.graph.endpoints()
+        if endpoint.node.participant != participant and not endpoint.node.bridged
     }
     hint = other_distribution(node.context.ros_distro, hashes)
     if hint is not None:

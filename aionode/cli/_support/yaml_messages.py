@@ -32,7 +32,7 @@ def plain_values(text: str, what: str) -> dict[str, Any]:
 
     try:
         expect_shallow(text, what)
-        documents = [each for each in yaml.load_all(text, loader()) if each is not None]
+        documents = [document for document in yaml.load_all(text, loader()) if document is not None]
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         # From PyYAML's constructors and Python: an empty `!!int`, a number with too many
         # digits, a lone surrogate.
@@ -91,8 +91,8 @@ def loader() -> Any:
 
     base = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml is optional
     resolvers = {
-        first: [(tag, regexp) for tag, regexp in each if not tag.endswith(":timestamp")]
-        for first, each in base.yaml_implicit_resolvers.items()
+        first: [(tag, regexp) for tag, regexp in pairs if not tag.endswith(":timestamp")]
+        for first, pairs in base.yaml_implicit_resolvers.items()
     }
     return type("Loader", (base,), {"yaml_implicit_resolvers": resolvers})
 
@@ -115,7 +115,7 @@ def message_from_yaml(msg_type: type[Message], text: str) -> Message:
     Raises:
         CommandError: the values do not fit the type.
     """
-    return made(msg_type, plain_values(text, example_of(msg_type)))
+    return message_from(msg_type, plain_values(text, example_of(msg_type)))
 
 
 UNSEPARATED = re.compile(r"\w+:\S")
@@ -149,7 +149,7 @@ def unseparated(pair: str) -> CommandError:
     )
 
 
-def made(msg_type: type[Message], values: dict[str, Any]) -> Message:
+def message_from(msg_type: type[Message], values: dict[str, Any]) -> Message:
     """Return the message with the given field values."""
     try:
         msg = from_builtins(msg_type, values)
@@ -171,7 +171,7 @@ class Filler:
         self._stamps: list[Callable[[Message, Any], None]] = []
         values = plain_values(text, example_of(msg_type))
         self._strip(msg_type, values, ())
-        self._message = made(msg_type, values)
+        self._message = message_from(msg_type, values)
 
     def message(self, now: Time) -> Message:
         """Return the message, with `now` in every field given as ``auto`` or ``now``."""

@@ -34,9 +34,9 @@ class DuplicateReport:
         """Log that two nodes have one name, if one of them is of this context."""
         name = new.fully_qualified_name
         own = new
-        others = [one for one in self._graph.nodes_named(name) if one != new]
+        others = [info for info in self._graph.nodes_named(name) if info != new]
         if new.participant != self._participant:
-            owns = [one for one in others if one.participant == self._participant]
+            owns = [info for info in others if info.participant == self._participant]
             if not owns:
                 return
             own, others = owns[0], [new]
@@ -75,19 +75,19 @@ class DuplicateReport:
                 for client in self._graph.own_opposites(new)[:1]:
                     self._report(known, new, client.node)
 
-    def _report(self, one: EndpointInfo, other: EndpointInfo, reader: NodeInfo) -> None:
+    def _report(self, server: EndpointInfo, other: EndpointInfo, reader: NodeInfo) -> None:
         """Log to the node `reader` that two servers have one name."""
-        name, kind = one.name, "service"
+        name, kind = server.name, "service"
         if name.endswith(SEND_GOAL):  # of the three services of an action, one is enough
             name, kind = name.removesuffix(SEND_GOAL), "action"
         elif is_hidden(name):
             return
-        if are_twins(one, other):
+        if are_twins(server, other):
             return
         self._warnings.warn(
             reader,
             name,
-            f"{kind} {name} has two servers, of {one.node.fully_qualified_name} and of "
+            f"{kind} {name} has two servers, of {server.node.fully_qualified_name} and of "
             f"{other.node.fully_qualified_name}: each request goes to both, and the first response "
             f"is taken. Stop one of them, or rename it: --ros-args -r {name}:=…",
         )
@@ -99,8 +99,9 @@ class DuplicateReport:
         return endpoint.node.participant == self._participant
 
 
-def are_twins(one: EndpointInfo, other: EndpointInfo) -> bool:
+def are_twins(server: EndpointInfo, other: EndpointInfo) -> bool:
     """Whether two servers are of nodes of one name, which has a warning of its own."""
     return (
-        one.node != other.node and one.node.fully_qualified_name == other.node.fully_qualified_name
+        server.node != other.node
+        and server.node.fully_qualified_name == other.node.fully_qualified_name
     )

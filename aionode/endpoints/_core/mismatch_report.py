@@ -29,31 +29,31 @@ class MismatchReport:
     def examine(self, new: EndpointInfo) -> None:
         """Log every mismatch between `new` and the endpoints of its name."""
         graph = self._graph
-        for one in graph.opposites(new) if self._is_own(new) else graph.own_opposites(new):
-            own, other = (one, new) if self._is_own(one) else (new, one)
-            found = own.compare(other)
-            if found is not None and found.aspect not in graph.unreported.get(own, ()):
-                self._warnings.warn(own.node, own.name, mismatch_text(own, other, found))
+        for opposite in graph.opposites(new) if self._is_own(new) else graph.own_opposites(new):
+            own, other = (opposite, new) if self._is_own(opposite) else (new, opposite)
+            mismatch = own.compare(other)
+            if mismatch is not None and mismatch.aspect not in graph.unreported.get(own, ()):
+                self._warnings.warn(own.node, own.name, mismatch_text(own, other, mismatch))
 
     def _is_own(self, endpoint: EndpointInfo) -> bool:
         return endpoint.node.participant == self._participant
 
 
-def mismatch_text(own: EndpointInfo, other: EndpointInfo, found: Mismatch) -> str:
+def mismatch_text(own: EndpointInfo, other: EndpointInfo, mismatch: Mismatch) -> str:
     """Return why `own` and `other` cannot communicate, and what to change."""
     where = f"{'topic' if own.kind in TOPIC_KINDS else 'service'} '{own.name}'"
     peer = f"{other.kind.value} of node {other.node.fully_qualified_name}"
-    if found.aspect == "type":
+    if mismatch.aspect == "type":
         return (
             f"{where}: the {peer} has type {other.type_name}, this {own.kind.value} "
             f"{own.type_name}. They will not hear each other; use one type, or another name"
         )
-    if found.aspect == "distribution":
+    if mismatch.aspect == "distribution":
         return (
             f"{where}: the {peer} is of another distribution of ROS 2, and they will not hear each "
-            f"other; {found.reason}"
+            f"other; {mismatch.reason}"
         )
-    if found.aspect == "definition":
+    if mismatch.aspect == "definition":
         return (
             f"{where}: the {peer} has another definition of {other.type_name} "
             f"({other.type_hash}, here {own.type_hash}). They will not hear each other; use the "
@@ -61,15 +61,15 @@ def mismatch_text(own: EndpointInfo, other: EndpointInfo, found: Mismatch) -> st
         )
     if other.node.bridged:
         return (
-            f"{where}: QoS of the {peer} is incompatible ({found.reason}). A bridge that knew this "
-            "publisher first passes nothing on to it; publish with durability TRANSIENT_LOCAL"
+            f"{where}: QoS of the {peer} is incompatible ({mismatch.reason}). A bridge that knew "
+            "this publisher first passes nothing on to it; publish with durability TRANSIENT_LOCAL"
         )
     if not own.needs_qos(other):
         return (
-            f"{where}: QoS of the {peer} is incompatible ({found.reason}). Messages pass all the "
-            "same over rmw_zenoh, but would not over DDS"
+            f"{where}: QoS of the {peer} is incompatible ({mismatch.reason}). Messages pass all "
+            "the same over rmw_zenoh, but would not over DDS"
         )
     text = incompatible_qos_text(
-        own.name, found.policy, publisher=other.kind is EndpointKind.PUBLISHER
+        own.name, mismatch.policy, publisher=other.kind is EndpointKind.PUBLISHER
     )
-    return f"{text} ({found.reason})"
+    return f"{text} ({mismatch.reason})"

@@ -230,8 +230,8 @@ class DecoderGenerator:
         self._source.line("if data[pos - 1]: raise NeedsFallback")
         text = f"data[{start}:pos - 1]"
         # `decode` is faster, but memoryviews do not have it.
-        made = f"{text}.decode()" if self._of_bytes else f"str({text}, 'utf-8')"
-        self._source.line(f"{local} = {made}")
+        expression = f"{text}.decode()" if self._of_bytes else f"str({text}, 'utf-8')"
+        self._source.line(f"{local} = {expression}")
 
     def _strings(self, kind: FieldType, local: str) -> None:
         source = self._source
@@ -443,8 +443,8 @@ class DecoderGenerator:
             first, last, size = arrays[0], arrays[-1], PRIMITIVES[kind].size
             if len(arrays) == 1 or kind == "bool":
                 for array in arrays:
-                    made = self._array(kind, str(array.count), self._place(array.offset))
-                    source.line(f"{array.target} = {made}")
+                    expression = self._array(kind, str(array.count), self._place(array.offset))
+                    source.line(f"{array.target} = {expression}")
                 continue
             count = (last.offset - first.offset) // size + last.count
             all_ = source.local("all")

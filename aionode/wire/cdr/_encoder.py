@@ -81,17 +81,17 @@ def generate_encoder(
 
 def views(parts: Sequence[Any]) -> list[bytes | memoryview]:
     """Return `parts` with small ones joined to bytes, large ones as read-only byte views."""
-    found: list[bytes | memoryview] = []
+    chunks: list[bytes | memoryview] = []
     begin = 0
     for place in [number for number, part in enumerate(parts) if len(part) >= LARGE]:
         if begin < place:
-            found.append(JOIN(parts[begin:place]))
+            chunks.append(JOIN(parts[begin:place]))
         part = parts[place]
-        found.append(part if part.__class__ is bytes else memoryview(part).cast("B").toreadonly())
+        chunks.append(part if part.__class__ is bytes else memoryview(part).cast("B").toreadonly())
         begin = place + 1
     if begin < len(parts):
-        found.append(JOIN(parts[begin:]))
-    return found
+        chunks.append(JOIN(parts[begin:]))
+    return chunks
 
 
 @cache
@@ -406,17 +406,17 @@ class EncoderGenerator:
             self._pack_text(run, values)
             return
         structs = phase_structs(run, range(self._residue, PHASES, self._modulus))
-        one = structs[self._residue]
-        if len({each.format for each in structs.values()}) == 1:
-            if one.size:
-                self._parts.append(self._packing(one, values))
+        packer = structs[self._residue]
+        if len({packer.format for packer in structs.values()}) == 1:
+            if packer.size:
+                self._parts.append(self._packing(packer, values))
             if self._offset is not None:
-                self._offset += one.size
+                self._offset += packer.size
             else:
-                self._source.position(f"pos += {one.size}")
+                self._source.position(f"pos += {packer.size}")
         else:
             self._pack_by_phase(structs, values)
-        self._ends({phase + each.size for phase, each in structs.items()})
+        self._ends({phase + packer.size for phase, packer in structs.items()})
 
     def _ends(self, places: set[int]) -> None:
         """Record the offsets, modulo `PHASES`, where a run may have ended."""
@@ -433,14 +433,14 @@ class EncoderGenerator:
         """Pack a run whose padding depends on its start."""
         source = self._source
         table = [structs.get(phase, struct.Struct("")) for phase in range(PHASES)]
-        steps = source.constant("sizes", tuple(each.size for each in table))
+        steps = source.constant("sizes", tuple(packer.size for packer in table))
         part, phase = source.local("run"), source.local("phase")
         source.line(f"{phase} = pos & {PHASES - 1}")
         if values:
-            packs = source.constant("packs", tuple(each.pack for each in table))
+            packs = source.constant("packs", tuple(packer.pack for packer in table))
             source.line(f"{part} = {packs}[{phase}]({values})")
         else:
-            zeros = source.constant("zeros", tuple(bytes(each.size) for each in table))
+            zeros = source.constant("zeros", tuple(bytes(packer.size) for packer in table))
             source.line(f"{part} = {zeros}[{phase}]")
         self._parts.append(part)
         source.position(f"pos += {steps}[{phase}]")

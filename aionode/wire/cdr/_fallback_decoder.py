@@ -75,9 +75,9 @@ class FallbackDecoder:
         if kind.container == "bounded" and count > kind.size:
             self._fail(f"{count} elements, at most {kind.size} fit")
         if kind.form == "bytes":
-            found = self._take(count, f"{count} elements")
+            data = self._take(count, f"{count} elements")
             # As in the generated functions: arrays are copied, sequences are views.
-            return bytes(found) if kind.container == "array" else found
+            return bytes(data) if kind.container == "array" else data
         if kind.form == "ndarray":
             return self._array(kind, count)
         least = minimum_size(kind.nested) if kind.nested is not None else COUNT_SIZE
@@ -94,8 +94,8 @@ class FallbackDecoder:
         if kind.kind in PRIMITIVES:
             primitive = PRIMITIVES[kind.kind]
             self._align(primitive.size)
-            found = self._take(primitive.size, f"{primitive.size} bytes")
-            return struct.unpack(self._order + primitive.code, found)[0]
+            data = self._take(primitive.size, f"{primitive.size} bytes")
+            return struct.unpack(self._order + primitive.code, data)[0]
         text = self._wide_text() if kind.kind == "wstring" else self._text()
         if kind.string_bound is not None and len(text) > kind.string_bound:
             self._fail(f"{len(text)} characters, at most {kind.string_bound} fit")
@@ -104,11 +104,11 @@ class FallbackDecoder:
     def _text(self) -> str:
         size = self._count("bytes of text")
         start = self._pos
-        found = bytes(self._take(size, f"{size} bytes of text"))
+        data = bytes(self._take(size, f"{size} bytes of text"))
         # Some writers leave out the NUL, or write a length of 0 for an empty string.
-        found = found.removesuffix(b"\0")
+        data = data.removesuffix(b"\0")
         try:
-            return found.decode()
+            return data.decode()
         except UnicodeDecodeError as error:
             self._pos = start + error.start
             self._fail(f"invalid UTF-8 ({error.reason})")
@@ -116,9 +116,9 @@ class FallbackDecoder:
     def _wide_text(self) -> str:
         count = self._count("characters")
         start = self._pos
-        found = self._take(4 * count, f"{count} characters of 4 bytes")
+        data = self._take(4 * count, f"{count} characters of 4 bytes")
         try:
-            return wide_string(found, self._order)
+            return wide_string(data, self._order)
         except UnicodeDecodeError as error:
             self._pos = start
             self._fail(f"invalid UTF-16 or UTF-32 ({error.reason})")
@@ -129,11 +129,11 @@ class FallbackDecoder:
         primitive = PRIMITIVES[kind.kind]
         if count:
             self._align(primitive.size)
-        found = self._take(primitive.size * count, f"{count} elements of {primitive.size} bytes")
+        data = self._take(primitive.size * count, f"{count} elements of {primitive.size} bytes")
         if kind.kind == "bool":
-            array = np.frombuffer(found, np.uint8) != 0
+            array = np.frombuffer(data, np.uint8) != 0
         else:
-            array = np.frombuffer(found, f"{self._order}{primitive.dtype}")
+            array = np.frombuffer(data, f"{self._order}{primitive.dtype}")
             # Subscribers get arrays in the machine's byte order.
             array = array.astype(array.dtype.newbyteorder("="), copy=False)
         array.flags.writeable = False
@@ -141,8 +141,8 @@ class FallbackDecoder:
 
     def _count(self, what: str) -> int:
         self._align(COUNT_SIZE)
-        found = self._take(COUNT_SIZE, f"the number of {what}")
-        count: int = struct.unpack(f"{self._order}I", found)[0]
+        data = self._take(COUNT_SIZE, f"the number of {what}")
+        count: int = struct.unpack(f"{self._order}I", data)[0]
         return count
 
     def _align(self, alignment: int) -> None:
