@@ -33,6 +33,10 @@ ALIASES: Final = {
     "tf2_ros": "aionode.rclpy._tf2_ros",
     "tf2_geometry_msgs": "aionode.rclpy._tf2_geometry_msgs",
     "tf2_sensor_msgs": "aionode.rclpy._tf2_sensor_msgs",
+    "cv_bridge": "aionode.rclpy._cv_bridge",
+    "message_filters": "aionode.rclpy._message_filters",
+    "ros2_numpy": "aionode.rclpy._ros2_numpy",
+    "tf_transformations": "aionode.rclpy._tf_transformations",
 }
 """The packages of ROS that are packages of aionode; their modules are the same objects."""
 

@@ -15,24 +15,18 @@ PURE_PYTHON: Final = """
     action_tutorials_py camera_info_manager_py diagnostic_common_diagnostics diagnostic_updater
     interactive_markers joint_state_publisher laser_geometry launch_param_builder
     moveit_configs_utils nav2_common nav2_simple_commander py_trees_ros rclpy_message_converter
-    resource_retriever ros2_numpy ros2action ros2cli ros2component ros2doctor ros2interface
+    resource_retriever ros2action ros2cli ros2component ros2doctor ros2interface
     ros2lifecycle ros2node ros2param ros2pkg ros2run ros2service ros2topic rosapi rosbridge_library
     rosbridge_server rosidl_adapter rosidl_cli rosidl_pycommon rpyutils smach smach_ros
-    teleop_twist_joy teleop_twist_keyboard tf2_tools tf_transformations twist_stamper urdf_parser_py
+    teleop_twist_joy teleop_twist_keyboard tf2_tools twist_stamper urdf_parser_py
 """
 """Packages of ROS without compiled modules, whose source works where it lies."""
 
 INSTEAD: Final = {
-    "cv_bridge": "`aionode.image` converts images",
-    "message_filters": "`aionode.message_filters` has its names",
     "launch": "start each node with `aionode run`",
     "launch_ros": "start each node with `aionode run`",
     "launch_testing": "aionode's fixtures for pytest start nodes in tests",
     "rosbag2_py": "the distribution rosbags (`pip install rosbags`) reads and writes bags",
-    "tf2_ros": "`aionode.tf.BufferCore` has tf2's rules in Python",
-    "tf2_py": "`aionode.tf.BufferCore` has tf2's rules in Python",
-    "tf2_geometry_msgs": "`aionode.tf.BufferCore` has tf2's rules in Python",
-    "tf2_sensor_msgs": "`aionode.tf.BufferCore` has tf2's rules in Python",
     "tf2_kdl": "tf_transformations computes with rotations in numpy",
     "PyKDL": "tf_transformations computes with rotations in numpy",
     "image_geometry": "OpenCV (`pip install opencv-python-headless`) has its functions",

@@ -70,6 +70,25 @@ def test_the_module_of_one_message_is_there() -> None:
 
 
 @pytest.mark.usefixtures("installed")
+@pytest.mark.parametrize(
+    ("module", "name"),
+    [
+        ("cv_bridge", "CvBridge"),
+        ("cv_bridge.core", "CvBridgeError"),
+        ("cv_bridge.boost.cv_bridge_boost", "cvtColor2"),
+        ("message_filters", "ApproximateTimeSynchronizer"),
+        ("ros2_numpy", "numpify"),
+        ("ros2_numpy.point_cloud2", "pointcloud2_to_xyz_array"),
+        ("ros2_numpy.transformations", "quaternion_from_euler"),
+        ("tf_transformations", "euler_from_quaternion"),
+    ],
+)
+def test_small_packages_beside_rclpy_are_there(module: str, name: str) -> None:
+    """Most programs of robots import one of them."""
+    assert callable(getattr(importlib.import_module(module), name))
+
+
+@pytest.mark.usefixtures("installed")
 def test_the_parts_of_services_and_actions_are_there() -> None:
     """Some programs import them by their full names."""
     service = importlib.import_module("std_srvs.srv")

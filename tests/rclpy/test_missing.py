@@ -20,7 +20,7 @@ from aionode.rclpy._missing import advice, missing_modules
         ("ros2topic.api", "PYTHONPATH"),
         ("rqt_gui_py", "where ROS 2 is installed"),
         ("rospy", "ROS 1"),
-        ("tf2_geometry_msgs", "aionode.tf"),
+        ("tf2_kdl", "tf_transformations"),
     ],
 )
 def test_a_known_package_has_its_own_way(module: str, part: str) -> None:

@@ -165,6 +165,22 @@ def test_messages_of_the_user_are_given_by_an_option(folder: Path) -> None:
     assert done.stdout == "run_msgs.msg.Score(value=0.5)\n"
 
 
+def test_nothing_is_imported_that_a_program_does_not_use(folder: Path) -> None:
+    """The packages beside rclpy cost a program nothing until it imports them."""
+    (folder / "own.py").write_text(
+        "import sys, rclpy\n"
+        "print([n for n in sys.modules if n.startswith(('aionode.rclpy._', 'cv2'))])\n"
+    )
+
+    loaded = run(folder, "own.py").stdout
+
+    assert "aionode.rclpy._finder" in loaded
+    for package in ("_cv_bridge", "_message_filters", "_ros2_numpy", "_tf_transformations"):
+        assert f"aionode.rclpy.{package}" not in loaded
+    for module in ("'cv2'", "aionode.rclpy._check", "aionode.rclpy._missing"):
+        assert module not in loaded
+
+
 def test_options_of_programs_are_refused_for_nodes(folder: Path) -> None:
     """They would have no effect."""
     done = run(folder, "run", "--interfaces", ".", "helper:Nothing", module="aionode")

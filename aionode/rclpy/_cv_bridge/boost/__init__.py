@@ -1,0 +1,1 @@
+"""Where cv_bridge has what is compiled."""

@@ -1,0 +1,108 @@
+"""What programs know as `message_filters`: `aionode.message_filters` for nodes of rclpy."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
+from typing import Any
+
+from aionode import message_filters
+from aionode.message_filters import Chain, SimpleFilter
+from aionode.rclpy.clock import ROSClock
+from aionode.rclpy.time import Time
+
+__all__ = [
+    "ApproximateTimeSynchronizer",
+    "Cache",
+    "Chain",
+    "SimpleFilter",
+    "Subscriber",
+    "TimeSynchronizer",
+]
+
+DEPTH = 10
+"""The depth of a subscription's queue if it is not given."""
+
+
+class Stamps(message_filters.Stamps):
+    """Finds the stamp of each message as time of rclpy."""
+
+    def of(self, msg: Any) -> Any:
+        """Return the stamp of a message; None if the message cannot be used."""
+        stamp = getattr(getattr(msg, "header", None), "stamp", None)
+        if stamp is not None:
+            return stamp if hasattr(stamp, "nanoseconds") else Time.from_msg(stamp)
+        return ROSClock().now() if super().of(msg) is not None else None
+
+
+class Subscriber(message_filters.Subscriber):
+    """Starts a chain: a subscription whose messages go to the filters that are connected to it.
+
+    Args:
+        node: The node that subscribes.
+        msg_type: A message class.
+        topic: Name of the topic.
+        options: What `Node.create_subscription` takes besides; `qos_profile` is 10 by default.
+
+    Attributes:
+        node: The node.
+        sub: The subscription.
+    """
+
+    def __init__(self, node: Any, msg_type: type[Any], topic: str, **options: Any) -> None:
+        super().__init__(node, msg_type, topic, **{"qos_profile": DEPTH, **options})
+        self.node = node
+
+
+class Cache(message_filters.Cache):
+    """Stores the newest messages of another filter, and passes them on."""
+
+    def __init__(
+        self, f: SimpleFilter, cache_size: int = 1, allow_headerless: bool = False
+    ) -> None:
+        super().__init__(f, cache_size, allow_headerless)
+        self.allow_headerless = allow_headerless
+        self._stamps = Stamps(allow_headerless=allow_headerless)
+
+
+class TimeSynchronizer(message_filters.TimeSynchronizer):
+    """Calls back with one message of each input, all with the same stamp.
+
+    The inputs may be called in several threads at once.
+    """
+
+    def __init__(self, fs: Sequence[SimpleFilter], queue_size: int) -> None:
+        self.lock = threading.RLock()  # a callback may give another message to its own input
+        super().__init__(fs, queue_size)
+        self.queue_size = queue_size
+        self._stamps = Stamps(allow_headerless=False)
+
+    def add(self, msg: Any, index: int) -> None:
+        """Add a message of an input."""
+        with self.lock:
+            super().add(msg, index)
+
+
+class ApproximateTimeSynchronizer(message_filters.ApproximateTimeSynchronizer):
+    """Calls back with one message of each input, whose stamps differ by less than `slop` seconds.
+
+    The inputs may be called in several threads at once.
+    """
+
+    def __init__(
+        self,
+        fs: Sequence[SimpleFilter],
+        queue_size: int,
+        slop: float,
+        allow_headerless: bool = False,
+    ) -> None:
+        self.lock = threading.RLock()  # as in TimeSynchronizer
+        super().__init__(fs, queue_size, slop, allow_headerless)
+        self.queue_size = queue_size
+        self.allow_headerless = allow_headerless
+        self._stamps = Stamps(allow_headerless=allow_headerless)
+
+    def add(self, msg: Any, index: int) -> None:
+        """Add a message of an input."""
+        with self.lock:
+            super().add(msg, index)

@@ -1,0 +1,92 @@
+"""Images as arrays."""
+
+from __future__ import annotations
+
+import sys
+from array import array
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from aionode.rclpy._arrays import array_over
+from aionode.rclpy._ros2_numpy.registry import converts_from_numpy, converts_to_numpy
+from aionode.rclpy._rosidl import message_class
+
+__all__ = ["image_to_numpy", "name_to_dtypes", "numpy_to_image"]
+
+Image = message_class("sensor_msgs/msg/Image")
+
+COLOURS = {"mono": 1, "rgb": 3, "bgr": 3, "rgba": 4, "bgra": 4}
+BAYER = ("bayer_rggb", "bayer_bggr", "bayer_gbrg", "bayer_grbg")
+OPENCV: dict[str, type[Any]] = {
+    "8U": np.uint8,
+    "8S": np.int8,
+    "16U": np.uint16,
+    "16S": np.int16,
+    "32S": np.int32,
+    "32F": np.float32,
+    "64F": np.float64,
+}
+DEPTHS: dict[int, type[Any]] = {8: np.uint8, 16: np.uint16}
+
+name_to_dtypes: dict[str, tuple[type[Any], int]] = {
+    **{
+        f"{name}{bits}": (DEPTHS[bits], count) for name, count in COLOURS.items() for bits in DEPTHS
+    },
+    **{f"{name}{bits}": (DEPTHS[bits], 1) for name in BAYER for bits in DEPTHS},
+    **{
+        f"{name}C{count}": (dtype, count) for name, dtype in OPENCV.items() for count in range(1, 5)
+    },
+}
+"""The type and number of the channels of each encoding."""
+
+
+@converts_to_numpy(Image)
+def image_to_numpy(msg: Any) -> npt.NDArray[Any]:
+    """Return the pixels over the bytes of the message: rows, columns, and channels if several.
+
+    Raises:
+        TypeError: The encoding is unknown, or the data too short.
+    """
+    dtype, channels = channels_of(msg.encoding)
+    size = dtype.itemsize
+    pixels = array_over(
+        msg.data,
+        (msg.height, msg.width, channels),
+        dtype.newbyteorder(">" if msg.is_bigendian else "<"),
+        (msg.step, size * channels, size),
+    )
+    return pixels[..., 0] if channels == 1 else pixels
+
+
+@converts_from_numpy(Image)
+def numpy_to_image(arr: npt.NDArray[Any], encoding: str) -> Any:
+    """Return an image of rows, columns, and channels if there are several.
+
+    Raises:
+        TypeError: The encoding is unknown, or does not fit the array.
+    """
+    dtype, channels = channels_of(encoding)
+    if arr.ndim not in {2, 3}:
+        raise TypeError(f"an array of {arr.ndim} dimensions; an image has two or three")
+    given = 1 if arr.ndim == 2 else arr.shape[2]
+    if given != channels:
+        raise TypeError(f"an array of {given} channels; {encoding} has {channels}")
+    if arr.dtype.type is not dtype.type:
+        raise TypeError(f"an array of {arr.dtype}; {encoding} has {dtype}")
+    whole = np.ascontiguousarray(arr)
+    order = whole.dtype.byteorder
+    image = Image(encoding=encoding, height=arr.shape[0], width=arr.shape[1])
+    image.data = array("B", whole.tobytes())
+    image.step = whole.strides[0]
+    image.is_bigendian = int(order == ">" or (order == "=" and sys.byteorder == "big"))
+    return image
+
+
+def channels_of(encoding: str) -> tuple[np.dtype[Any], int]:
+    """Return the type and number of the channels of an encoding."""
+    if encoding not in name_to_dtypes:
+        raise TypeError(f"the encoding {encoding!r} is unknown; such as rgb8, mono16 and 32FC1 fit")
+    dtype, channels = name_to_dtypes[encoding]
+    return np.dtype(dtype), channels
