@@ -118,9 +118,10 @@ class Context:
             default ``ROS_DISTRO``, or ``"jazzy"``. Nodes of Humble and of newer distributions never
             hear each other, so a context talks to one or the other.
         queue_bytes: How many bytes of messages may wait in each queue from and to other processes:
-            of a subscription whose loop is busy, and of a publisher whose readers are slow. What
-            is more is dropped and counted, or refused by KEEP_ALL. By default
-            ``AIONODE_QUEUE_BYTES``, or 32 MiB; a single message is never too large.
+            of a subscription whose loop or callback is busy, of a service, and of a publisher whose
+            readers are slow. What is more is dropped and counted, or refused by KEEP_ALL and
+            services. By default ``AIONODE_QUEUE_BYTES``, or 32 MiB; a single message is never too
+            large.
         graph_bytes: How many bytes of what other processes announce are kept, nodes and endpoints
             above all, which count about 2.2 kB each. One process may have an eighth of that. What
             is more is left out, and a warning says so. By default ``AIONODE_GRAPH_BYTES``, or 64

@@ -38,6 +38,7 @@ SHARED = {
     "aionode.lifecycle._answers": "managed nodes of rclpy's API give the same answers",
     "aionode.logging._severity": "arguments name severities, and do not log",
     "aionode.message._field_types": "the codec compiles the fields of a message",
+    "aionode.message._memory_size": "queues add up what their messages take",
     "aionode.message._message": "definitions become message classes",
     "aionode.message._validation": "the codec checks values by the same rules",
     "aionode.tf._apply": "the command line prints rotations as matrices and angles",

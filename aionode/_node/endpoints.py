@@ -480,7 +480,13 @@ class NodeEndpoints(NodeParameters):
         endpoint = self.context._describe_endpoint(
             kind, self._info, full_name, ros_type, profile.resolved()
         )
-        return EndpointSetup(endpoint, self.graph, self._callbacks, self._affinity)
+        return EndpointSetup(
+            endpoint,
+            self.graph,
+            self._callbacks,
+            self._affinity,
+            self.context.network.queue_bytes,
+        )
 
 
 def load_arrays(ros_type: Any) -> None:

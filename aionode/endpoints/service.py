@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Coroutine
+from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from aionode.clock import perf_ns
@@ -13,6 +14,7 @@ from aionode.endpoints._core.callback_runner import (
     consume,
     is_unfinished,
 )
+from aionode.endpoints._core.endpoint import report_heavy
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints.service_introspection import (
     REQUEST_RECEIVED,
@@ -21,6 +23,7 @@ from aionode.endpoints.service_introspection import (
 )
 from aionode.endpoints.stats import CallbackStats
 from aionode.message import Message, type_name
+from aionode.message._memory_size import memory_size
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -78,6 +81,14 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
         self._message_queue: MessageQueue[Request] = MessageQueue(
             WAITING_REQUESTS, self.stats, keep_all=True
         )
+        size_of = memory_size(srv_type.Request)
+        if size_of is not None:
+            self._message_queue.weigh(
+                lambda request: size_of(request.message),
+                setup.queue_bytes,
+                partial(report_heavy, setup, "refused"),
+                unweighed=0,
+            )
         self._concurrent = checked_concurrency(concurrent, self._subject)
         self._client_gid = b""  # of the last request that was begun
         wants = accepts(
@@ -104,11 +115,12 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
             request.drop()
         elif inline_deadline_ns and self._message_queue.take_inline(request, inline_deadline_ns):
             pass
-        elif self._message_queue.has_room():
-            self._message_queue.put(request)
-        else:
-            self.stats.dropped += 1
-            request.fail("QueueFullError", f"{WAITING_REQUESTS} requests are waiting already")
+        elif not self._message_queue.put(request):
+            waiting = len(self._message_queue)
+            problem = f"{waiting} requests are waiting already"
+            if waiting < WAITING_REQUESTS:
+                problem += ", which take as many bytes as may wait (AIONODE_QUEUE_BYTES)"
+            request.fail("QueueFullError", problem)
 
     def _run(self) -> Coroutine[Any, Any, None]:
         """Return the coroutine that answers requests."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Coroutine
+from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from aionode._concurrency import SLICE_NS, checkpoint
@@ -14,7 +15,7 @@ from aionode.endpoints._core.callback_runner import (
     checked_concurrency,
     consume,
 )
-from aionode.endpoints._core.endpoint import Endpoint
+from aionode.endpoints._core.endpoint import Endpoint, report_heavy
 from aionode.endpoints._core.silence_watch import Silence, SilenceWatch
 from aionode.endpoints._core.subscription_reader import MessageInfo, SubscriptionReader
 from aionode.endpoints._qos.event_hub import is_limited
@@ -22,6 +23,7 @@ from aionode.endpoints._qos.subscription_monitor import SubscriptionMonitor
 from aionode.endpoints.stats import CallbackStats
 from aionode.errors import DecodeError, EntityDestroyedError
 from aionode.message import Message
+from aionode.message._memory_size import memory_size
 from aionode.qos import is_unlimited
 from aionode.transport.base import ReaderRegistration
 
@@ -97,6 +99,11 @@ class Subscription(Endpoint, Generic[ItemT]):
         self._reader = SubscriptionReader(
             setup.endpoint, self.stats, time_base, raw=raw, wants_info=wants == 2
         )
+        size_of = len if raw else memory_size(msg_type)
+        if size_of is not None:
+            self._reader.weigh_messages(
+                size_of, setup.queue_bytes, partial(report_heavy, setup, "dropped")
+            )
         if self._runner is not None:
             self._reader.runner = self._runner
         self._time_base = time_base

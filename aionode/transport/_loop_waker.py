@@ -23,7 +23,7 @@ from aionode.clock import perf_ns
 
 if TYPE_CHECKING:
     import asyncio
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
 __all__ = ["LoopWaker", "MessageArrivals", "ThreadsafeQueue"]
 
@@ -200,6 +200,11 @@ class ThreadsafeQueue(Generic[T]):
         for _ in range(len(items)):
             if items:  # the handler may clear the queue
                 self._handle(items.popleft())
+
+    def take_out(self) -> Iterator[T]:
+        """Yield all items, which are not handled."""
+        while self._items:
+            yield self._items.popleft()
 
     def clear(self) -> None:
         """Drop all items."""

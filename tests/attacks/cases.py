@@ -97,6 +97,13 @@ def all_attacks() -> list[Attack]:
             "requests that are none", "member", "send_damaged_requests", pair(parameter_size=10)
         ),
         Attack(
+            "20 requests of 1 MB a second, whose answers it does not read (queues of 4 MiB)",
+            "member",
+            "ask_largely",
+            pair(env=SMALL_QUEUES, parameter_size=100_000),
+            6.0,
+        ),
+        Attack(
             "asks for what is kept for late readers, and reads nothing (queues of 4 MiB)",
             "member",
             "ask_and_read_nothing",
@@ -119,7 +126,7 @@ def all_attacks() -> list[Attack]:
             issue=ZENOH,
         ),
         Attack(
-            "40 messages of 1 MB a second to a busy loop (queues of 4 MiB)",
+            "40 messages of 1 MB a second to a busy loop (depth 10 000, queues of 4 MiB)",
             "member",
             "flood_topic",
             (
@@ -161,5 +168,5 @@ def all_attacks() -> list[Attack]:
 
 def worker(role: Role) -> Role:
     """Return a role with a callback besides that keeps its loop for most of the time."""
-    hear = (*role.hear, Hear("/work", depth=10, block_s=0.1))
+    hear = (*role.hear, Hear("/work", depth=10_000, block_s=0.1))
     return msgspec.structs.replace(role, hear=hear)

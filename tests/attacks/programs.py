@@ -271,6 +271,24 @@ def ask_and_read_nothing(liar: Liar, seconds: float) -> int:
     return 4
 
 
+def ask_largely(liar: Liar, seconds: float) -> int:
+    """Send 20 requests of 1 MB a second, and read none of the answers."""
+    liar.endpoints(EndpointKind.SERVER, "/talker/get_parameters")
+    key = liar.key("/talker/get_parameters", GetParameters)
+    payload = cdr.encode(GetParameters.Request(names=["large", "x" * 1_000_000]))
+    begun()
+    ends_s = time.monotonic() + seconds
+
+    def read_nothing(_: zenoh.Reply) -> None:
+        time.sleep(max(0.0, ends_s - time.monotonic()))  # in the thread that reads
+
+    unread = zenoh.handlers.Callback(read_nothing, indirect=False)
+    for number in pace(seconds, 20):
+        extra = attachment.pack(number + 1, time.time_ns(), os.urandom(16))
+        liar.session.get(key, unread, payload=payload, attachment=extra, timeout=60.0)
+    return number + 1
+
+
 # Members: what is announced
 
 
@@ -429,6 +447,7 @@ PROGRAMS: dict[str, Program] = {
             ask_for_one_name,
             send_damaged_requests,
             ask_and_read_nothing,
+            ask_largely,
             filter_costly,
             filter_often,
             subscribe_oddly,

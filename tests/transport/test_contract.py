@@ -30,6 +30,7 @@ from aionode.transport.rcl import RclTransport
 from aionode.wire import cdr
 from tests.support import fake_rcl
 from tests.support.ros import gids_of_a_client, ros_domain, ros_missing
+from tests.support.waiting import until
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
@@ -48,6 +49,7 @@ class Pair(NamedTuple):
 
 OVER_RCL = {
     "test_a_failing_handler_answers_with_its_error": "a service of ROS 2 carries no error",
+    "test_so_many_bytes_wait_for_a_service": "as above",
     "test_both_sides_see_the_same_graph": "DDS discovery does not tell history and depth",
 }
 """The tests of what a middleware under rcl cannot do, with the reasons."""
@@ -364,3 +366,53 @@ async def test_both_sides_see_the_same_graph(pair: Pair) -> None:
         "/numbers"
     ) == pair.left.get_publishers_info_by_topic("/numbers")
     assert sorted(pair.right.get_node_names()) == sorted(pair.left.get_node_names())
+
+
+@pytest.fixture
+def small_queues(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let 1 MB wait in each queue."""
+    monkeypatch.setenv("AIONODE_QUEUE_BYTES", "1000000")
+
+
+@pytest.mark.usefixtures("small_queues")
+async def test_so_many_bytes_wait_in_a_subscription_whatever_its_depth(pair: Pair) -> None:
+    """The oldest make room, and are counted; one that is larger than the limit gets through."""
+    late = pair.right.create_subscription(Image, "images", None, 1000)
+    writer = pair.left.create_publisher(Image, "images", 1000)
+    await writer.wait_for_subscribers()
+    for number in range(40):
+        writer.publish(Image(width=number, data=bytes(100_000)))
+        await until(lambda: late._reader.items and late._reader.items[-1][1].width == number)  # noqa: B023  # called at once
+    kept = [(await late.receive()).width for _ in range(len(late._reader))]
+
+    assert kept == list(range(40 - len(kept), 40))
+    assert 8 <= len(kept) <= 20
+    assert late.stats.dropped == 40 - len(kept)
+
+    writer.publish(Image(width=40, data=bytes(3_000_000)))
+    assert (await late.receive()).width == 40
+
+
+@pytest.mark.usefixtures("small_queues")
+async def test_so_many_bytes_wait_for_a_service(pair: Pair) -> None:
+    """One more is refused at once: its client waits for nothing."""
+    opened = asyncio.Event()
+
+    async def wait(request: Request) -> Response:
+        await opened.wait()
+        return Response(int32_value=request.int32_value)
+
+    service = pair.right.create_service(BasicTypes, "wait", wait)
+    client = pair.left.create_client(BasicTypes, "wait")
+    await client.wait_for_service()
+    text = "x" * 100_000
+    calls = [
+        client.call_async(Request(int32_value=number, string_value=text)) for number in range(30)
+    ]
+    await until(lambda: sum(each.done() for each in calls) + len(service._message_queue) == 29)
+    opened.set()
+    answers = await asyncio.gather(*calls, return_exceptions=True)
+
+    refused = [each for each in answers if isinstance(each, ServiceError)]
+    assert 8 <= len(answers) - len(refused) <= 12
+    assert "as many bytes as may wait (AIONODE_QUEUE_BYTES)" in str(refused[0])

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from aionode.endpoints._core.loop_affinity import LoopAffinity
     from aionode.graph import EndpointInfo, Graph
 
-__all__ = ["Endpoint", "EndpointSetup"]
+__all__ = ["Endpoint", "EndpointSetup", "report_heavy"]
 
 
 class EndpointSetup(NamedTuple):
@@ -25,12 +25,23 @@ class EndpointSetup(NamedTuple):
         graph: The graph.
         callbacks: How the node runs callbacks.
         affinity: The event loop that the node runs in.
+        queue_bytes: How many bytes of messages or requests may wait for its callback.
     """
 
     endpoint: EndpointInfo
     graph: Graph
     callbacks: Callbacks
     affinity: LoopAffinity
+    queue_bytes: int
+
+
+def report_heavy(setup: EndpointSetup, what: str) -> None:
+    """Log that messages or requests were dropped or refused since they have too many bytes."""
+    setup.callbacks.logger.warning(
+        f"{setup.endpoint.name}: more than {setup.queue_bytes / 2**20:.3g} MiB wait here for "
+        f"their callback; what is more is {what}, and only counted from now on, in stats.dropped. "
+        "AIONODE_QUEUE_BYTES, or Context(queue_bytes=…), sets the limit"
+    )
 
 
 class Endpoint(Entity):
@@ -49,7 +60,7 @@ class Endpoint(Entity):
         self, subject: str, setup: EndpointSetup, stage: EndStage = EndStage.CALLBACKS
     ) -> None:
         super().__init__(subject, stage)
-        self._endpoint, self._graph, self._callbacks, self._affinity = setup
+        self._endpoint, self._graph, self._callbacks, self._affinity, _ = setup
         self.qos_profile = self._endpoint.qos
         self._unwatch: list[Callable[[], None]] = []
         self._unreported: AbstractSet[str] = frozenset()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections import deque
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, Final, Generic, TypeVar
 
 from aionode._concurrency import SLICE_NS, checkpoint
 from aionode.clock import perf_ns
@@ -19,12 +19,18 @@ __all__ = ["MessageQueue"]
 
 T = TypeVar("T")
 
+UNWEIGHED: Final = 2
+"""So many items are queued before their bytes count: a queue that keeps up has no more."""
+
+UNLIMITED_BYTES: Final = 1 << 62
+
 
 class MessageQueue(InlineCall, Generic[T]):
     """A bounded FIFO queue.
 
-    With KEEP_LAST a full queue drops its oldest item, with KEEP_ALL it refuses the newest; both are
-    counted in `stats.dropped`. Putting never waits and needs no running loop.
+    With KEEP_LAST a full queue drops its oldest items, with KEEP_ALL it refuses the newest; both
+    are counted in `stats.dropped`. Putting never waits and needs no running loop. A queue is full
+    by its depth, or by the bytes of its items; a single item always fits.
 
     Items may also bypass it: while `consume` waits, `take_inline` handles an item within the event
     that brought it. Waking the consumer instead takes one more iteration of the loop and a
@@ -37,19 +43,27 @@ class MessageQueue(InlineCall, Generic[T]):
         depth: How many items it holds at most.
         keep_all: Whether it refuses the newest item when full.
         stats: Where dropped items are counted.
+        limit_bytes: How many bytes its items have at most, if they are weighed.
+        weighed_from: From how many items on `make_room` decides whether one more fits.
         items: What is queued, with the `perf_ns` of its arrival. Read only, but for a subscription
             that drops messages when they expire: it puts a deque there that does.
     """
 
     __slots__ = (
+        "_bytes",
         "_handle",
         "_inline_waiter",
+        "_on_heavy",
         "_readers",
+        "_size_of",
+        "_sizes",
         "_writers",
         "depth",
         "items",
         "keep_all",
+        "limit_bytes",
         "stats",
+        "weighed_from",
     )
 
     def __init__(self, depth: int, stats: CallbackStats, *, keep_all: bool = False) -> None:
@@ -58,6 +72,14 @@ class MessageQueue(InlineCall, Generic[T]):
         self.keep_all = keep_all
         self.stats = stats
         self.items: deque[tuple[int, T]] = deque()
+        # The sizes of the newest items, as many as were weighed, and their sum. What was taken from
+        # the queue is found out when the next one is weighed: taking costs nothing.
+        self._sizes: deque[int] = deque()
+        self._bytes = 0
+        self._size_of: Callable[[T], int] | None = None
+        self._on_heavy: Callable[[], None] | None = None
+        self.limit_bytes = UNLIMITED_BYTES
+        self.weighed_from = depth
         # Those that wait for an item and for room; emptied when they are woken.
         self._readers: list[asyncio.Future[None]] = []
         self._writers: list[asyncio.Future[None]] = []
@@ -69,20 +91,64 @@ class MessageQueue(InlineCall, Generic[T]):
     def __len__(self) -> int:
         return len(self.items)
 
-    def put(self, item: T) -> None:
-        """Add `item`, and wake the readers.
+    def weigh(
+        self,
+        size_of: Callable[[T], int],
+        limit_bytes: int,
+        on_heavy: Callable[[], None],
+        unweighed: int = UNWEIGHED,
+    ) -> None:
+        """Limit the bytes of its items as well.
+
+        Args:
+            size_of: Returns about how many bytes an item has.
+            limit_bytes: The limit.
+            on_heavy: Called when it is met for the first time.
+            unweighed: So many items are queued before their bytes count.
+        """
+        self._size_of = size_of
+        self._on_heavy = on_heavy
+        self.limit_bytes = limit_bytes
+        self.weighed_from = min(self.depth, unweighed)
+
+    def put(self, item: T) -> bool:
+        """Add `item`, wake the readers, and return whether it was added.
 
         `SubscriptionReader.deliver` repeats this.
         """
         queue = self.items
-        if len(queue) >= self.depth:
-            self.stats.dropped += 1
-            if self.keep_all:
-                return
-            queue.popleft()
+        if len(queue) >= self.weighed_from and not self.make_room(item):
+            return False
         queue.append((perf_ns(), item))
         if self._readers:
             self.wake_readers()
+        return True
+
+    def make_room(self, item: T) -> bool:
+        """Drop the oldest items until one more fits; return whether it does, and count what not."""
+        queue = self.items
+        size_bytes = 0 if self._size_of is None else self._size_of(item)
+        count = len(queue)
+        while count and (count >= self.depth or self._weight() + size_bytes > self.limit_bytes):
+            self.stats.dropped += 1
+            if count < self.depth and self._on_heavy is not None:
+                heavy, self._on_heavy = self._on_heavy, None
+                heavy()
+            if self.keep_all:
+                return False
+            queue.popleft()
+            count -= 1
+        if self._size_of is not None:
+            self._sizes.append(size_bytes)
+            self._bytes += size_bytes
+        return True
+
+    def _weight(self) -> int:
+        """Return how many bytes the items have that were weighed and are still here."""
+        sizes, count = self._sizes, len(self.items)
+        while len(sizes) > count:
+            self._bytes -= sizes.popleft()
+        return self._bytes
 
     def pop(self) -> tuple[int, T]:
         """Take the oldest item, with the `perf_ns` of its arrival; IndexError when empty."""
@@ -93,7 +159,9 @@ class MessageQueue(InlineCall, Generic[T]):
 
     def has_room(self) -> bool:
         """Return whether an item can be added without losing one that should be kept."""
-        return not self.keep_all or len(self.items) < self.depth
+        return not self.keep_all or (
+            len(self.items) < self.depth and (not self.items or self._weight() < self.limit_bytes)
+        )
 
     @property
     def waiting(self) -> int:

@@ -116,7 +116,7 @@ class SubscriptionReader(MessageQueue[Any]):
         self._last_sequences: dict[bytes, int] = {}
         self._reception_sequence = 0
 
-    def deliver(  # noqa: C901, PLR0912  # fewer calls for each message, see below
+    def deliver(  # noqa: C901  # fewer calls for each message, see below
         self,
         msg: Any,
         gid: bytes,
@@ -167,11 +167,8 @@ class SubscriptionReader(MessageQueue[Any]):
             return
         # `put` written out.
         queue = self.items
-        if len(queue) >= self.depth:
-            self.stats.dropped += 1
-            if self.keep_all:
-                return
-            queue.popleft()
+        if len(queue) >= self.weighed_from and not self.make_room(msg):
+            return
         queue.append((perf_ns(), msg))
         if self._readers:
             self.wake_readers()
@@ -233,6 +230,13 @@ class SubscriptionReader(MessageQueue[Any]):
         item = (msg, self._info(sample_info)) if self.wants_info else msg
         if not (inline_deadline_ns and self.take_inline(item, inline_deadline_ns)):
             self.put(item)
+
+    def weigh_messages(
+        self, size_of: Callable[[Any], int], limit_bytes: int, on_heavy: Callable[[], None]
+    ) -> None:
+        """Limit the bytes of the messages that wait, as `weigh` does."""
+        of_item = (lambda item: size_of(item[0])) if self.wants_info else size_of
+        self.weigh(of_item, limit_bytes, on_heavy)
 
     def set_filter(self, accepts: Callable[[Any], bool] | None) -> None:
         """Deliver only what `accepts` is true of, or everything.

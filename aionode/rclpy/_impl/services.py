@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections import deque
+from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -60,17 +61,24 @@ class rmw_service_info_t(NamedTuple):  # noqa: N801  # rclpy's name
 class Requests:
     """The requests that wait for a server; filled by the thread of the context."""
 
-    def __init__(self, limit: int, arrivals: Arrivals) -> None:
+    def __init__(self, limit: int, limit_bytes: int, arrivals: Arrivals) -> None:
         self.items: deque[tuple[Request, int]] = deque()
         self._limit = limit
+        self._limit_bytes = limit_bytes
         self._arrivals = arrivals
 
     def serve(self, request: Request, inline_deadline_ns: int = 0) -> None:
         """Take one request; the oldest makes room, and its client learns that."""
-        if len(self.items) >= self._limit:
-            self.items.popleft()[0].drop()
+        while self.items and (len(self.items) >= self._limit or self._is_heavy(request)):
+            with suppress(IndexError):  # another thread has taken it
+                self.items.popleft()[0].drop()
         self.items.append((request, now_ns()))
         self._arrivals.note()
+
+    def _is_heavy(self, request: Request) -> bool:
+        waiting = self.items.copy()  # other threads take from it
+        waiting_bytes = sum(len(each.message.data) for each, _ in waiting)
+        return waiting_bytes + len(request.message.data) > self._limit_bytes
 
 
 class ServiceHandle(Destroyable):
@@ -84,7 +92,9 @@ class ServiceHandle(Destroyable):
         self.srv_type = srv_type
         node.context_handle.refuse_after_shutdown("failed to create service")
         profile = profile_of(qos_profile)
-        self._requests = Requests(profile.depth or MOST_REQUESTS, node.requests)
+        self._requests = Requests(
+            profile.depth or MOST_REQUESTS, node.bare.context.network.queue_bytes, node.requests
+        )
         self._taken: dict[rmw_request_id_t, Request] = {}
         self._name = node.resolve(srv_name, is_service=True)
         self._introspection = Introspection(node, srv_type, self._name)

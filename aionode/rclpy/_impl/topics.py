@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections import deque
+from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -32,6 +33,9 @@ Feed = list["Callable[[SampleInfo | None], None]"]
 
 Sample = tuple[Any, SampleInfo, int, int]
 """A message, where it comes from, when it arrived, and its number among those that were taken."""
+
+UNWEIGHED = 2
+"""So many messages wait before their bytes count."""
 
 logger = logging.getLogger("aionode.rclpy")
 
@@ -168,7 +172,11 @@ class Inbox:
     endpoint: EndpointInfo
 
     def __init__(
-        self, profile: Any, arrivals: Arrivals, post: Callable[[Callable[[], object]], None]
+        self,
+        profile: Any,
+        limit_bytes: int,
+        arrivals: Arrivals,
+        post: Callable[[Callable[[], object]], None],
     ) -> None:
         keep_all = profile.resolved().history.name == "KEEP_ALL"
         self.limit = KEEP_ALL_DEPTH if keep_all else (profile.depth or DEFAULT_DEPTH)
@@ -176,6 +184,8 @@ class Inbox:
         self.items: deque[tuple[Any, SampleInfo, int]] = deque(
             maxlen=None if keep_all else self.limit
         )
+        self._limit_bytes = limit_bytes
+        self._largest_bytes = 0  # of what waits, or did while others have waited
         self.dropped = 0
         self.rejected = 0
         self.accept: Callable[[bytes], bool] | None = None
@@ -202,6 +212,10 @@ class Inbox:
         if self.accept is not None and not self.accept(data):
             return
         items = self.items
+        if len(items) < UNWEIGHED:
+            self._largest_bytes = len(data)
+        elif not self._make_room(len(data)):
+            return
         if len(items) == self.limit:
             self.dropped += 1
             if self.keep_all:
@@ -214,6 +228,24 @@ class Inbox:
         for listener in self.assertions:
             listener(gid)
 
+    def _is_heavy(self, size_bytes: int) -> bool:
+        """Return whether one more of this size exceeds the limit in bytes."""
+        self._largest_bytes = max(self._largest_bytes, size_bytes)
+        if (len(self.items) + 1) * self._largest_bytes <= self._limit_bytes:
+            return False  # nothing has to be added up, as nearly always
+        waiting = self.items.copy()  # other threads take from it
+        return sum(len(data) for data, _, _ in waiting) + size_bytes > self._limit_bytes
+
+    def _make_room(self, size_bytes: int) -> bool:
+        """Drop the oldest messages until one of this size fits; return whether it does."""
+        while self.items and self._is_heavy(size_bytes):
+            self.dropped += 1
+            if self.keep_all:
+                return False
+            with suppress(IndexError):  # another thread has taken it
+                self.items.popleft()
+        return True
+
     def _tell_feed(self, sample_info: SampleInfo) -> None:
         for listener in self.feed:
             listener(sample_info)
@@ -224,7 +256,9 @@ class Inbox:
 
     def has_room(self) -> bool:
         """Whether a message can be taken without losing one that should be kept."""
-        return not self.keep_all or len(self.items) < self.limit
+        return not self.keep_all or (
+            len(self.items) < self.limit and (len(self.items) < UNWEIGHED or not self._is_heavy(0))
+        )
 
     @property
     def waiting(self) -> int:
@@ -266,7 +300,8 @@ class SubscriptionHandle(Destroyable):
         self._support = message_support(msg_type)
         self._filter_options = content_filter_options
         profile = profile_of(qos_profile)
-        self.inbox = Inbox(profile, node.messages, node.io.post)
+        limit_bytes = node.bare.context.network.queue_bytes
+        self.inbox = Inbox(profile, limit_bytes, node.messages, node.io.post)
         self.feed = self.inbox.feed
         self.assertions = self.inbox.assertions
         if content_filter_options is not None:

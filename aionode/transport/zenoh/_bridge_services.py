@@ -10,7 +10,7 @@ from aionode.errors import FAST_DDS_REMEDY, FAST_DDS_SILENCE
 from aionode.transport.base import SampleInfo
 from aionode.transport.zenoh._bridge_state import BridgeDeclaration
 from aionode.transport.zenoh._delivery import UNKNOWN_GID, sample_info_of
-from aionode.transport.zenoh._services import ZenohRequester, ZenohServer, answer
+from aionode.transport.zenoh._services import ZenohRequester, ZenohServer
 from aionode.wire._bridge import parse_request_id
 
 __all__ = ["BridgeRequester", "BridgeServer"]
@@ -26,7 +26,7 @@ class BridgeServer(BridgeDeclaration, ZenohServer):
         extra = query.attachment
         if query.payload is None or sample_info_of(extra) is not None:
             # No request, or one of a context of aionode, which comes on rmw_zenoh's key too.
-            answer(query)
+            self.answer(query, sample_info_of(extra) or SampleInfo(UNKNOWN_GID, 0, 0), None, 0)
             return
         found = None if extra is None else parse_request_id(extra.to_bytes())
         client, sequence = found or (UNKNOWN_GID, 0)

@@ -16,7 +16,7 @@ from aionode.graph import EndpointKind
 from aionode.transport.base import Request, Requester, SampleInfo
 from aionode.transport.zenoh._delivery import UNKNOWN_GID, sample_info_of
 from aionode.transport.zenoh._handlers import CALL_PRIORITY, direct, translated
-from aionode.transport.zenoh._session_state import Declaration
+from aionode.transport.zenoh._session_state import Declaration, size_of
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
 
@@ -55,9 +55,15 @@ AT_ONCE_NS = 50_000_000
 
 ARRIVING_REQUESTS = 50_000
 """How many requests wait for the loop at most, before the service counts and refuses them.
-
-One more ends the oldest, whose client gets an error.
 """
+
+UNANNOUNCED = 8
+"""So many threads at most send answers to clients without a token, which have any ids they like."""
+
+TOO_MANY = (
+    "other requests are waiting already in this process, which take as many bytes as may wait "
+    "(AIONODE_QUEUE_BYTES)"
+)
 
 REMEMBERED_CLIENTS = 10_000
 
@@ -101,7 +107,9 @@ class ZenohServer(Declaration):
         self.srv_type = srv_type
         self._serve = serve
         self._queryable: zenoh.Queryable[None] | None = None
-        self._queue = state.queue(self._take, ARRIVING_REQUESTS)
+        self._queue = state.queue(self._take)
+        self._refused = 0
+        self._note_refused = state.queue(self._report_refused, limit=1)
         self.unanswered: dict[tuple[bytes, int], ZenohRequest] = {}
         self._clients: dict[bytes, str] = {}
         state.cancellations.listen(endpoint.name, self.cancel)
@@ -111,7 +119,7 @@ class ZenohServer(Declaration):
         """Declare the queryable."""
         self._queryable = session.declare_queryable(
             self.key,
-            direct(self._queue.put),
+            direct(self._arrive),
             complete=True,
             allowed_origin=zenoh.Locality.REMOTE,
         )
@@ -121,7 +129,8 @@ class ZenohServer(Declaration):
         queryable, self._queryable = self._queryable, None
         if queryable is not None:
             queryable.undeclare()
-        self._queue.clear()
+        for query in self._queue.take_out():
+            self.state.request_room.give_back(size_of(query))
         for request in list(self.unanswered.values()):
             request.drop()
 
@@ -135,6 +144,32 @@ class ZenohServer(Declaration):
         request = self.unanswered.get((gid, sequence))
         if request is not None:
             request.cancelled = True
+
+    def _arrive(self, query: zenoh.Query) -> None:
+        """Hand a request to the loop; in a thread of Zenoh.
+
+        One for which there is no room is refused here, in the thread that reads what its client
+        sends: if that one reads no answers, it alone waits.
+        """
+        room = self.state.request_room
+        if len(self._queue) < ARRIVING_REQUESTS and room.take(size_of(query)):
+            self._queue.put(query)
+            return
+        self._note_refused.put(None)
+        problem = error_payload("QueueFullError", TOO_MANY)
+        answer(query, lambda: query.reply_err(problem))
+
+    def _report_refused(self, _: None) -> None:
+        """Log the first time that requests are refused before they reach the loop."""
+        self._refused += 1
+        if self._refused == 1:
+            logger.warning(
+                "%s: requests are refused, as more than %.3g MiB of them wait in this process for "
+                "its event loop, or until their answers are sent. AIONODE_QUEUE_BYTES, or "
+                "Context(queue_bytes=…), sets the limit",
+                self.endpoint.name,
+                self.state.queue_bytes / 2**20,
+            )
 
     def _take(self, query: zenoh.Query) -> None:
         sample_info = sample_info_of(query.attachment)
@@ -165,7 +200,7 @@ class ZenohServer(Declaration):
         return attachment.pack(sample_info.sequence, self.state.now_ns(), sample_info.gid)
 
     def participant_of(self, client: bytes) -> str:
-        """Return the context of a client; one of its own for a client without a token."""
+        """Return the context of a client; one of a few for clients without a token."""
         participant = self._clients.get(client)
         if participant is None:
             graph = self.state.graph
@@ -181,7 +216,7 @@ class ZenohServer(Declaration):
                     self._clients[client] = participant
                     break
             else:
-                return client.hex()
+                return f"unannounced {client[0] % UNANNOUNCED if client else 0}"
         return participant
 
     def refuse(self, query: zenoh.Query, sample_info: SampleInfo, problem: bytes) -> None:
@@ -196,9 +231,13 @@ class ZenohServer(Declaration):
         size_bytes: int,
     ) -> None:
         """End `query`, without waiting for a client that hangs."""
-        self.state.peer_senders.send(
-            (self.participant_of(sample_info.gid),), size_bytes, lambda: answer(query, reply)
-        )
+        room, request_bytes = self.state.request_room, size_of(query)
+
+        def send() -> None:
+            answer(query, reply)
+            room.give_back(request_bytes)
+
+        self.state.peer_senders.send((self.participant_of(sample_info.gid),), size_bytes, send)
 
 
 def answer(query: zenoh.Query, reply: Callable[[], None] | None = None) -> None:

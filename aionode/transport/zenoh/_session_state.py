@@ -26,6 +26,7 @@ from aionode.transport.zenoh._assertions import Assertions
 from aionode.transport.zenoh._cancellations import Cancellations
 from aionode.transport.zenoh._handlers import translated
 from aionode.transport.zenoh._peer_senders import PeerSenders
+from aionode.transport.zenoh._request_room import RequestRoom
 from aionode.transport.zenoh._sockets import look
 from aionode.wire._key_expression import data_key
 from aionode.wire._liveliness import endpoint_token, gid_of
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from aionode.clock import TimeBase
     from aionode.graph import EndpointInfo, Graph, NodeInfo
 
-__all__ = ["Declaration", "EndpointNames", "SessionState"]
+__all__ = ["Declaration", "EndpointNames", "SessionState", "size_of"]
 
 T = TypeVar("T")
 
@@ -107,6 +108,7 @@ class SessionState:
         now_ns: Returns the time of the context, in nanoseconds since 1970.
         content_filters: What subscriptions of other contexts want.
         queue_bytes: How many bytes of messages may wait in one queue.
+        request_room: Limits the requests that are here.
         announced: Limits what is kept of what others announce.
         has_unannounced_peers: Whether there may be subscriptions that nothing announces.
         on_reader: Called when a remote subscription appears or vanishes, by topic, with it and
@@ -124,6 +126,7 @@ class SessionState:
     ) -> None:
         self.queue_bytes = queue_bytes
         self.announced = AnnouncedLimit(graph_bytes)
+        self.request_room = RequestRoom(queue_bytes)
         self.participant = participant
         self.domain_id = domain_id
         self.session: zenoh.Session | None = None
@@ -183,9 +186,7 @@ class SessionState:
         on_dropped: Callable[[int], None],
     ) -> MessageArrivals[zenoh.Sample]:
         """Return such a queue for messages, bounded in bytes as well."""
-        return MessageArrivals(
-            self.waker, handle, limit, self.queue_bytes, size_of_sample, on_dropped
-        )
+        return MessageArrivals(self.waker, handle, limit, self.queue_bytes, size_of, on_dropped)
 
     def add(self, declaration: Declaration) -> None:
         """Declare `declaration` now, or as soon as the session is open."""
@@ -205,6 +206,7 @@ class SessionState:
         """Declare everything in `session` that does not need to know its peers."""
         self.session = session
         self.graph = graph
+        self.request_room = RequestRoom(self.queue_bytes)  # what was here before has ended
         self._start_submessages(session)
         for declaration in list(self._declarations):
             if not declaration.needs_graph:
@@ -326,9 +328,10 @@ class SessionState:
             )
 
 
-def size_of_sample(sample: zenoh.Sample) -> int:
-    """Return how many bytes the payload of a sample has."""
-    return len(sample.payload)
+def size_of(arriving: zenoh.Sample | zenoh.Query) -> int:
+    """Return how many bytes the payload of a message or request has."""
+    payload = arriving.payload
+    return 0 if payload is None else len(payload)
 
 
 class Burst:

@@ -19,6 +19,8 @@ from aionode.endpoints.client import Client
 from aionode.errors import RequestTimeoutError, ServiceError, ServiceUnavailableError
 from aionode.interfaces import get_service
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.rcl_interfaces.msg import Parameter
+from aionode.interfaces.rcl_interfaces.srv import SetParameters
 from aionode.message import from_builtins
 from aionode.transport.zenoh import _services as services
 from aionode.transport.zenoh._services import error_payload, parse_error
@@ -35,6 +37,7 @@ from tests.support.peers import (
     ros_value,
     two_contexts,
 )
+from tests.support.waiting import until
 
 VECTORS: dict[str, Any] = json.loads(
     Path(__file__).parents[2].joinpath("vectors", "vectors.json").read_text()
@@ -152,6 +155,41 @@ async def test_ten_thousand_requests_wait_and_more_are_refused_with_the_reason(
         assert len(errors) == more
         assert all("10000 requests are waiting already" in error for error in errors)
         assert len(set(answers) - set(errors)) == waiting
+
+
+async def test_requests_whose_answers_wait_to_be_sent_are_limited_in_bytes(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A client that reads no answers cannot have any number of its requests kept."""
+    async with (
+        two_contexts(queue_bytes=65_536) as (first, second),
+        quiet_node("server", first) as server,
+        quiet_node("client", second) as node,
+    ):
+        service = server.create_service(SetParameters, "set", lambda _: SetParameters.Response())
+        (registration,) = (
+            each for each in service._registrations if isinstance(each, services.ZenohServer)
+        )
+        client = node.create_client(SetParameters, "set")
+        await client.wait_for_service()
+        unsent: list[Callable[[], None]] = []
+        send = registration.state.peer_senders.send
+        monkeypatch.setattr(
+            registration.state.peer_senders, "send", lambda _to, _size, job: unsent.append(job)
+        )
+        request = SetParameters.Request(parameters=[Parameter(name="x" * 10_000)])
+        calls = [client.call_async(request) for _ in range(20)]
+        await until(lambda: len(unsent) + sum(call.done() for call in calls) == 20)
+
+        refused = [call.exception() for call in calls if call.done()]
+        assert len(refused) == 14
+        assert all("requests are waiting already" in str(each) for each in refused)
+
+        monkeypatch.setattr(registration.state.peer_senders, "send", send)
+        for job in unsent:
+            job()
+        await asyncio.gather(*calls, return_exceptions=True)
+        assert await client.call(request) == SetParameters.Response()
 
 
 async def test_a_failing_handler_tells_the_client_at_once() -> None:
