@@ -14,7 +14,7 @@ __all__ = ["EventSource"]
 EventT = TypeVar("EventT")
 
 KEPT_EVENTS = 100
-"""How many events are kept for a slow reader; after that the oldest are dropped."""
+"""Maximum number of events kept for a slow reader; the oldest are dropped first."""
 
 
 class EventSource(Generic[EventT]):
@@ -53,7 +53,7 @@ class EventSource(Generic[EventT]):
 
 
 class Reader(Generic[EventT]):
-    """What one iteration has not yielded yet."""
+    """The events that one iteration has not yielded yet."""
 
     def __init__(self) -> None:
         self.events: deque[EventT] = deque(maxlen=KEPT_EVENTS)

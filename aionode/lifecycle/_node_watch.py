@@ -24,15 +24,15 @@ LEVELS = ("unconfigured", "inactive", "active")
 
 @dataclass(frozen=True, slots=True)
 class ManagedNodeEvent:
-    """What has become of a managed node while a `LifecycleManager` watches it.
+    """A change of a managed node that a `LifecycleManager` watches.
 
     Attributes:
         node_name: Its full name.
-        kind: ``"lost"``: it has gone, or cannot be reached. ``"returned"``: it is there again.
-            ``"restored"``: it was brought to the state that it had. ``"failed"``: it could not be.
+        kind: ``"lost"``: the node has gone, or cannot be reached. ``"returned"``: it is there
+            again. ``"restored"``: it is in its earlier state again. ``"failed"``: it is not.
         state: Label of its state, as far as it is known.
         state_before: Label of the state that it had before it was lost.
-        error: Why it could not be brought to that state.
+        error: The reason of ``"failed"``.
     """
 
     node_name: str

@@ -48,7 +48,7 @@ class Transition(NamedTuple):
 
 
 class TransitionCallbackReturn(Enum):
-    """What a callback of a transition returns, with rclpy's values."""
+    """The result of a callback of a transition, with rclpy's values."""
 
     SUCCESS = 97
     FAILURE = 98

@@ -39,7 +39,7 @@ POLICIES = {
 
 @dataclass(frozen=True)
 class QoSOverridingOptions:
-    """Which policies of an endpoint parameters can override.
+    """The policies of an endpoint that parameters can override.
 
     Attributes:
         policy_kinds: The policies.

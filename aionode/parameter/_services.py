@@ -18,10 +18,10 @@ from aionode.parameter._value import Parameter
 __all__ = ["ParameterService", "parameter_services"]
 
 MOST_NAMES: Final = 10_000
-"""How many names or values one request may have; `ros2 param dump` asks for all of a node."""
+"""Maximum names or values in one request; `ros2 param dump` asks for all of a node."""
 
 LARGEST_ANSWER: Final = 2**24
-"""How many bytes the values in one answer may have: a name may be asked for again and again."""
+"""Maximum bytes of the values in one answer: a request may repeat a name many times."""
 
 
 class ParameterService(NamedTuple):
@@ -39,7 +39,7 @@ class ParameterService(NamedTuple):
 
 
 class Parameters(Protocol):
-    """What the services need: a `ParameterStore`, or a node with its methods."""
+    """The source of the services: a `ParameterStore`, or a node with its methods."""
 
     def describe_parameters(self, names: Any) -> list[Any]: ...
     def get_parameters(self, names: Any) -> list[Any]: ...

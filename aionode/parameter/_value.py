@@ -259,13 +259,14 @@ FROM_CONSTRUCTORS = (
     TypeError,
     ValueError,
 )
-"""What PyYAML's constructors raise besides its own errors, for an empty ``!!int`` for example."""
+"""Exceptions of PyYAML's constructors besides its own, for an empty ``!!int`` for example."""
 
 
 def get_parameter_value(string_value: str) -> rcl_msg.ParameterValue:
     """Return the value of a text as ``ros2 param set`` reads it: as PyYAML does.
 
-    What PyYAML refuses, and what no parameter holds, such as a list of mixed types, is a string.
+    Text that PyYAML refuses is a string, and so is a value that no parameter can hold, such as a
+    list of mixed types.
     Parameter files and ``-p`` have other rules: those of rcl.
     """
     value = loaded_yaml(string_value)

@@ -29,10 +29,10 @@ CANCEL_S = 2.0
 """Timeout for the server's answer to a cancel request, in seconds."""
 
 ENDED_S = 10.0
-"""How long a goal may take to end after the server has agreed to cancel it, in seconds."""
+"""Timeout for the end of a goal that the server has agreed to cancel, in seconds."""
 
 STOP_S = CANCEL_S + ENDED_S + 1.5
-"""How long the command may take to exit after Ctrl-C, in seconds; a second one ends it at once."""
+"""Timeout for the exit of the command after Ctrl-C, in seconds; a second Ctrl-C ends it at once."""
 
 USERS = {"clients": EndpointKind.SUBSCRIPTION, "servers": EndpointKind.PUBLISHER}
 

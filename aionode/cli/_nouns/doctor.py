@@ -36,10 +36,10 @@ PROBE_S = 0.2
 """Timeout for a router on this machine to accept a connection, in seconds; it takes 0.1 ms."""
 
 DOMAINS_S = 1.0
-"""How long to look for nodes of other domains if this one has none, in seconds."""
+"""Time for finding nodes of other domains if the own domain has none, in seconds."""
 
 DOMAINS_AGAIN_S = 0.02
-"""How often to look for them, in seconds."""
+"""Interval between two looks for nodes of other domains, in seconds."""
 
 ZENOH = "rmw_zenoh_cpp"
 

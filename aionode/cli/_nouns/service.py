@@ -144,7 +144,7 @@ async def class_called(node: Node, name: str, service_type: str) -> Any:
 # Events
 
 DEPTH = 1000
-"""How many events may wait to be printed."""
+"""Maximum number of events that wait to be printed."""
 
 ACTION_SERVICES = {"SendGoal": "SendGoalService", "GetResult": "GetResultService"}
 

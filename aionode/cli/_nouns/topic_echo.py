@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 __all__ = ["echo", "echoing"]
 
 DEPTH = 1000
-"""Default queue depth: how many messages may wait to be printed."""
+"""Default queue depth: the maximum number of messages that wait to be printed."""
 
 echoing = click.Group("topic")
 """The command of this module; the group ``topic`` has it too."""

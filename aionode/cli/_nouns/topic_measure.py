@@ -50,7 +50,7 @@ DEPTH = 10_000
 PRINT_PERIOD_S = 1.0
 
 CONNECTING_S = 0.3
-"""How long messages may reach a new subscription late and in bursts, in seconds.
+"""Time during which messages reach a new subscription late and in bursts, in seconds.
 
 During this time publishers of other processes are discovered and switch to a link, which normally
 takes 0.1 s.
@@ -64,7 +64,7 @@ LEAST_FIRST = (5, 4, 3, 2)
 """The columns that a narrow terminal leaves out, the least important one first."""
 
 SILENT = ("-",) * (len(HZ_HEADER) - 1)
-"""What stands for the statistics of a silent topic."""
+"""The columns of a silent topic."""
 
 measuring = click.Group("topic")
 """The commands of this module; the group ``topic`` has them too."""
@@ -257,7 +257,7 @@ class RateTable:
         self._silent_s = dict.fromkeys(intervals, 0.0)
 
     def update(self) -> bool:
-        """Take what came in the last second; return whether anything did, or fell silent."""
+        """Take the messages of the last second; return whether any came, or a topic fell silent."""
         changed = False
         for name, before in self._shown.items():
             new = self._intervals[name].spread()
@@ -461,7 +461,7 @@ class Spread:
 
     @property
     def rate_hz(self) -> float:
-        """How many of them there are in a second; 0 if they are all zero."""
+        """Number of such durations in a second; 0 if all of them are zero."""
         return 1e9 / self.mean if self.mean else 0.0
 
 

@@ -1,1 +1,1 @@
-"""What the nouns share: declaring commands, running verbs, looking up names, printing."""
+"""The parts that nouns share: declaring commands, running verbs, looking up names, printing."""

@@ -33,7 +33,7 @@ CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 Completer = Callable[[click.Context, click.Parameter, str], list[str]]
 
 QUIET_S = 0.3
-"""How long discovery has to be quiet before names are offered, in seconds; a person is waiting."""
+"""Silence of discovery after which names are offered, in seconds; a person is waiting."""
 
 ANSWER_S = 1.0
 """Timeout for the answer of a node, such as its parameters, in seconds; normally milliseconds."""

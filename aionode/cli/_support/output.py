@@ -1,8 +1,8 @@
-"""What a command prints: text for people, or with ``--json`` one record per line for programs.
+"""The output of a command: text for people, or with ``--json`` one record per line for programs.
 
 Data goes to stdout; warnings and progress go to stderr. Each item is flushed, so that a pipe gets
-it at once. What other programs have said is shown on a terminal with its control characters as
-escapes; a pipe or a file gets it as it is.
+it at once. A terminal shows the control characters of received text as escapes; a pipe or a file
+gets the characters themselves.
 """
 
 from __future__ import annotations

@@ -24,19 +24,19 @@ if TYPE_CHECKING:
 __all__ = ["make_node", "run_verb"]
 
 CLOSE_S = 0.9
-"""How long a command may take to exit after it has printed its answer, in seconds."""
+"""Timeout for the exit of a command that has printed its answer, in seconds."""
 
 STOP_S = 3.5
-"""How long it may take to exit after a signal, in seconds."""
+"""Timeout for the exit of a command after a signal, in seconds."""
 
 QUIET_S = 2.0
-"""How long discovery has to be quiet before it counts as complete, in seconds.
+"""Silence after which discovery counts as complete, in seconds.
 
 Zenoh has been seen to pause this long between the first of 3000 endpoints and the rest.
 """
 
 PROGRESS_S = 1.0
-"""How often a command reports what it is waiting for, in seconds."""
+"""Interval of the reports of a command that waits, in seconds."""
 
 UNLIMITED_MS = 3_600_000.0
 """Callback budget of a command: nothing else runs in its loop, and terminals are slow."""
@@ -82,7 +82,7 @@ def run_verb(
         endless: Whether Ctrl-C is the normal end, with status 0, and not an interruption (130).
         busy: Whether many messages are expected, which makes the faster loop worth its import.
         asks: Whether the verb needs a complete graph, so that discovery is awaited first.
-        stop_s: How long it may take to exit after a signal, in seconds.
+        stop_s: Timeout for the exit after a signal, in seconds.
 
     Raises:
         click.exceptions.Exit: always, with the exit status.
