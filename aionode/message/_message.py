@@ -10,7 +10,6 @@ import copy
 import functools
 import re
 import sys
-from importlib import import_module
 from keyword import iskeyword
 from typing import TYPE_CHECKING, Any, ClassVar, Final, dataclass_transform, get_args, get_origin
 from weakref import WeakValueDictionary
@@ -179,12 +178,17 @@ class Message(msgspec.Struct, metaclass=MessageMeta):  # noqa: PLW1641 (mutable:
     @classmethod
     def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:
         """Return the schema with which Pydantic reads and writes messages."""
-        return by_name("pydantic_core_schema")(cls)
+        # Imported here, as that module imports this one, and Pydantic, which few programs use.
+        from aionode.message._schema import pydantic_core_schema
+
+        return pydantic_core_schema(cls)
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core_schema: Any, handler: Any) -> Any:
         """Return the JSON Schema of the message, for OpenAPI."""
-        return by_name("pydantic_json_schema")(cls, handler)
+        from aionode.message._schema import pydantic_json_schema  # as above
+
+        return pydantic_json_schema(cls, handler)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Message:
         """Return a copy that shares no mutable data."""
@@ -194,11 +198,6 @@ class Message(msgspec.Struct, metaclass=MessageMeta):  # noqa: PLW1641 (mutable:
         """Return how to recreate the message, for pickle."""
         values = {name: owned(self, name) for name in self.__struct_fields__}
         return functools.partial(type(self), **values), ()
-
-
-def by_name(function: str) -> Any:
-    """Return a function of the schema module, which imports this module."""
-    return getattr(import_module("aionode.message._schema"), function)
 
 
 def owned(message: Message, name: str) -> object:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from types import new_class
 from typing import Any, ClassVar, Protocol, TypeAlias, TypeVar
 
@@ -29,14 +28,6 @@ class Hidden:
         return part
 
 
-def shipped(package: str, kind: str, name: str) -> Any:
-    """Return a generated type of aionode.interfaces.
-
-    It is imported late, because those modules import this one.
-    """
-    return getattr(import_module(f"aionode.interfaces.{package}.{kind}"), name)
-
-
 def name_halves(cls: type, typename: str, halves: tuple[str, ...], *, by_name: bool) -> None:
     """Set the ROS names of a service or action class and its nested messages."""
     cls.__ros_type__ = checked_type_name(typename)  # type: ignore[attr-defined] # both declare it
@@ -52,13 +43,15 @@ def name_halves(cls: type, typename: str, halves: tuple[str, ...], *, by_name: b
 
 def make_event(cls: type[ServiceType]) -> type[Message]:
     """Return the service event message, which reports one request or response of a service."""
-    info = shipped("service_msgs", "msg", "ServiceEventInfo")
+    # Imported on first use, as generated modules import this one.
+    from aionode.interfaces.service_msgs.msg import ServiceEventInfo
+
     namespace = {
         "__module__": cls.__module__,
         "__qualname__": f"{cls.__qualname__}.Event",
         "__doc__": f"A request to or a response of {cls.__name__}, with its client and time.",
         "__annotations__": {
-            "info": info,
+            "info": ServiceEventInfo,
             "request": Sequence[cls.Request, 1],  # type: ignore[attr-defined] # nested classes
             "response": Sequence[cls.Response, 1],  # type: ignore[attr-defined] # nested classes
         },
@@ -93,8 +86,12 @@ class ServiceType:
 
 def make_impl(cls: type[ActionType]) -> type:
     """Return the class of services and messages that implement an action."""
-    uuid = shipped("unique_identifier_msgs", "msg", "UUID")
-    time = shipped("builtin_interfaces", "msg", "Time")
+    # Imported on first use, as generated modules import this one.
+    from aionode.interfaces.action_msgs.msg import GoalStatusArray
+    from aionode.interfaces.action_msgs.srv import CancelGoal
+    from aionode.interfaces.builtin_interfaces.msg import Time
+    from aionode.interfaces.unique_identifier_msgs.msg import UUID
+
     place = f"{cls.__qualname__}.Impl"
 
     def message(name: str, annotations: dict[str, Any], doc: str, typename: str = "") -> Any:
@@ -125,22 +122,22 @@ def make_impl(cls: type[ActionType]) -> type:
         "__doc__": f"The services and messages that implement {cls.__ros_type__}.",
         "SendGoalService": service(
             "SendGoalService",
-            {"goal_id": uuid, "goal": cls.Goal},  # type: ignore[attr-defined] # nested class
-            {"accepted": bool, "stamp": time},
+            {"goal_id": UUID, "goal": cls.Goal},  # type: ignore[attr-defined] # nested class
+            {"accepted": bool, "stamp": Time},
         ),
         "GetResultService": service(
             "GetResultService",
-            {"goal_id": uuid},
+            {"goal_id": UUID},
             {"status": int8, "result": cls.Result},  # type: ignore[attr-defined] # nested class
         ),
         "FeedbackMessage": message(
             "FeedbackMessage",
-            {"goal_id": uuid, "feedback": cls.Feedback},  # type: ignore[attr-defined] # nested class
+            {"goal_id": UUID, "feedback": cls.Feedback},  # type: ignore[attr-defined] # nested class
             "Feedback, and the goal that it belongs to.",
             f"{cls.__ros_type__}_FeedbackMessage",
         ),
-        "CancelGoalService": shipped("action_msgs", "srv", "CancelGoal"),
-        "GoalStatusMessage": shipped("action_msgs", "msg", "GoalStatusArray"),
+        "CancelGoalService": CancelGoal,
+        "GoalStatusMessage": GoalStatusArray,
     }
     return type("Impl", (), parts)
 
