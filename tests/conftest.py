@@ -159,8 +159,14 @@ def bounded(test: Callable[..., Awaitable[None]], limit_s: float) -> Callable[..
 def pytest_asyncio_loop_factories(
     config: pytest.Config, item: pytest.Item
 ) -> dict[str, Callable[[], asyncio.AbstractEventLoop]]:
-    """Run each async test on asyncio and on uvloop."""
-    return {"asyncio": debugging_loop, "uvloop": uvloop.new_event_loop}
+    """Run each async test on asyncio and on uvloop; not make what would only be deselected."""
+    factories: dict[str, Callable[[], asyncio.AbstractEventLoop]] = {"asyncio": debugging_loop}
+    expression = config.option.markexpr
+    one_loop = item.get_closest_marker("one_loop") and "not stress" in expression
+    second_loop = not item.nodeid.startswith(BOTH_LOOPS) and "not second_loop" in expression
+    if not (one_loop or second_loop):
+        factories["uvloop"] = uvloop.new_event_loop
+    return factories
 
 
 @pytest.fixture

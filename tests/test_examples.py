@@ -300,7 +300,10 @@ def test_overload_counts_every_message() -> None:
 
 
 def ends_by_signal() -> list[Any]:
-    """Return each example with each signal; one of the two signals is left to `make stress`."""
+    """Return each example with each signal; one of the two signals is left to `make stress`.
+
+    So is Ctrl-C at an endless one: `.ci/run` presses it at each of them.
+    """
     pairs = []
     programs = [
         *[(name, ("-m", f"aionode.examples.{name}")) for name in ENDING],
@@ -308,8 +311,14 @@ def ends_by_signal() -> list[Any]:
     ]
     for place, (name, arguments) in enumerate(programs):
         usual, other = (signal.SIGINT, signal.SIGTERM)[:: 1 if place % 2 else -1]
+        pressed = name in ENDLESS and usual == signal.SIGINT
         pairs += [
-            pytest.param(arguments, usual, id=f"{name}-{usual.name}"),
+            pytest.param(
+                arguments,
+                usual,
+                id=f"{name}-{usual.name}",
+                marks=[pytest.mark.stress] * pressed,
+            ),
             pytest.param(arguments, other, id=f"{name}-{other.name}", marks=pytest.mark.stress),
         ]
     return pairs

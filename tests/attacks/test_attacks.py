@@ -19,7 +19,7 @@ from tests.faults.harness import Outcome, run_together
 STANDS_S = 0.5
 """The longest stall of a loop beside other tests, in seconds."""
 
-SHORT_S = 2.0
+SHORT_S = 1.0
 """How long each attack lasts here."""
 
 SHORT = {

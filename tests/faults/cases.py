@@ -169,7 +169,6 @@ def freezes(way: str) -> Iterator[Case]:
                     (name,),
                     loss="told",
                     lasts_s=seconds,
-                    short=short and kind == "calls" and name == "server" and way == "Zenoh",
                 )
     for seconds in RETURNS_S:
         yield Case(
@@ -212,7 +211,7 @@ def kills(way: str) -> Iterator[Case]:
                 on(way, *roles),
                 replace(name),
                 loss="told",
-                short=name == "server" and way == ("link" if kind == "goals" else "Zenoh"),
+                short=kind == "calls" and name == "server" and way == "Zenoh",
             )
 
 
@@ -240,7 +239,6 @@ def comings(way: str) -> Iterator[Case]:
                 Role("reader", hear=(Hear("/a", keep_all=keep_all, depth=1000),)),
             ),
             wait(2),
-            short=keep_all and way == "Zenoh",
         )
     yield Case(
         f"{way}: KEEP_ALL reader takes 4 ms a message, its publisher 2 ms",

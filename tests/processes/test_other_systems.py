@@ -17,6 +17,9 @@ OTHER_SYSTEM = str(Path(__file__).with_name("other_system.py"))
 MEMBER = str(Path(__file__).with_name("plain_member.py"))
 
 both_systems = pytest.mark.parametrize("system", ["windows", "macos"])
+one_system = pytest.mark.parametrize(
+    "system", ["windows", pytest.param("macos", marks=pytest.mark.stress)]
+)
 
 
 @pytest.fixture(autouse=True)
@@ -54,7 +57,7 @@ def test_two_nodes_of_one_process_talk(system: str) -> None:
     assert output_of(system, MEMBER, "both").splitlines() == ["heard hello"] * 3 + ["answer True"]
 
 
-@both_systems
+@one_system
 def test_two_processes_and_the_command_line_talk_over_zenoh(system: str) -> None:
     """There are no links there, without a setting; Ctrl-C ends a program as everywhere."""
     with Process(OTHER_SYSTEM, system, MEMBER, "talk") as talker:
