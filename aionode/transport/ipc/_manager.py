@@ -560,6 +560,8 @@ class LinkManager:
 
     def _on_retransmit(self, data: bytes) -> None:
         """Take what another context could not deliver over its link."""
+        if self._listener is None:  # closed: each end of a link is followed by a batch
+            return
         try:
             sender, frames = self._secrets.unseal(data)
         except FrameError as error:

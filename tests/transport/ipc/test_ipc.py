@@ -27,6 +27,8 @@ from aionode.interfaces.std_msgs.msg import Int32
 from aionode.qos import QoSProfile, ReliabilityPolicy
 from aionode.transport.ipc import _listener as listener
 from aionode.transport.ipc import _subscription as subscription
+from aionode.transport.ipc._continuation import seal
+from aionode.transport.ipc._protocol import RetransmitDone
 from aionode.transport.ipc._subscription import IpcReader
 from aionode.transport.ipc._transport import IpcTransport
 from aionode.wire import cdr
@@ -108,6 +110,20 @@ async def test_every_kind_of_reader_gets_each_message_once() -> None:
             range(numbers.next)
         )
         assert numbers.subscription.stats.lost == 0
+
+
+async def test_what_continues_a_link_after_its_end_is_not_called_a_fault(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """A context ends its links first, and the other end goes on over Zenoh until that ends, too."""
+    async with two_nodes() as nodes:
+        await Counting(nodes).until_linked()
+        ended = manager_of(nodes.b)
+        secret = link_of(nodes.b).secret
+
+    ended._on_retransmit(seal(secret, 1, RetransmitDone().pack()))
+
+    assert [each.message for each in caplog.records if each.levelno >= logging.WARNING] == []
 
 
 async def test_what_was_in_a_broken_link_reaches_each_reader_once() -> None:
