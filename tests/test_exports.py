@@ -11,6 +11,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import pytest
+
 import aionode
 from aionode import errors
 
@@ -78,6 +80,7 @@ def test_qos_has_the_presets_of_rclpy() -> None:
         assert isinstance(getattr(aionode.qos, name), aionode.QoSProfile), name
 
 
+@pytest.mark.filterwarnings("ignore:importing 'qos_event' is deprecated:UserWarning")
 def test_a_module_says_what_it_exports() -> None:
     """`__all__` is there, without duplicates, and every name in it exists."""
     for name in MODULES:
@@ -88,6 +91,7 @@ def test_a_module_says_what_it_exports() -> None:
         assert [each for each in exported if not hasattr(module, each)] == [], name
 
 
+@pytest.mark.filterwarnings("ignore:importing 'qos_event' is deprecated:UserWarning")
 def test_what_is_public_is_documented() -> None:
     """Every public class, function and method has a docstring."""
     for name in ["aionode", *MODULES]:

@@ -13,6 +13,7 @@ from types import ModuleType
 from typing import Any, Final
 
 from aionode.interfaces import shipped_packages
+from aionode.rclpy._reexports import add_names
 from aionode.rclpy._rosidl import (
     add_folder,
     classes_of,
@@ -159,13 +160,24 @@ class AliasLoader(Loader):
     def exec_module(self, module: ModuleType) -> None:
         """Undo what the import system has changed: the module keeps its own description."""
         module.__spec__ = self.spec
+        add_names()
 
 
 class EmptyLoader(Loader):
     """Loads a package that has only modules."""
 
     def exec_module(self, module: ModuleType) -> None:
-        """Leave the module as it is."""
+        """Give the module what finds its modules, which a program need not import itself.
+
+        In ROS they are there as soon as any message needs them, which programs rely on.
+        """
+
+        def find(kind: str) -> ModuleType:
+            if kind not in KINDS or not has_interfaces(module.__name__, kind):
+                raise AttributeError(f"module {module.__name__!r} has no attribute {kind!r}")
+            return import_module(f"{module.__name__}.{kind}")
+
+        vars(module).update(__getattr__=find)
 
 
 class KindLoader(Loader):

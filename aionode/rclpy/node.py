@@ -89,6 +89,8 @@ class Node(NodeParameters, NodeGraph):
         InvalidNodeNameException, InvalidNamespaceException: a name is invalid (ValueErrors).
     """
 
+    ParameterInput = Any  # what declare_parameters takes, for type checkers
+
     def __init__(
         self,
         node_name: str,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from enum import Enum
 from typing import Any
 
@@ -34,6 +35,7 @@ __all__ = [
     "QoSDurabilityPolicy",
     "QoSHistoryPolicy",
     "QoSLivelinessPolicy",
+    "QoSPolicyEnum",
     "QoSPolicyKind",
     "QoSPresetProfiles",
     "QoSProfile",
@@ -118,6 +120,7 @@ class QoSPresetProfiles(Enum):
     PARAMETER_EVENTS = qos_profile_parameter_events
     ACTION_STATUS_DEFAULT = qos_profile_action_status_default
     BEST_AVAILABLE = qos_profile_best_available
+    ROSOUT_DEFAULT = qos_profile_rosout_default
 
     @classmethod
     def short_keys(cls) -> list[str]:
@@ -138,6 +141,38 @@ class QoSPresetProfiles(Enum):
         """The name in lower case."""
         return self.name.lower()
 
+
+QoSPolicyEnum = HistoryPolicy.__base__
+
+
+class DeprecatedMember:
+    """A former name of a member of a policy, which warns when it is used."""
+
+    def __init__(self, former: str, name: str) -> None:
+        self.former = former
+        self.name = name
+
+    def __get__(self, member: object, policy: type[Enum]) -> Enum:
+        warnings.warn(
+            f"{policy.__name__}.{self.former} is deprecated. "
+            f"Use {policy.__name__}.{self.name} instead.",
+            stacklevel=2,
+        )
+        return policy[self.name]
+
+
+FORMER_NAMES: dict[type[Enum], str] = {
+    HistoryPolicy: "SYSTEM_DEFAULT KEEP_LAST KEEP_ALL UNKNOWN",
+    ReliabilityPolicy: "SYSTEM_DEFAULT RELIABLE BEST_EFFORT UNKNOWN",
+    DurabilityPolicy: "SYSTEM_DEFAULT TRANSIENT_LOCAL VOLATILE UNKNOWN",
+    LivelinessPolicy: "SYSTEM_DEFAULT AUTOMATIC MANUAL_BY_TOPIC UNKNOWN",
+}
+"""The members that have a former name, as `RMW_QOS_POLICY_HISTORY_KEEP_LAST`."""
+
+for _policy, _names in FORMER_NAMES.items():
+    for _name in _names.split():
+        _former = f"RMW_QOS_POLICY_{_policy.__name__.removesuffix('Policy').upper()}_{_name}"
+        setattr(_policy, _former, DeprecatedMember(_former, _name))
 
 # rclpy's spelling
 LivelinessLeaseDurationeBestAvailable = core.LivelinessLeaseDurationBestAvailable

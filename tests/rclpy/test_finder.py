@@ -61,6 +61,16 @@ def test_message_packages_are_there() -> None:
 
 
 @pytest.mark.usefixtures("installed")
+def test_the_modules_of_a_message_package_need_no_import() -> None:
+    """In ROS they are loaded as soon as another message is made of theirs."""
+    package = importlib.import_module("std_msgs")
+
+    assert package.msg.Bool is message_class("std_msgs/msg/Bool")
+    with pytest.raises(AttributeError, match="module 'std_msgs' has no attribute 'srv'"):
+        _ = package.srv
+
+
+@pytest.mark.usefixtures("installed")
 def test_the_module_of_one_message_is_there() -> None:
     """Rosbridge and pickle import it by the name that the class gives."""
     module = importlib.import_module("std_msgs.msg._multi_array_layout")

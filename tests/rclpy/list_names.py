@@ -1,0 +1,45 @@
+"""Prints the public names of rclpy's modules and classes, as JSON, whichever rclpy there is.
+
+``names.json`` is what it prints with rclpy 9.1.2. Left out are the names of `typing`, which say
+nothing about rclpy, and what a class has from outside of rclpy.
+"""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import json
+import pkgutil
+import typing
+import warnings
+from collections.abc import Iterable, Iterator
+
+import rclpy
+
+OF_TYPING = {*dir(typing), "annotations", "T", "TypeAlias", "deprecated"}
+
+
+def public(names: Iterable[str]) -> list[str]:
+    """Return names without an underscore, in order."""
+    return sorted(name for name in names if not name.startswith("_"))
+
+
+def modules() -> Iterator[str]:
+    """Yield the names of the public modules."""
+    yield "rclpy"
+    for found in pkgutil.walk_packages(rclpy.__path__, "rclpy."):
+        if not any(part.startswith("_") for part in found.name.split(".")):
+            yield found.name
+
+
+warnings.simplefilter("ignore")
+names, classes = {}, {}
+for name in modules():
+    module = importlib.import_module(name)
+    names[name] = [each for each in public(vars(module)) if each not in OF_TYPING]
+    for each in names[name]:
+        found = vars(module)[each]
+        if inspect.isclass(found) and found.__module__ == name:
+            inside = {part for base in found.__mro__[:-1] for part in vars(base)}
+            classes[f"{name}.{each}"] = public(inside - {*dir(Exception), "name", "value"})
+print(json.dumps({"modules": names, "classes": classes}, indent=1))

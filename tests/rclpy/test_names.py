@@ -1,0 +1,215 @@
+"""Every public name that a module or class of rclpy 9.1.2 has is here, but those listed.
+
+``names.json`` has the names; `list_names.py` prints them. With the path of an interpreter that has
+rclpy in ``RCLPY_PYTHON`` it is asked again, as in test_differential.py.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import subprocess
+import sys
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import aionode.rclpy
+from aionode.rclpy import _finder
+from aionode.rclpy._rosidl import message_class
+
+HERE = Path(__file__).parent
+EXPECTED: dict[str, dict[str, list[str]]] = json.loads(
+    (HERE / "names.json").read_text(encoding="utf-8")
+)
+INTERPRETER = "RCLPY_PYTHON"
+
+FILTERS = "filters of log lines are inside of aionode.logging, which log() calls"
+LACKS = {
+    "rclpy.context.g_logging_configure_lock": "aionode configures logging without a lock",
+    "rclpy.context.g_logging_ref_count": "aionode does not count contexts that log",
+    "rclpy.impl.implementation_singleton.import_c_library": "there is no compiled library",
+    "rclpy.impl.implementation_singleton.package": "there is no compiled library",
+    **dict.fromkeys(
+        (
+            f"rclpy.impl.rcutils_logger.{name}"
+            for name in (
+                "CallerId",
+                "LoggingArgs",
+                "LoggingFilter",
+                "LoggingFilterArgs",
+                "LoggingFilterParams",
+                "Once",
+                "OnceContext",
+                "RcutilsLoggerContext",
+                "SkipFirst",
+                "SkipFirstContext",
+                "SupportedFiltersKeys",
+                "Throttle",
+                "ThrottleContext",
+                "get_filters_from_kwargs",
+                "supported_filters",
+            )
+        ),
+        FILTERS,
+    ),
+    "rclpy.action.server.ActionServer.notify_goal_done": "the server itself calls its like",
+    "rclpy.exceptions.InvalidParameterTypeException.Parameter": "an import inside of the class",
+    "rclpy.qos.LivelinessPolicy.RMW_QOS_POLICY_DURABILITY_UNKNOWN": "a slip: LIVELINESS is meant",
+    "rclpy.qos.QoSLivelinessPolicy.RMW_QOS_POLICY_DURABILITY_UNKNOWN": "the same class",
+    "rclpy.qos_overriding_options.QoSOverridingOptions.policy_kinds": "options have it, no class",
+}
+"""The names that are not here, and why."""
+
+
+@pytest.fixture
+def installed() -> Iterator[None]:
+    """A process in which aionode stands in for ROS, and afterwards does not."""
+    before = dict(sys.modules)
+    aionode.rclpy.install()
+    yield
+    sys.meta_path.remove(_finder.FINDER)
+    for name in set(sys.modules) - set(before):
+        if not name.startswith("aionode"):
+            del sys.modules[name]
+
+
+def imported(module: str) -> Any:
+    """Return a module, whatever it warns of."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return importlib.import_module(module)
+
+
+def lacking(owner: Any, path: str, names: list[str]) -> Iterator[str]:
+    """Yield the names that a module or class does not have."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        yield from (f"{path}.{name}" for name in names if not hasattr(owner, name))
+
+
+@pytest.mark.usefixtures("installed")
+def test_modules_have_the_names_of_rclpy() -> None:
+    """Programs take names from where rclpy has them, not from where it defines them."""
+    found = {
+        name
+        for module, names in EXPECTED["modules"].items()
+        for name in lacking(imported(module), module, names)
+    }
+
+    assert found - set(LACKS) == set()
+
+
+@pytest.mark.usefixtures("installed")
+def test_classes_have_the_names_of_rclpy() -> None:
+    """Methods, properties, and constants."""
+    found: set[str] = set()
+    for path, names in EXPECTED["classes"].items():
+        module, _, name = path.rpartition(".")
+        if path not in LACKS:
+            found.update(lacking(getattr(imported(module), name), path, names))
+
+    assert found - set(LACKS) == set()
+
+
+@pytest.mark.usefixtures("installed")
+def test_a_name_is_lacking_as_long_as_it_is_listed() -> None:
+    """An exception that nothing needs is taken off the list."""
+    known = {
+        f"{path}.{name}"
+        for kind in EXPECTED.values()
+        for path, names in kind.items()
+        for name in names
+    }
+
+    assert set(LACKS) - known == set()
+    for path in LACKS:
+        owner, _, name = path.rpartition(".")
+        module, _, cls = owner.rpartition(".")
+        there = imported(owner) if owner in EXPECTED["modules"] else getattr(imported(module), cls)
+        assert not hasattr(there, name), path
+
+
+@pytest.mark.usefixtures("installed")
+def test_a_name_from_elsewhere_is_the_same_object() -> None:
+    """A parameter described by one of two classes of one name would be refused."""
+    node, client = imported("rclpy.node"), imported("rclpy.client")
+
+    assert node.ParameterDescriptor is message_class("rcl_interfaces/msg/ParameterDescriptor")
+    assert node.ParameterMsg is message_class("rcl_interfaces/msg/Parameter")
+    assert node.Context is imported("rclpy.context").Context
+    assert client.SrvTypeRequest is node.SrvTypeRequest
+    assert imported("rclpy.parameter").ParameterType.PARAMETER_STRING_ARRAY == 9
+    assert "ParameterDescriptor" in dir(node)
+
+
+@pytest.mark.usefixtures("installed")
+def test_an_unknown_name_is_no_name_of_a_module() -> None:
+    """The error names the module as the program does."""
+    with pytest.raises(AttributeError, match=r"module 'rclpy\.node' has no attribute 'Nodes'"):
+        _ = imported("rclpy.node").Nodes
+
+
+@pytest.mark.usefixtures("installed")
+def test_types_of_actions_have_parameters() -> None:
+    """The navigator of nav2 of Kilted writes them into its annotations when it is imported."""
+    support = imported("rclpy.type_support")
+
+    for name in ("GetResultServiceResponse", "SendGoalServiceRequest", "FeedbackMessage"):
+        assert getattr(support, name)[int] is not None
+
+
+@pytest.mark.usefixtures("installed")
+@pytest.mark.parametrize(
+    ("policy", "name"),
+    [
+        ("History", "KEEP_LAST"),
+        ("Reliability", "BEST_EFFORT"),
+        ("Durability", "TRANSIENT_LOCAL"),
+        ("Liveliness", "MANUAL_BY_TOPIC"),
+    ],
+)
+def test_a_former_name_of_a_policy_warns_as_in_rclpy(policy: str, name: str) -> None:
+    """Programs from the time of Dashing have them."""
+    found = getattr(imported("rclpy.qos"), f"QoS{policy}Policy")
+    former = f"RMW_QOS_POLICY_{policy.upper()}_{name}"
+
+    with pytest.warns(
+        UserWarning, match=f"^{policy}Policy.{former} is deprecated. Use {policy}Policy.{name} inst"
+    ):
+        value = getattr(found, former)
+
+    assert value is found[name]
+    assert former.lower() not in found.short_keys()
+
+
+@pytest.mark.usefixtures("installed")
+def test_the_former_module_of_events_warns_as_in_rclpy() -> None:
+    """It has the names of `rclpy.event_handler`."""
+    sys.modules.pop("aionode.rclpy.qos_event", None)
+
+    with pytest.warns(UserWarning, match="importing 'qos_event' is deprecated"):
+        module = importlib.import_module("rclpy.qos_event")
+
+    assert module.QoSEventHandler is imported("rclpy.event_handler").QoSEventHandler
+
+
+@pytest.mark.timeout(120)
+@pytest.mark.skipif(
+    INTERPRETER not in os.environ,
+    reason=f"{INTERPRETER} is not set: no interpreter that has rclpy to compare with",
+)
+def test_the_names_are_those_of_rclpy() -> None:
+    """What aionode is compared with is what rclpy has, not what was once written down."""
+    done = subprocess.run(
+        [os.environ[INTERPRETER], str(HERE / "list_names.py")],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+
+    assert json.loads(done.stdout) == EXPECTED
