@@ -11,8 +11,6 @@ from tests.faults.roles import Hear, Publish, Role
 
 __all__ = ["all_attacks"]
 
-OPEN = "not mended yet"
-
 ZENOH = "Zenoh itself: its put waits while it takes in, or drops, thousands of declarations"
 
 
@@ -117,6 +115,12 @@ def all_attacks() -> list[Attack]:
             "filter_costly",
             pair(publish=clouds()),
             short=True,
+        ),
+        Attack(
+            "filters that let nothing through for the subscriptions of others",
+            "member",
+            "filter_others",
+            pair(),
         ),
         Attack(
             "10 000 content filters of one reader",

@@ -18,7 +18,7 @@ import msgspec
 
 from tests.attacks.cases import clouds, pair
 from tests.attacks.harness import Attack, Found
-from tests.attacks.lies import LIES, OPEN
+from tests.attacks.lies import LIES
 from tests.attacks.planted import DEFECTS
 from tests.faults.roles import Role
 
@@ -87,10 +87,9 @@ def fuzz(
 
 def main() -> None:
     """Run as a program."""
-    usual = [kind for kind in LIES if kind not in OPEN]
     parser = argparse.ArgumentParser(description="Well-formed lies to a node.")
     parser.add_argument("--seconds", type=float, default=60.0, help="how long (60)")
-    parser.add_argument("--kinds", nargs="+", choices=LIES, default=usual, help="which lies")
+    parser.add_argument("--kinds", nargs="+", choices=LIES, default=list(LIES), help="which lies")
     parser.add_argument("--seed", type=int, help="repeat one round")
     parser.add_argument("--planted", nargs="+", choices=DEFECTS, default=[], help="defects to find")
     options = parser.parse_args()

@@ -322,6 +322,23 @@ def filter_often(liar: Liar, seconds: float) -> int:
     return number + 1
 
 
+def filter_others(liar: Liar, seconds: float) -> int:
+    """Announce filters that let nothing through for the subscriptions of others."""
+    ends(liar)
+    liar.be_node()
+    theirs = [*liar.endpoints(EndpointKind.SUBSCRIPTION, "/chatter")]
+    theirs += liar.endpoints(EndpointKind.SUBSCRIPTION, "/back")
+    begun()
+    for number in range(5):
+        text = json.dumps([f"data = 'never {number}'", []]).encode()
+        for each in theirs:
+            liar.announce_filter(
+                each.name, each.gid, base64.urlsafe_b64encode(text).decode().rstrip("=")
+            )
+    time.sleep(seconds)
+    return 5 * len(theirs)
+
+
 def subscribe_oddly(liar: Liar, seconds: float) -> int:
     """Subscribe 2000 times to a topic with a QoS profile that does not fit."""
     liar.be_node()
@@ -450,6 +467,7 @@ PROGRAMS: dict[str, Program] = {
             ask_largely,
             filter_costly,
             filter_often,
+            filter_others,
             subscribe_oddly,
             subscribe_often,
             flood_graph,

@@ -147,13 +147,13 @@ def join(tmp_path: Path) -> Iterator[Join]:
     with ExitStack() as stack:
         stack.enter_context(router(tmp_path, port))
 
-        def start(name: str, certificate: str) -> Process:
+        def start(name: str, certificate: str, program: str = "member.py") -> Process:
             text = session.replace("router.local:7448", f"localhost:{port}")
             text = text.replace("certs/robot", f"certs/{certificate}")
             config = tmp_path / f"{name}.json5"
             config.write_text(text.replace("certs/", f"{tmp_path}/"), encoding="utf-8")
             env = {"ZENOH_SESSION_CONFIG_URI": str(config), "AIONODE_LINK": "off"}
-            return stack.enter_context(Process("tests/processes/member.py", name, env=env))
+            return stack.enter_context(Process(f"tests/processes/{program}", name, env=env))
 
         yield start
 
@@ -183,6 +183,19 @@ def test_a_certificate_that_access_control_does_not_allow_neither_hears_nor_is_h
         process.stop()
     assert "heard wrong" not in {*one.rest(), *other.rest()}
     assert {line for line in wrong.rest() if line.startswith("heard")} <= {"heard wrong"}
+
+
+def test_a_visitor_runs_the_node_of_its_rules_and_publishes_its_topic_alone(join: Join) -> None:
+    """All of its messages arrive, and none of another topic."""
+    robot = join("robot", "robot", "visitor_member.py")
+    robot.expect("open")
+    join("visitor", "visitor", "visitor_member.py")
+    robot.expect("seen")
+
+    for number in range(10):
+        robot.expect(f"scan {number}")
+    robot.stop()
+    assert not [line for line in robot.rest() if line.startswith("chatter")]
 
 
 def test_a_certificate_of_another_authority_is_refused(join: Join) -> None:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.content_filter import ContentFilterOptions
-    from aionode.graph import EndpointInfo, Graph
+    from aionode.graph import EndpointInfo
     from aionode.transport.base import Reader
     from aionode.transport.zenoh._session_state import SessionState
     from aionode.wire._acknack import Submessage
@@ -372,6 +372,8 @@ class ZenohReader(Declaration, ReaderRegistration):
                 proxy = self._add_proxy(submessage)
                 if proxy is None:
                     return
+            elif proxy.participant.encode() != submessage.rest:
+                proxy.participant = self._participant_of(submessage) or proxy.participant
             if submessage.first > proxy.next:  # what is older may be here, in the other queue
                 self._queue.take_all()
             # While messages wait in the queue, it cannot be told which ones are missing.
@@ -404,8 +406,8 @@ class ZenohReader(Declaration, ReaderRegistration):
         """Return a new proxy for the sender of a HEARTBEAT; None if that is malformed."""
         if self._transient and self._last.get(heartbeat.writer, 0) < heartbeat.first - 1:
             return None  # the history is still to come
-        participant = heartbeat.rest.decode(errors="replace")
-        if not participant.isalnum():  # it becomes part of a key
+        participant = self._participant_of(heartbeat)
+        if not participant:
             self.state.note_malformed(self._key, "an acknowledgement")
             return None
         if len(self._proxies) >= REMEMBERED_WRITERS:  # forget the one that was silent for longest
@@ -417,15 +419,25 @@ class ZenohReader(Declaration, ReaderRegistration):
         self._proxies[gid] = proxy
         return proxy
 
+    def _participant_of(self, heartbeat: Submessage) -> str:
+        """Return the context of the sender of a HEARTBEAT; empty if that is malformed.
+
+        The graph knows better: else a lie would keep a publisher waiting for acknowledgements.
+        """
+        publisher = self._find(heartbeat.writer)
+        if publisher is not None:
+            return publisher.node.participant
+        participant = heartbeat.rest.decode(errors="replace")
+        return participant if participant.isalnum() else ""  # it becomes part of a key
+
     def tick(self) -> bool:
         """Ask again for what is missing; return whether to call again."""
-        graph = self.state.graph
         again = False
         for proxy in list(self._proxies.values()):
             if proxy.next > proxy.last:
                 proxy.absent_ticks = 0
                 continue
-            if graph is None or self._is_in_graph(graph, proxy):
+            if self.state.graph is None or self._find(proxy.gid) is not None:
                 proxy.absent_ticks = 0
             else:
                 proxy.absent_ticks += 1
@@ -437,9 +449,13 @@ class ZenohReader(Declaration, ReaderRegistration):
                 proxy.remind()
         return again
 
-    def _is_in_graph(self, graph: Graph, proxy: WriterProxy) -> bool:
+    def _find(self, gid: bytes) -> EndpointInfo | None:
+        """Return a publisher of the topic, if it is in the graph."""
+        graph = self.state.graph
+        if graph is None:
+            return None
         publishers = graph.endpoints(EndpointKind.PUBLISHER, name=self.endpoint.name)
-        return any(publisher.gid == proxy.gid for publisher in publishers)
+        return next((each for each in publishers if each.gid == gid), None)
 
     def refused(self, proxy: WriterProxy, last: int) -> None:  # noqa: ARG002  # of the protocol
         """Say once that something was said in a publisher's name that it cannot have said."""

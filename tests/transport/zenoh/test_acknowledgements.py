@@ -25,7 +25,7 @@ from aionode.transport.zenoh._publisher import ZenohWriter
 from aionode.transport.zenoh._subscription import GONE_TICKS, ZenohReader
 from aionode.wire import _acknack as acknack
 from aionode.wire import cdr
-from aionode.wire._acknack import SubmessageKind
+from aionode.wire._acknack import Submessage, SubmessageKind
 from aionode.wire._key_expression import Side
 from tests.support.peers import (
     DOMAIN_ID,
@@ -322,6 +322,30 @@ async def test_a_submessage_counts_only_on_the_key_of_its_topic() -> None:
                 await checkpoint()
         assert heard == [1, 2]
         assert not reader_of(subscription).state.malformed
+
+
+async def test_a_heartbeat_in_a_publishers_name_leads_no_acknowledgement_astray() -> None:
+    """A KEEP_ALL publisher would wait for them for good."""
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        publisher = a.create_publisher(Int32, "n", KEEP_ALL)
+        subscription = b.create_subscription(Int32, "n", None, KEEP_ALL)
+        await publisher.wait_for_subscribers()
+        reader, gid = reader_of(subscription), writer_of(publisher).gid
+        assert reader.state.graph is not None
+        await reader.state.graph.until(lambda: reader._find(gid) is not None)
+        lie = Submessage(SubmessageKind.HEARTBEAT, gid, reader.gid, 1, 0, b"abc")
+        for is_first in (True, False):
+            if is_first:
+                reader._proxies.clear()
+            reader.take_submessage(lie)
+            assert reader._proxies[gid].participant == first.participant
+        reader._proxies[gid].participant = "abc"  # as if the graph had not known the publisher yet
+        publisher.publish(Int32(data=1))
+        await acknowledged(publisher)
 
 
 async def test_one_subscriber_for_the_acknowledgements_of_a_topic_goes_with_its_last_endpoint() -> (
