@@ -494,6 +494,24 @@ def test_the_word_counter_counts_what_the_publisher_says(domain: int) -> None:
     assert [line.rpartition(" ")[2] for line in lines] == ["7", "14"]
 
 
+def test_the_arm_says_where_its_gripper_is(domain: int) -> None:
+    """In the map, and the cup in the gripper; the tree is seen from another process."""
+    with running("examples/arm.py", domain=domain) as arm:
+        place = [float(word) for word in arm.line_with("gripper in the map").split()[-3:]]
+        arm.line_with("cup in the gripper")
+        arm.line_with("height of the gripper")
+        command = ["-m", "aionode", "tf", "tree"]
+        tree = subprocess.run(
+            [sys.executable, *command],
+            env={**os.environ, "ROS_DOMAIN_ID": str(domain)},
+            capture_output=True, text=True, timeout=40, check=True,
+        ).stdout  # fmt: skip
+
+    assert abs(place[0] - 2) < 1.3
+    assert tree.splitlines()[0] == "map"
+    assert "gripper" in tree
+
+
 def test_the_parameters_of_another_node_are_read_and_set(domain: int) -> None:
     """The speed doubles until the limit refuses it, with a reason."""
     program = "examples/parameter_client.py"

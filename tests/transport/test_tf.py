@@ -1,0 +1,29 @@
+"""Transforms over every transport: both ways, and static ones for those who come late."""
+
+from __future__ import annotations
+
+from aionode import Time
+from aionode.clock import ClockType
+from aionode.tf import Buffer, StaticTransformBroadcaster, TransformBroadcaster
+from tests.support.transforms import transform
+from tests.transport.test_contract import Pair, pair
+
+__all__ = ["pair"]  # the fixture
+
+
+async def test_a_late_buffer_has_static_transforms_and_awaits_the_others(pair: Pair) -> None:
+    """The sender of both is named."""
+    StaticTransformBroadcaster(pair.left).sendTransform(
+        [transform("base", "camera"), transform("base", "arm")]
+    )
+    moving = TransformBroadcaster(pair.left)
+    buffer = Buffer(pair.right)
+    await buffer.wait_for_transform("camera", "arm", timeout_sec=20.0)
+    await moving.pub_tf.wait_for_subscribers()
+    for stamp in (1.0, 2.0):
+        moving.sendTransform(transform("odom", "base", stamp))
+    found = await buffer.wait_for_transform(
+        "odom", "camera", Time(seconds=1.5, clock_type=ClockType.ROS_TIME), timeout_sec=20.0
+    )
+    assert found.transform.translation.x == 2.0
+    assert set(buffer._authorities.values()) == {pair.left.get_fully_qualified_name()}
