@@ -408,9 +408,12 @@ async def test_one_whose_connection_was_lost_is_missing_though_a_router_brings_i
 async def test_a_look_makes_no_unannounced_peer() -> None:
     """Else everything would go both ways for as long as it takes."""
     async with context("a1") as first, context("b2") as second:
+        await until_seen(first, "b2")
+        await until_seen(second, "a1")
+        # Each is unannounced until its tokens have come.
+        await until(lambda: not first.peer_directory.has_unannounced_peers)
         told: list[bool] = []
         first.peer_directory.on_unannounced_peers = told.append
-        await until_seen(second, "a1")
         session = second._state.session
         assert session is not None
         way = await asyncio.to_thread(
