@@ -116,7 +116,7 @@ def let_it_block(client: Process) -> None:
     [
         (["client", LONG], kill, "on"),
         (["client", LONG], freeze, "on"),
-        (["client", LONG], freeze, "off"),
+        pytest.param(["client", LONG], freeze, "off", marks=pytest.mark.stress),
         (["blocked"], let_it_block, "on"),
     ],
     ids=["killed", "frozen", "frozen-zenoh", "blocked"],
@@ -156,7 +156,7 @@ def test_ctrl_c_at_the_client_cancels_its_goal() -> None:
     assert status == 0
 
 
-@pytest.mark.parametrize("link", ["on", "off"])
+@pytest.mark.parametrize("link", [pytest.param("on", marks=pytest.mark.stress), "off"])
 def test_a_client_that_leaves_its_call_cancels_its_goal(
     monkeypatch: pytest.MonkeyPatch, link: str
 ) -> None:

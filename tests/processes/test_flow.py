@@ -110,7 +110,7 @@ def test_a_frozen_reader_that_acknowledges_nothing_stops_no_loop() -> None:
     freeze_reader(2.0, role="plain")
 
 
-@pytest.mark.parametrize("role", ["reader", "plain"])
+@pytest.mark.parametrize("role", ["reader", pytest.param("plain", marks=pytest.mark.stress)])
 def test_a_publisher_ends_at_once_beside_a_frozen_reader_and_says_what_is_lost(role: str) -> None:
     """SIGTERM took ten seconds or more, and what waited was lost in silence."""
     with members((role, "big", ENDLESS), ("keeper", "big", 100_000, 500)) as (reader, keeper):
@@ -156,7 +156,9 @@ def test_a_reliable_burst_within_the_depth_arrives_as_a_whole(
         reader.expect(f"heard {messages}")
 
 
-@pytest.mark.parametrize(("messages", "size"), [(200, 20_000), (5_000, 1_000)])
+@pytest.mark.parametrize(
+    ("messages", "size"), [(5_000, 1_000), pytest.param(200, 20_000, marks=pytest.mark.stress)]
+)
 def test_what_a_publisher_has_sent_before_it_ends_arrives(messages: int, size: int) -> None:
     """Its process waits for that, as long as the reader takes it."""
     with members(("reader", "last", messages), ("quitter", "last", messages, size)) as (

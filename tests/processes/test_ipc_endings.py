@@ -22,6 +22,8 @@ from tests.support.peers import KEEP_ALL, quiet_node
 
 __all__ = ["folder"]  # a fixture
 
+pytestmark = pytest.mark.one_loop  # tests/transport/ipc reads ended links on both loops
+
 ENDER = Path(__file__).with_name("ipc_ender.py")
 
 

@@ -33,7 +33,10 @@ def assert_stopped(wheels: Process) -> None:
     assert told[first:] == ["speed 0.0"]
 
 
-@pytest.mark.parametrize(("link", "what"), [("on", "sleep"), ("on", "spin"), ("off", "sleep")])
+@pytest.mark.parametrize(
+    ("link", "what"),
+    [("on", "spin"), ("off", "sleep"), pytest.param("on", "sleep", marks=pytest.mark.stress)],
+)
 def test_the_stop_of_a_blocked_loop_arrives(
     monkeypatch: pytest.MonkeyPatch, link: str, what: str
 ) -> None:
@@ -55,7 +58,7 @@ def test_the_stop_of_a_blocked_loop_arrives(
         assert stopped_s - blocked_s < TTL_SEC + LATE_SEC
 
 
-@pytest.mark.parametrize("link", ["on", "off"])
+@pytest.mark.parametrize("link", [pytest.param("on", marks=pytest.mark.stress), "off"])
 def test_a_frozen_holder_sends_nothing_but_the_stop_when_it_wakes(
     monkeypatch: pytest.MonkeyPatch, link: str
 ) -> None:
@@ -104,7 +107,7 @@ def test_the_stop_is_sent_when_the_loop_has_ended() -> None:
         assert_stopped(wheels)
 
 
-@pytest.mark.parametrize("link", ["on", "off"])
+@pytest.mark.parametrize("link", ["on", pytest.param("off", marks=pytest.mark.stress)])
 def test_a_second_signal_sends_the_stop_of_a_blocked_loop(
     monkeypatch: pytest.MonkeyPatch, link: str
 ) -> None:

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 __all__ = ["folder"]  # a fixture
 
+pytestmark = pytest.mark.one_loop  # which loop waits for the processes is of no interest
+
 ZENOH_LEASE_S = 10.0
 """How long Zenoh waits before it takes a process that hangs for gone."""
 

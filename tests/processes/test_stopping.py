@@ -102,7 +102,7 @@ def test_what_was_published_is_sent_when_a_second_signal_ends_the_program(
         assert took_s < 0.2 + 0.2
 
 
-@pytest.mark.parametrize("pause_sec", [0.002, 0.02])
+@pytest.mark.parametrize("pause_sec", [0.002, pytest.param(0.02, marks=pytest.mark.stress)])
 @pytest.mark.parametrize("link", ["on", pytest.param("off", marks=pytest.mark.stress)])
 def test_two_signals_a_few_milliseconds_apart_stop_a_robot(
     monkeypatch: pytest.MonkeyPatch, link: str, pause_sec: float
