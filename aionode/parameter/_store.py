@@ -131,10 +131,7 @@ class ParameterStore(ParameterCallbacks):
         """
         if value is None and descriptor is None:
             return self.declare_parameters("", [(name,)], ignore_override)[0]
-        if descriptor is None:
-            descriptor = self.messages.ParameterDescriptor()
-        entry = (name, value, descriptor)
-        return self.declare_parameters("", [entry], ignore_override)[0]
+        return self.declare_parameters("", [(name, value, descriptor)], ignore_override)[0]
 
     def declare_parameters(
         self,
@@ -201,11 +198,13 @@ class ParameterStore(ParameterCallbacks):
             TypeError: it is no descriptor.
         """
         wanted = self.messages.ParameterDescriptor
+        descriptor: ParameterDescriptor
         if given is None:
-            given = wanted()
-        expect(given, wanted, f"Third element at index {index} in parameters list")
-        copied: ParameterDescriptor = copy.deepcopy(given)
-        return copied
+            descriptor = wanted()
+        else:
+            expect(given, wanted, f"Third element at index {index} in parameters list")
+            descriptor = copy.deepcopy(given)
+        return descriptor
 
     def _declare(self, parameter: Parameter, descriptor: ParameterDescriptor) -> None:
         if type_violation(parameter, descriptor, declared=False):

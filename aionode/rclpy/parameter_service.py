@@ -24,6 +24,7 @@ class ParameterService:
     """The six services of one node, which it does not keep alive."""
 
     def __init__(self, node: NodeLike) -> None:
+        name = node.get_name()
         logger = node.get_logger()
         for service in parameter_services(
             weakref.proxy(node),
@@ -34,7 +35,7 @@ class ParameterService:
         ):
             node.create_service(
                 service.srv_type,
-                f"{node.get_name()}/{service.name}",
+                f"{name}/{service.name}",
                 unless_refused(service.callback, logger),
                 qos_profile=qos_profile_parameters,
             )
