@@ -24,7 +24,6 @@ from aionode.cli._support.options import (
     types_option,
 )
 from aionode.cli._support.yaml_messages import message_from_yaml
-from aionode.errors import CommandError
 from aionode.graph import SERVICE_KINDS, EndpointKind
 from aionode.message import to_builtins
 
@@ -242,21 +241,15 @@ async def class_watched(node: Node, name: str, given: str | None) -> Any:
         CommandError: the service is unknown, or has several types.
     """
     users = lookup.endpoints(node, *SERVICE_KINDS, name=name)
-    types = sorted({user.type_name for user in users})
     if given is not None:
-        types = [given]
         users = [user for user in users if user.type_name == given]
-    if not types:
+    service_type = lookup.only_type("service", name, users) if given is None else given
+    if service_type is None:
         raise SERVICE.unknown(node, name)
-    if len(types) > 1:
-        raise CommandError(
-            f"Service '{name}' has more than one type: {', '.join(types)}; give one of them after "
-            "the service name"
-        )
-    action, _, part = types[0].rpartition("_")
-    if "/action/" in types[0] and part in ACTION_SERVICES:
+    action, _, part = service_type.rpartition("_")
+    if "/action/" in service_type and part in ACTION_SERVICES:
         action_type = await lookup.type_of_action(node, name.rpartition("/_action/")[0], action)
         return getattr(action_type.Impl, ACTION_SERVICES[part])
     if users:
         return await lookup.type_of(node, users)
-    return lookup.interface_class("service", types[0])
+    return lookup.interface_class("service", service_type)

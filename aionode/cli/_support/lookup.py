@@ -28,6 +28,7 @@ __all__ = [
     "likeness",
     "names_and_types",
     "node_infos",
+    "only_type",
     "topic_type",
     "type_of",
     "type_of_action",
@@ -190,16 +191,30 @@ async def topic_type(node: Node, topic: str, given: str | None = None) -> type[M
         if not users:
             given_type: type[Message] = interface_class("message", given)
             return given_type
-    types = sorted({user.type_name for user in users})
-    if len(types) > 1:
-        raise CommandError(
-            f"Topic '{topic}' has more than one type: {', '.join(types)}; give one of them after "
-            "the topic name"
-        )
-    if not users:
+    if only_type("topic", topic, users) is None:
         return None
     learned: type[Message] = await type_of(node, users)
     return learned
+
+
+def only_type(word: str, name: str, users: Iterable[EndpointInfo]) -> str | None:
+    """Return the type of the endpoints of a name; None if there are none.
+
+    Args:
+        word: ``topic`` or ``service``.
+        name: Full name of the topic or service.
+        users: Its endpoints.
+
+    Raises:
+        CommandError: the endpoints have several types.
+    """
+    types = sorted({user.type_name for user in users})
+    if len(types) > 1:
+        raise CommandError(
+            f"{word.capitalize()} '{name}' has more than one type: {', '.join(types)}; give one of "
+            f"them after the {word} name"
+        )
+    return types[0] if types else None
 
 
 async def type_of(node: Node, users: list[EndpointInfo]) -> Any:
