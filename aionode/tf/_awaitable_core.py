@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import S_TO_NS, ClockChange, Duration, JumpThreshold, Time
 from aionode.endpoints._core.entity import Entity
 from aionode.errors import TimeoutException, TransformException
 from aionode.tf._arithmetic import unit
-from aionode.tf._buffer_core import CACHE_TIME_SEC, BufferCore, time_ns_of
+from aionode.tf._buffer_core import CACHE_TIME_SEC, BufferCore
 from aionode.tf._listener import STATIC_TOPIC, TOPIC, TransformListener
 from aionode.tf._texts import seconds_text
 from aionode.tf._waiters import Part, Waiter, Waiters, problem_of
@@ -79,73 +78,7 @@ class AwaitableCore(BufferCore):
             post_callback=self._on_jump,
         )
 
-    # Waiting
-
-    async def wait_for_transform(
-        self,
-        target_frame: str,
-        source_frame: str,
-        time: Any = LATEST,
-        *,
-        timeout_sec: float | None = None,
-    ) -> TransformStamped:
-        """Wait until a transform is available, and return it.
-
-        Cancelling ends the wait and changes nothing else; the CancelledError has a note that says
-        why the transform was not there, which also `asyncio.timeout` shows.
-
-        Args:
-            target_frame: The frame to express things in.
-            source_frame: The frame that they are in.
-            time: When; by default the latest common time.
-            timeout_sec: How long to wait, in seconds of the node's clock; None for ever.
-
-        Raises:
-            TimeoutException: it was not available in time; the text says why (a TimeoutError).
-            ExtrapolationException: the time is older than the transforms that are kept.
-            InvalidArgumentException: a name is empty or begins with a slash (a ValueError).
-            EntityDestroyedError: the node was destroyed (a RuntimeError).
-            asyncio.CancelledError: it was destroyed, and the current task is one of its own.
-        """
-        parts = ((target_frame, source_frame, time_ns_of(time)),)
-        return await self._wait(
-            parts,
-            partial(self.lookup_transform_core, target_frame, source_frame, time),
-            timeout_sec,
-        )
-
-    async def wait_for_transform_full(
-        self,
-        target_frame: str,
-        target_time: Any,
-        source_frame: str,
-        source_time: Any,
-        fixed_frame: str,
-        *,
-        timeout_sec: float | None = None,
-    ) -> TransformStamped:
-        """Wait until a transform between two times is available, and return it.
-
-        See `lookup_transform_full_core` for the arguments, and `wait_for_transform` for the rest.
-        """
-        parts = (
-            (target_frame, fixed_frame, time_ns_of(target_time)),
-            (fixed_frame, source_frame, time_ns_of(source_time)),
-        )
-        return await self._wait(
-            parts,
-            partial(
-                self.lookup_transform_full_core,
-                target_frame,
-                target_time,
-                source_frame,
-                source_time,
-                fixed_frame,
-            ),
-            timeout_sec,
-        )
-
-    # Within
+    # For subclasses
 
     async def _wait(
         self,

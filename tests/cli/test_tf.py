@@ -21,6 +21,7 @@ from aionode.cli._nouns.tf import (
     tree,
 )
 from aionode.cli._nouns.tf_tree import FrameEdge, as_svg, as_text
+from aionode.interfaces.rosgraph_msgs.msg import Clock as ClockMsg
 from aionode.testing import ManualClock, settle
 from aionode.tf import Buffer, StaticTransformBroadcaster, TransformBroadcaster
 from aionode.tf._apply import matrix_of, pose_of
@@ -207,3 +208,17 @@ async def test_doctor_says_why_a_transform_is_missing(
     sender.create_timer(0.05, lambda: broadcaster.sendTransform(stale))
     await doctor(tool, output=screen.output)
     assert "base_link: its transform in odom is " in screen.text
+
+
+async def test_doctor_does_not_compare_simulated_stamps_with_this_clock(
+    tool: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """With a simulation, all of them would look years old."""
+    sender = node_factory("sender")
+    sender.create_publisher(ClockMsg, "/clock", 10)
+    broadcaster = TransformBroadcaster(sender)
+    simulated = transform("odom", "base_link", 1.0)
+    sender.create_timer(0.05, lambda: broadcaster.sendTransform(simulated))
+    await doctor(tool, output=screen.output, transform=("odom", "base_link"))
+    assert "s old" not in screen.text
+    assert "0 problem(s)" in screen.text

@@ -10,7 +10,7 @@ import click
 from aionode.cli._nouns.tf_tree import as_svg, as_text, edges_of
 from aionode.cli._support.command import command
 from aionode.cli._support.options import hertz, seconds
-from aionode.clock import Time
+from aionode.clock import Clock, ClockType, Time
 from aionode.errors import TransformException
 from aionode.tf import Buffer, StaticTransformBroadcaster, TimeoutException
 from aionode.tf._apply import matrix_of, pose_of
@@ -135,7 +135,7 @@ async def heard(node: Node, listen_s: float, output: Output) -> Buffer:
     """Return a buffer that has listened for a while."""
     buffer = Buffer(node)
     with output.waiting(f"listening to /tf for {listen_s:g} s"):
-        await node.get_clock().sleep(listen_s)
+        await Clock(ClockType.STEADY_TIME, time_base=node.context.time_base).sleep(listen_s)
     return buffer
 
 
@@ -152,6 +152,7 @@ async def list_frames(node: Node, *, output: Output, listen_s: float = LISTEN_S)
     click.option("--dot", is_flag=True, help="Print it for Graphviz, as view_frames does."),
     click.option("--svg", is_flag=True, help="Print it as a picture."),
     seconds_option,
+    sim_time=True,
 )
 async def tree(
     node: Node, *, output: Output, dot: bool = False, svg: bool = False, listen_s: float = LISTEN_S
