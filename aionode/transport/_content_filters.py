@@ -179,7 +179,8 @@ class ContentFilters:
         subscriber = Subscriber(participant, demangle(topic), bytes.fromhex(gid_text))
         known = self._by_subscriber.get(subscriber, {})
         if present:
-            self._add(subscriber, known, text)
+            if not self._add(subscriber, known, text):
+                return
         elif text in known:
             del known[text]
             self._counts[participant] -= 1
@@ -189,23 +190,25 @@ class ContentFilters:
             return
         self._changed()
 
-    def _add(self, subscriber: Subscriber, known: dict[str, AnnouncedFilter], text: str) -> None:
-        """Take a filter that is well-formed, unless there are too many."""
+    def _add(self, subscriber: Subscriber, known: dict[str, AnnouncedFilter], text: str) -> bool:
+        """Take a well-formed filter, unless there are too many; return whether it counts."""
         options = filter_from_text(text)
         if options is None or text in known:
-            return
+            return False
         participant = subscriber.participant
         if (
             len(known) >= MAX_FILTERS_PER_READER
             or self._counts[participant] >= MAX_FILTERS_PER_CONTEXT
             or self._counts.total() >= MAX_FILTERS
         ):
-            if len(self._excessive) < MAX_FILTERS:
-                self._excessive.add(subscriber)
-            return
+            if subscriber in self._excessive or len(self._excessive) >= MAX_FILTERS:
+                return False
+            self._excessive.add(subscriber)
+            return True
         known[text] = AnnouncedFilter(options, self._budget)
         self._by_subscriber[subscriber] = known
         self._counts[participant] += 1
+        return True
 
     def clear(self) -> None:
         """Forget all filters: the session has ended."""

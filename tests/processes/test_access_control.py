@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import queue
 from collections.abc import Iterator
-from contextlib import ExitStack, closing
+from contextlib import ExitStack, closing, suppress
 from pathlib import Path
 from typing import Any
 
@@ -101,6 +101,14 @@ class Network:
             self.visitor_has_heard()
 
 
+def opened(config: Path) -> zenoh.Session:
+    """Return a session; a busy machine may take longer than Zenoh tries to connect."""
+    for _ in range(3):
+        with suppress(zenoh.ZError):
+            return zenoh.open(zenoh.Config.from_file(str(config)))
+    return zenoh.open(zenoh.Config.from_file(str(config)))
+
+
 @pytest.fixture(scope="module")
 def network(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Network]:
     """A router with the rules of the how-to, and two sessions."""
@@ -119,8 +127,7 @@ def network(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Network]:
     with ExitStack() as stack:
         stack.enter_context(router(folder, port))
         robot, visitor = (
-            stack.enter_context(closing(zenoh.open(zenoh.Config.from_file(str(configs[name])))))
-            for name in ("robot", "visitor")
+            stack.enter_context(closing(opened(configs[name]))) for name in ("robot", "visitor")
         )
         network = Network(robot, visitor)
         network.settle()

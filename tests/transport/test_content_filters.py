@@ -429,6 +429,18 @@ def test_too_many_filters_of_one_context_take_no_place_from_others() -> None:
     assert wanted(filters, [gid_of(1), gid_of(2)]) is not None
 
 
+def test_a_filter_that_does_not_count_has_no_publisher_look_again() -> None:
+    """Any program may declare any number of them, and each look is at all subscriptions."""
+    filters = ContentFilters()
+    announced(filters, gid_of(1), *(f"data = {number}" for number in range(5)))
+    changes = filters.changes
+
+    announced(filters, gid_of(1), "data = 0", "data = 5", "data = 6")
+    filters.take_token("abc", f"filter/2/%words/{gid_of(1).hex()}/damaged", present=True)
+
+    assert filters.changes == changes
+
+
 # What filters of others may cost
 
 
