@@ -128,6 +128,7 @@ def all_attacks() -> list[Attack]:
             "filter_often",
             pair(publish=clouds()),
             issue=ZENOH,
+            bare=True,
         ),
         Attack(
             "40 messages of 1 MB a second to a busy loop (depth 10 000, queues of 4 MiB)",
@@ -165,8 +166,22 @@ def all_attacks() -> list[Attack]:
         Attack(
             "2000 subscriptions with QoS that does not fit", "member", "subscribe_oddly", pair()
         ),
-        Attack("5000 subscriptions of one topic", "member", "subscribe_often", pair(), issue=ZENOH),
-        Attack("10 000 publishers of 10 000 topics", "member", "flood_graph", pair(), issue=ZENOH),
+        Attack(
+            "5000 subscriptions of one topic",
+            "member",
+            "subscribe_often",
+            pair(),
+            issue=ZENOH,
+            bare=True,
+        ),
+        Attack(
+            "10 000 publishers of 10 000 topics",
+            "member",
+            "flood_graph",
+            pair(),
+            issue=ZENOH,
+            bare=True,
+        ),
     ]
 
 

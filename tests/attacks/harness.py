@@ -24,7 +24,7 @@ import trustme
 
 from tests.attacks.programs import FORGED
 from tests.faults.faults import replace
-from tests.faults.harness import ROOT, Case, Outcome, Stage, run_case
+from tests.faults.harness import ROOT, Case, Child, Outcome, Stage, run_case
 from tests.faults.roles import Role, stream_key
 from tests.processes.process import Process
 from tests.support.peers import free_ports
@@ -42,6 +42,9 @@ BEGIN_LIMIT_S = 20.0
 
 END_LIMIT_S = 30.0
 """How much longer than it is to last an attack may take."""
+
+BARE_LONGER_S = 5.0
+"""How much longer than the attack a session without aionode is there, to see its end."""
 
 COMMAND_LIMIT_S = 20.0
 """How long a command may take beside an attack."""
@@ -68,6 +71,7 @@ class Found(msgspec.Struct):
         tries: How often the attacker tried.
         memory_before_bytes: The memory of the victim that grew most, before the attack.
         memory_most_bytes: The most that it took since.
+        bare: What a session without aionode beside them went through, in words.
         said: The lines that the victims logged since.
         problems: What else was wrong, such as a forged message that was heard.
     """
@@ -76,6 +80,7 @@ class Found(msgspec.Struct):
     tries: int = 0
     memory_before_bytes: int = 1
     memory_most_bytes: int = 1
+    bare: str = ""
     said: list[str] = []
     problems: list[str] = []
 
@@ -96,7 +101,8 @@ class Found(msgspec.Struct):
             (grown > memory_limit, f"{grown:.1f} times the memory"),
         ]
         hung = [f"never again: {', '.join(outcome.hung)}"] if outcome.hung else []
-        return [*self.problems, *(text for is_so, text in told if is_so), *hung]
+        found = [*self.problems, *(text for is_so, text in told if is_so), *hung]
+        return [*found, self.bare] if found and self.bare else found
 
 
 class Attack(msgspec.Struct, frozen=True):
@@ -113,6 +119,7 @@ class Attack(msgspec.Struct, frozen=True):
         longer_s: How much longer than without it they may take.
         replaced: A victim that ends and is replaced meanwhile.
         issue: Why it is not held yet; empty if it is to be held.
+        bare: Whether a Zenoh session without aionode is beside them, to compare with.
         short: Whether it is part of the ordinary tests.
         around: What has to be there before its processes start.
         env: Variables of the attacker's environment.
@@ -128,6 +135,7 @@ class Attack(msgspec.Struct, frozen=True):
     replaced: str = ""
     issue: str = ""
     short: bool = False
+    bare: bool = False
     around: contextlib.AbstractContextManager[None] = contextlib.nullcontext()
     env: dict[str, str] = {}
 
@@ -165,19 +173,11 @@ class Strike:
             reset_peak(pid)
         outputs = {child.role.name: len(child.whole_output()) for child in victims}
 
-        await stage.start(self._attacker([str(pid) for pid in memory]))
-        attacker = stage.children["attacker"]
-        async with asyncio.timeout(BEGIN_LIMIT_S):
-            while "begun" not in attacker.whole_output() and attacker.runs:  # noqa: ASYNC110 - a process writes it
-                await asyncio.sleep(0.05)
-        if attack.commands:
-            await asyncio.sleep(SETTLE_S)
-            for command, alone_s in zip(attack.commands, before_s, strict=True):
-                took_s = await self._command(stage, command)
-                if took_s > alone_s + attack.longer_s:
-                    self.found.problems.append(
-                        f"aionode {' '.join(command)}: {took_s:.1f} s, alone {alone_s:.1f} s"
-                    )
+        if attack.bare:
+            words = ("-m", "tests.attacks.bare", str(attack.seconds + BARE_LONGER_S))
+            bare = await self._begin(stage, Role("bare", command=words, env=attack.env))
+        attacker = await self._begin(stage, self._attacker([str(pid) for pid in memory]))
+        await self._run_commands(stage, before_s)
         if attack.replaced:
             await asyncio.sleep(SETTLE_S)
             await replace(attack.replaced, number=signal.SIGTERM)(stage)
@@ -187,6 +187,13 @@ class Strike:
         if status or tries is None:
             raise RuntimeError(f"the attacker failed: {attacker.output()}")
         self.found.tries = int(tries[1])
+        if attack.bare:
+            async with asyncio.timeout(BARE_LONGER_S + END_LIMIT_S):
+                await bare.until_ended()
+            if told := re.search(r"^bare (\d+) (\S+)$", bare.whole_output(), re.MULTILINE):
+                self.found.bare = (
+                    f"Zenoh's own: {told[1]} ms and {told[2]} times the memory without aionode"
+                )
 
         grown = [(memory[pid], peak_of(pid)) for pid in memory if Path(f"/proc/{pid}").exists()]
         both = max(grown, key=lambda each: each[1] / each[0])
@@ -198,6 +205,26 @@ class Strike:
                 self.found.problems.append(
                     f"{child.role.name} heard {count(number)} forged messages"
                 )
+
+    async def _run_commands(self, stage: Stage, before_s: Sequence[float]) -> None:
+        """Run the commands beside the attack; each may take some longer than without it."""
+        attack = self._attack
+        await asyncio.sleep(SETTLE_S * bool(attack.commands))
+        for command, alone_s in zip(attack.commands, before_s, strict=True):
+            took_s = await self._command(stage, command)
+            if took_s > alone_s + attack.longer_s:
+                self.found.problems.append(
+                    f"aionode {' '.join(command)}: {took_s:.1f} s, alone {alone_s:.1f} s"
+                )
+
+    async def _begin(self, stage: Stage, role: Role) -> Child:
+        """Start a process that attacks, or is beside the attack."""
+        await stage.start(role)
+        child = stage.children[role.name]
+        async with asyncio.timeout(BEGIN_LIMIT_S):
+            while "begun" not in child.whole_output() and child.runs:  # noqa: ASYNC110 - a process writes it
+                await asyncio.sleep(0.05)
+        return child
 
     def _attacker(self, pids: Sequence[str]) -> Role:
         attack = self._attack

@@ -56,7 +56,9 @@ def test_the_table_says_why_an_attack_was_not_held() -> None:
     """And what was said in the log first, and how many lines came after it."""
     attack = Attack("shouts | loudly", "member", "wait", pair())
     outcome = Outcome(sent=10, lost=3, told=1, own_gap_s=0.3)
-    found = Found(outcome, 7, 2**20, 2**21, ["[WARN] [1.2] [node]: too loud", "x"], ["heard it"])
+    found = Found(
+        outcome, 7, 2**20, 2**21, said=["[WARN] [1.2] [node]: too loud", "x"], problems=["heard it"]
+    )
 
     line = line_of(attack, found)
 

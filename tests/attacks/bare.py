@@ -1,0 +1,55 @@
+"""A Zenoh session without aionode beside an attack: what the attack does to Zenoh itself.
+
+``python -m tests.attacks.bare SECONDS`` publishes 100 messages a second, watches all liveliness
+tokens with a function of no effect, as anything does that has a graph, and prints ``begun``, and at
+its end the longest ``put`` and how many times as much memory as at the beginning it took.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from typing import Any
+
+import zenoh  # as any program without aionode has it
+
+from tests.attacks.liar import pace
+from tests.faults.process import CoreWait
+from tests.support.peers import raw_session
+
+__all__: list[str] = []
+
+
+def memory() -> int:
+    """Return the most memory that this process has taken, in kB."""
+    with open("/proc/self/status", encoding="ascii") as lines:  # noqa: PTH123  # as short
+        return next(int(line.split()[1]) for line in lines if line.startswith("VmHWM:"))
+
+
+def main() -> None:
+    """Run as a program."""
+    seconds = float(sys.argv[1])
+    with raw_session() as session:
+        nothing: Any = zenoh.handlers.Callback(lambda _: None, indirect=False)
+        session.liveliness().declare_subscriber("@ros2_lv/**", nothing, history=True)
+        session.liveliness().declare_subscriber("@aionode/**", nothing, history=True)
+        publisher = session.declare_publisher(
+            "bare", congestion_control=zenoh.CongestionControl.DROP
+        )
+        before, longest_s, core_wait = memory(), 0.0, CoreWait()
+        print("begun", flush=True)  # noqa: T201 - a program
+        for _ in pace(seconds, 100):
+            core_wait.own()
+            core_wait.largest_of_others()
+            began_s = time.monotonic()
+            publisher.put(b"x")
+            took_s = time.monotonic() - began_s - core_wait.own()
+            if took_s > longest_s:
+                longest_s = max(longest_s, took_s - core_wait.largest_of_others())
+        print(f"bare {1000 * longest_s:.0f} {memory() / before:.2f}", flush=True)  # noqa: T201 - a program
+        os._exit(0)
+
+
+if __name__ == "__main__":
+    main()
