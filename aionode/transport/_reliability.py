@@ -75,6 +75,10 @@ RETURN_NS: Final = 120_000_000_000
 LOST_RANGES: Final = 16
 """How many ranges of reported losses are remembered before acknowledged ones are dropped."""
 
+UNANSWERED_EACH_TICK: Final = 10
+"""So many readers that have never answered are asked at once, the others later: whoever announces
+thousands of them costs no more."""
+
 NEVER: Final = 1 << 62
 
 
@@ -517,6 +521,7 @@ class WriterHistory:
         """Send the heartbeats that are due; return whether to call again."""
         now_ns = self._now_ns()
         is_quiet = now_ns - self._sent_ns >= QUIET_NS
+        unanswered = 0
         for reader in list(self.readers.values()):
             if reader.away_until_ns:
                 if now_ns >= reader.away_until_ns:
@@ -528,6 +533,11 @@ class WriterHistory:
             elif reader.acked < self.sent:
                 waited_ns = now_ns - reader.heartbeat_ns
                 if waited_ns >= HEARTBEAT_NS or (is_quiet and waited_ns >= reader.interval_ns):
+                    if not reader.answered:
+                        unanswered += 1
+                        if unanswered > UNANSWERED_EACH_TICK:
+                            continue
+                        self.readers[reader.gid] = self.readers.pop(reader.gid)  # others are next
                     reader.heartbeat_ns = now_ns
                     reader.interval_ns = min(reader.interval_ns * 2, HEARTBEAT_NS)
                     self._side.heartbeat(reader, reader.acked + 1, self.sent)

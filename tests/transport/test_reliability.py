@@ -11,7 +11,9 @@ from hypothesis import strategies as st
 
 from aionode.transport._reliability import (
     FLAPPING_NS,
+    HEARTBEAT_NS,
     RETURN_NS,
+    UNANSWERED_EACH_TICK,
     WINDOW_BYTES,
     ReaderProxy,
     WriterHistory,
@@ -734,3 +736,24 @@ def test_messages_that_were_only_overtaken_do_not_begin_a_stream_anew() -> None:
         proxy.take(number, number, 10, is_resent=True)
 
     assert wire.heard[name] == heard
+
+
+def test_readers_that_never_answer_are_asked_a_few_at_a_time() -> None:
+    """Anybody can announce thousands: to ask all at once would stop the event loop."""
+    wire = Wire(1, keep_all=False, depth=10)
+    hear(wire, 1)
+    wire.settle()
+    for number in range(1, 51):
+        wire.history.add(number.to_bytes(16, "big"), "liar")
+    (name,) = wire.names
+    wire.publish()
+    asked = []
+    for _ in range(10):
+        wire.control.clear()
+        wire.clock.ns += HEARTBEAT_NS // 10
+        wire.history.tick()
+        asked.append([to for kind, to, _ in wire.control if kind == "heartbeat"])
+
+    assert max(map(len, asked)) <= UNANSWERED_EACH_TICK + 1
+    assert name in {each for some in asked for each in some}
+    assert len({each for some in asked for each in some}) == 51
