@@ -15,13 +15,15 @@ from aionode.errors import AionodeError
 __all__ = ["main"]
 
 USAGE = """\
-usage: python -m aionode.rclpy [--interfaces FOLDER] (PROGRAM.py | -m MODULE) [ARGUMENT...]
+usage: python -m aionode.rclpy [--interfaces FOLDER] PROGRAM.py [ARGUMENT...]
+       python -m aionode.rclpy [--interfaces FOLDER] -m MODULE[:FUNCTION] [ARGUMENT...]
        python -m aionode.rclpy [--interfaces FOLDER] --check (PROGRAM.py | FOLDER)...
 
 Runs a program that imports rclpy, with aionode in the place of ROS 2.
 
   --interfaces FOLDER  message packages that the program uses; may be repeated
-  -m MODULE            run a module, as python -m does
+  -m MODULE            run a module, as python -m does; with :FUNCTION, call that function, as
+                       the executable of a package does
   --check              run nothing: list what programs import, and whether it is there; the exit
                        status is 1 if something is missing
 """
@@ -107,7 +109,11 @@ def of_file(name: str) -> tuple[CodeType, ModuleType]:
 
 
 def of_module(name: str) -> tuple[CodeType, ModuleType]:
-    """Return the code of a module, or of the ``__main__`` of a package, and its module."""
+    """Return the code of a module, or of the ``__main__`` of a package, and its module.
+
+    With a colon and a function, the code calls that.
+    """
+    name, _, function = name.partition(":")
     try:
         spec = find_spec(name)
         if spec is not None and spec.submodule_search_locations is not None:
@@ -117,6 +123,10 @@ def of_module(name: str) -> tuple[CodeType, ModuleType]:
     code = code_of(spec)
     if spec is None or code is None:
         fail(f"No module named {name}")
+    if function:
+        code = code_of_call(name, function)
+    elif only_defines_main(spec):
+        fail(f"{name} defines main() and does not call it; -m {name}:main does")
     module = ModuleType("__main__")
     vars(module).update(
         __file__=spec.origin,
@@ -135,6 +145,34 @@ def code_of(spec: ModuleSpec | None) -> CodeType | None:
         return None
     code: CodeType | None = loader.get_code(spec.name)
     return code
+
+
+def code_of_call(module: str, function: str) -> CodeType:
+    """Return code that ends with the result of a function, as the executable of a package does."""
+    if not all(part.isidentifier() for part in (*module.split("."), *function.split("."))):
+        fail(f"{module}:{function} is no MODULE:FUNCTION")
+    source = f"import sys\nfrom {module} import {function.partition('.')[0]}\n"
+    return compile(f"{source}sys.exit({function}())\n", f"{module}:{function}", "exec")
+
+
+def only_defines_main(spec: ModuleSpec) -> bool:
+    """Return whether a module defines a function ``main``, and does nothing when it is run."""
+    loader: Any = spec.loader
+    source = loader.get_source(spec.name) if hasattr(loader, "get_source") else None
+    if source is None or "main" not in source:
+        return False
+    import ast  # which takes as long as a small program does
+
+    quiet = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.ClassDef, ast.Assign, ast.AnnAssign)
+    statements = ast.parse(source).body
+    is_quiet = all(
+        isinstance(one, quiet)
+        or (isinstance(one, ast.Expr) and isinstance(one.value, ast.Constant))
+        for one in statements
+    )
+    return is_quiet and any(
+        isinstance(one, ast.FunctionDef) and one.name == "main" for one in statements
+    )
 
 
 def fail(problem: str) -> NoReturn:

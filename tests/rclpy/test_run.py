@@ -104,6 +104,40 @@ def test_a_module_runs_as_python_runs_it(folder: Path) -> None:
     assert done.stdout.startswith(f"__main__ {path} ['{path}', 'exit']")
 
 
+def test_a_function_of_a_module_is_called_as_by_the_executable_of_a_package(folder: Path) -> None:
+    """Its result is the exit status; a package names such functions in its setup.py."""
+    (folder / "robot").mkdir()
+    (folder / "robot" / "__init__.py").write_text("")
+    (folder / "robot" / "mover.py").write_text(
+        "import sys\n\n\ndef main():\n    print(__name__, sys.argv[1:])\n    return 5\n"
+    )
+
+    done = run(folder, "run", "-m", "robot.mover:main", "fast", module="aionode")
+
+    assert (done.stdout, done.stderr, done.returncode) == ("robot.mover ['fast']\n", "", 5)
+
+
+def test_a_module_that_only_defines_main_does_not_end_as_if_it_had_run(folder: Path) -> None:
+    """Modules of packages rarely call it themselves."""
+    (folder / "mover.py").write_text('"""Moves."""\n\nimport rclpy\n\n\ndef main():\n    pass\n')
+
+    done = run(folder, "run", "-m", "mover", module="aionode")
+
+    assert done.returncode == 2
+    assert done.stderr == (
+        "aionode.rclpy: mover defines main() and does not call it; -m mover:main does\n"
+    )
+
+
+def test_an_executable_of_an_installed_package_runs_by_its_path(folder: Path) -> None:
+    """It is a file of Python without an ending, which imports the package alone."""
+    (folder / "mover").write_text("#!/usr/bin/python3\nimport sys, helper\nsys.exit(helper.TEXT)\n")
+
+    done = run(folder, "run", "./mover", module="aionode")
+
+    assert (done.stderr, done.returncode) == ("hi\n", 1)
+
+
 def test_a_traceback_shows_the_program_alone(folder: Path) -> None:
     """What runs the program is of no interest to its author."""
     done = run(folder, "program.py", "fail")
@@ -139,6 +173,7 @@ def test_a_program_that_python_cannot_read_is_shown_as_usual(folder: Path) -> No
         (("nothing.py",), "aionode.rclpy: can't open file 'nothing.py': No such file or directory"),
         (("-m", "nothing.inside"), "aionode.rclpy: No module named nothing"),
         (("-m", "nothing"), "aionode.rclpy: No module named nothing"),
+        (("-m", "helper:no name"), "aionode.rclpy: helper:no name is no MODULE:FUNCTION"),
         (("--interfaces", "nothing", "program.py"), "aionode.rclpy: nothing: no such folder"),
         ((), "usage: python -m aionode.rclpy"),
         (("--nothing",), "usage: python -m aionode.rclpy"),

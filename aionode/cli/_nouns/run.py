@@ -34,7 +34,12 @@ FITS = "expected MODULE:CLASS, such as my_robot.nodes:Talker or talker.py:Talker
 @click.argument(
     "args", nargs=-1, metavar="[MODULE:CLASS...|PROGRAM.py [ARGS]...]", type=click.UNPROCESSED
 )
-@click.option("-m", "module", metavar="MODULE", help="Run a module as a program of rclpy.")
+@click.option(
+    "-m",
+    "module",
+    metavar="MODULE[:FUNCTION]",
+    help="Run a module as a program of rclpy, or call a function, as a package's executable does.",
+)
 @click.option("--rclpy", is_flag=True, help="Take a file for a program of rclpy in any case.")
 @click.option(
     "--interfaces",
@@ -111,9 +116,12 @@ def node_maker(spec: str) -> Callable[[], Any]:
 
 
 def is_rclpy_program(name: str) -> bool:
-    """Return whether a name is that of a file that imports rclpy or ROS's message packages."""
+    """Return whether a name is that of a file that imports rclpy or ROS's message packages.
+
+    An executable that an installed package has in Python is one, too: it imports that package.
+    """
     if not name.endswith(".py"):
-        return False
+        return is_script(name)
     try:
         tree = ast.parse(Path(name).read_bytes())
     except (OSError, SyntaxError, ValueError):
@@ -132,6 +140,16 @@ def is_rclpy_program(name: str) -> bool:
     return not {"rclpy", *shipped_packages()}.isdisjoint(
         module.partition(".")[0] for module in modules
     )
+
+
+def is_script(name: str) -> bool:
+    """Return whether a name is that of a file that Python runs, by the first line of the file."""
+    try:
+        with Path(name).open("rb") as file:
+            first = file.readline(200)
+    except OSError:
+        return False
+    return first.startswith(b"#!") and b"python" in first
 
 
 def run_program(interfaces: Sequence[str], program: Sequence[str]) -> NoReturn:
