@@ -348,6 +348,24 @@ async def test_a_heartbeat_in_a_publishers_name_leads_no_acknowledgement_astray(
         await acknowledged(publisher)
 
 
+async def test_a_context_of_another_version_counts_as_one_that_does_not_acknowledge() -> None:
+    """Its acknowledgements go by other keys; it hears everything as a ROS 2 node does."""
+    async with quiet_node("a") as a:
+        acknowledgements = writer_of(a.create_publisher(Int32, "n", 10)).state.acknowledgements
+        with raw_session() as session:
+            liveliness = session.liveliness()
+            tokens = [
+                liveliness.declare_token(
+                    f"@aionode/{DOMAIN_ID}/{version}{version}/reliable/{version}"
+                )
+                for version in (1, 2)
+            ]
+            await until(lambda: acknowledgements.participants)
+            assert acknowledgements.participants == {"22"}
+            for token in tokens:
+                token.undeclare()
+
+
 async def test_one_subscriber_for_the_acknowledgements_of_a_topic_goes_with_its_last_endpoint() -> (
     None
 ):
