@@ -15,6 +15,7 @@ from click.shell_completion import BashComplete
 
 from aionode.cli import main
 from aionode.cli._main import root
+from aionode.cli._support import completion
 from aionode.transport.ipc import available
 from tests.support.peers import isolated_environment
 
@@ -94,6 +95,7 @@ def in_robot(terminals: Terminals, monkeypatch: pytest.MonkeyPatch) -> None:
     """
     for name, value in terminals.env.items():
         monkeypatch.setenv(name, value)
+    monkeypatch.setattr(completion, "ANSWER_S", STARTED_S)  # nobody waits, and machines are busy
 
 
 # What the tutorial types
