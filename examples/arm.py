@@ -87,7 +87,7 @@ class Joint:
 
 def joints_of(urdf: str) -> list[Joint]:
     """Return the joints of a robot's description."""
-    found = []
+    found: list[Joint] = []
     for joint in ET.fromstring(urdf).iter("joint"):  # noqa: S314  # our own text
         texts = {part.tag: part.attrib for part in joint}
         found.append(
