@@ -11,7 +11,7 @@ from tests.faults.roles import Hear, Publish, Role
 
 __all__ = ["all_attacks"]
 
-ZENOH = "Zenoh itself: its put waits while it takes in, or drops, thousands of declarations"
+ZENOH = "Zenoh: its put waits while it drops thousands of declarations; about half of it is ours"
 
 
 def pair(link: str = "off", env: dict[str, str] | None = None, **talker: Any) -> tuple[Role, ...]:
@@ -131,7 +131,7 @@ def all_attacks() -> list[Attack]:
             bare=True,
         ),
         Attack(
-            "40 messages of 1 MB a second to a busy loop (depth 10 000, queues of 4 MiB)",
+            "40 messages of 500 kB a second to a busy loop (depth 10 000, queues of 4 MiB)",
             "member",
             "flood_topic",
             (

@@ -192,7 +192,7 @@ class Strike:
                 await bare.until_ended()
             if told := re.search(r"^bare (\d+) (\S+)$", bare.whole_output(), re.MULTILINE):
                 self.found.bare = (
-                    f"Zenoh's own: {told[1]} ms and {told[2]} times the memory without aionode"
+                    f"Zenoh without aionode beside it: {told[1]} ms, {told[2]} times the memory"
                 )
 
         grown = [(memory[pid], peak_of(pid)) for pid in memory if Path(f"/proc/{pid}").exists()]

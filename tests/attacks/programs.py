@@ -408,11 +408,11 @@ def never_acknowledge(liar: Liar, seconds: float) -> int:
 
 
 def flood_topic(liar: Liar, seconds: float) -> int:
-    """Publish messages of 1 MB on a topic whose callback takes long."""
+    """Publish messages of 500 kB on a topic whose callback takes long."""
     liar.be_node()
     gid = liar.announce(EndpointKind.PUBLISHER, "/work", String)
     begun()
-    filler = "x" * 1_000_000
+    filler = "x" * 500_000
     for number in pace(seconds, 40):
         liar.publish("/work", String(data=f"{forged_text(number)}{filler}"), number + 1, gid)
     return number + 1

@@ -126,10 +126,15 @@ class MessageQueue(InlineCall, Generic[T]):
 
     def make_room(self, item: T) -> bool:
         """Drop the oldest items until one more fits; return whether it does, and count what not."""
-        queue = self.items
-        size_bytes = 0 if self._size_of is None else self._size_of(item)
+        queue, sizes = self.items, self._sizes
         count = len(queue)
-        while count and (count >= self.depth or self._weight() + size_bytes > self.limit_bytes):
+        if self._size_of is None:
+            size_bytes = 0
+        else:
+            size_bytes = self._size_of(item)
+            while len(sizes) > count:  # `_weight` written out
+                self._bytes -= sizes.popleft()
+        while count and (count >= self.depth or self._bytes + size_bytes > self.limit_bytes):
             self.stats.dropped += 1
             if count < self.depth and self._on_heavy is not None:
                 heavy, self._on_heavy = self._on_heavy, None
@@ -138,8 +143,9 @@ class MessageQueue(InlineCall, Generic[T]):
                 return False
             queue.popleft()
             count -= 1
+            self._weight()
         if self._size_of is not None:
-            self._sizes.append(size_bytes)
+            sizes.append(size_bytes)
             self._bytes += size_bytes
         return True
 
