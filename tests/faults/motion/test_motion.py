@@ -120,7 +120,7 @@ def test_a_stop_in_time_keeps_the_promise() -> None:
     ("events", "text"),
     [
         (handed(*BEFORE, (10.6, "stop")), "stopped after 0.60 s, not 0.5 s"),
-        (handed(*BEFORE, (10.1, "move")), "did not stop"),
+        (handed(*BEFORE, (10.1, "move")), "did not stop: 1 commands, the last 0.10 s on"),
         (handed(*BEFORE, (10.2, "stop"), (15.0, "move")), "1 commands after the stop"),
         (handed((9.5, "move"), (9.7, "stop"), (10.2, "stop")), "stopped before the fault"),
         (handed((8.0, "move"), (10.2, "stop")), "did not move before the fault"),
