@@ -13,7 +13,7 @@ a loop runs; they are reached by other processes once `Transport.open` has retur
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol
 
 import msgspec
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from aionode.graph import EndpointInfo, Graph, NodeInfo
 
 __all__ = [
+    "NOT_INLINE_NS",
     "Call",
     "LinkStatus",
     "Reader",
@@ -40,6 +41,9 @@ __all__ = [
     "Transport",
     "Writer",
 ]
+
+NOT_INLINE_NS: Final = 1
+"""A `perf_ns` time in the past: the message is of another process, and no callback runs at once."""
 
 
 class SampleInfo(msgspec.Struct, frozen=True, gc=False):
@@ -98,7 +102,8 @@ class Reader(Protocol):
                 if unknown.
             inline_deadline_ns: Until which `perf_ns` a callback may run at once, within this call.
                 A transport sets it once for each event of the loop, so that the loop has its turn.
-                0 means that none may: the caller is itself in a callback or in `publish`.
+                0 means that none may, as the message is one of this process: the caller is itself
+                in a callback or in `publish`. For one of another process that is `NOT_INLINE_NS`.
             arrived_ns: When it arrived, in nanoseconds since 1970, if it was held back since; else
                 0.
         """

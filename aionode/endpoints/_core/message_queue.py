@@ -45,6 +45,9 @@ class MessageQueue(InlineCall, Generic[T]):
         stats: Where dropped items are counted.
         limit_bytes: How many bytes its items have at most, if they are weighed.
         weighed_from: From how many items on `make_room` decides whether one more fits.
+        own_from: The same for messages of this process, of which a busy program makes many: the
+            whole queue if the newest that was weighed is so small that a full queue is within the
+            limit.
         items: What is queued, with the `perf_ns` of its arrival. Read only, but for a subscription
             that drops messages when they expire: it puts a deque there that does.
     """
@@ -62,6 +65,7 @@ class MessageQueue(InlineCall, Generic[T]):
         "items",
         "keep_all",
         "limit_bytes",
+        "own_from",
         "stats",
         "weighed_from",
     )
@@ -79,7 +83,7 @@ class MessageQueue(InlineCall, Generic[T]):
         self._size_of: Callable[[T], int] | None = None
         self._on_heavy: Callable[[], None] | None = None
         self.limit_bytes = UNLIMITED_BYTES
-        self.weighed_from = depth
+        self.weighed_from = self.own_from = depth
         # Those that wait for an item and for room; emptied when they are woken.
         self._readers: list[asyncio.Future[None]] = []
         self._writers: list[asyncio.Future[None]] = []
@@ -147,6 +151,10 @@ class MessageQueue(InlineCall, Generic[T]):
         if self._size_of is not None:
             sizes.append(size_bytes)
             self._bytes += size_bytes
+            if size_bytes * self.depth > self.limit_bytes:
+                self.own_from = self.weighed_from
+            elif count == self.weighed_from:
+                self.own_from = self.depth
         return True
 
     def _weight(self) -> int:

@@ -165,9 +165,14 @@ class SubscriptionReader(MessageQueue[Any]):
             if not done and not waiter.done():
                 waiter.set_result(None)
             return
-        # `put` written out.
+        # `put` written out; of this process's messages the first one that has to wait is weighed.
         queue = self.items
-        if len(queue) >= self.weighed_from and not self.make_room(msg):
+        count = len(queue)
+        if (
+            count >= self.weighed_from
+            and (inline_deadline_ns or count >= self.own_from or count == self.weighed_from)
+            and not self.make_room(msg)
+        ):
             return
         queue.append((perf_ns(), msg))
         if self._readers:

@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from aionode.errors import DecodeError, FrameError
 from aionode.qos import ReliabilityPolicy, depth_of, keeps_all
-from aionode.transport.base import ReaderRegistration, Registration
+from aionode.transport.base import NOT_INLINE_NS, ReaderRegistration, Registration
 from aionode.transport.ipc._endpoint_table import can_link
 from aionode.transport.ipc._protocol import Close, Credit, Kind, Open, Switched
 from aionode.wire import cdr
@@ -299,7 +299,7 @@ class RemotePublisher:
         if self.route is not before or self.waits:
             self._route_changed()
 
-    def from_zenoh(self, message: Message, inline_deadline_ns: int = 0) -> None:
+    def from_zenoh(self, message: Message, inline_deadline_ns: int = NOT_INLINE_NS) -> None:
         """Take a message that came over Zenoh."""
         before = self.route
         self._progressed = True
@@ -372,7 +372,7 @@ class RemotePublisher:
             self._release()
             self.route = IPC if self._linked else ZENOH
 
-    def _next(self, message: Message, inline_deadline_ns: int = 0) -> None:
+    def _next(self, message: Message, inline_deadline_ns: int = NOT_INLINE_NS) -> None:
         self.last = message.sequence
         if self._keep_all and (self.full or not self.reader.has_room_itself()):
             self.full.append(message)
@@ -380,7 +380,7 @@ class RemotePublisher:
         else:
             self._hand_over(message, inline_deadline_ns)
 
-    def _hand_over(self, message: Message, inline_deadline_ns: int = 0) -> None:
+    def _hand_over(self, message: Message, inline_deadline_ns: int = NOT_INLINE_NS) -> None:
         msg, sequence, source_ns, arrived_ns = message
         self._deliver(msg, self.publisher, sequence, source_ns, inline_deadline_ns, arrived_ns)
 

@@ -16,7 +16,7 @@ from aionode.qos import depth_of, is_unlimited, keeps_all
 from aionode.transport._content_filters import filter_token, text_of_filter
 from aionode.transport._reliability import NEVER, OVERHEAD_BYTES
 from aionode.transport._writer_proxy import WriterProxy
-from aionode.transport.base import ReaderRegistration, SampleInfo
+from aionode.transport.base import NOT_INLINE_NS, ReaderRegistration, SampleInfo
 from aionode.transport.zenoh._delivery import (
     UNKNOWN_GID,
     is_reliable,
@@ -352,7 +352,7 @@ class ZenohReader(Declaration, ReaderRegistration):
                 sample_info.gid,
                 sample_info.sequence,
                 sample_info.source_ns,
-                self._waker.inline_deadline_ns,
+                self._waker.inline_deadline_ns or NOT_INLINE_NS,
                 sample_info.arrived_ns,
             )
 
