@@ -76,11 +76,9 @@ class ParameterStore(ParameterCallbacks):
         publish: As given; may be replaced.
         parameter_class: The class of the parameters.
         messages: Has the message classes, by name.
-        type_text: Returns a type as texts show it.
     """
 
     parameter_class: type[Parameter] = Parameter
-    type_text: Callable[[ParameterType], str] = staticmethod("Type.{0.name}".format)
 
     def __init__(
         self,
@@ -100,6 +98,11 @@ class ParameterStore(ParameterCallbacks):
         # declared where that is allowed.
         self._parameters: dict[str, Parameter] = {}
         self._descriptors: dict[str, ParameterDescriptor] = {}
+
+    @staticmethod
+    def type_text(kind: ParameterType) -> str:
+        """Return a type as texts show it."""
+        return f"Type.{kind.name}"
 
     def names(self) -> list[str]:
         """Return the names of all declared parameters."""
