@@ -224,6 +224,11 @@ class BufferCore:
             self._report("TF_TWO_BROADCASTERS", child, text)
         self._rivals[child] = last
 
+    def _rename_authority(self, before: str, name: str) -> None:
+        """Give an authority another name in all that is recorded."""
+        for record in (self._authorities, self._rivals):
+            record.update(dict.fromkeys([c for c, by in record.items() if by == before], name))
+
     def _refuse(self, found: list[tuple[str, str]], authority: str) -> None:
         """Log what is wrong with a transform."""
         for kind, text in found:

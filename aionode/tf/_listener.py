@@ -10,6 +10,7 @@ from aionode.qos import DurabilityPolicy, QoSProfile
 
 if TYPE_CHECKING:
     from aionode.endpoints.subscription import MessageInfo, Subscription
+    from aionode.graph import EndpointInfo
     from aionode.node import Node
     from aionode.tf._buffer_core import BufferCore
 
@@ -56,12 +57,15 @@ class TransformListener:
         self.buffer = buffer
         self.node = node
         self._senders: dict[bytes, str] = {}
+        self._unnamed: set[bytes] = set()  # publishers whose node is not known yet
         self.tf_sub: Subscription[TFMessage] = node.create_subscription(
             TFMessage, tf_topic, self.callback, qos or DEPTH
         )
         self.tf_static_sub: Subscription[TFMessage] = node.create_subscription(
             TFMessage, tf_static_topic, self.static_callback, static_qos
         )
+        for subscription in (self.tf_sub, self.tf_static_sub):
+            subscription._watch(self._note_publisher)
 
     def callback(self, data: TFMessage, info: MessageInfo) -> None:
         """Take transforms that may change."""
@@ -87,9 +91,26 @@ class TransformListener:
                     self._senders.clear()
                 name = self._senders[gid] = endpoint.node.fully_qualified_name
                 return name
-        return f"publisher {gid.hex()}"
+        if len(self._unnamed) < MAX_SENDERS:
+            self._unnamed.add(gid)
+        return nameless(gid)
+
+    def _note_publisher(self, endpoint: EndpointInfo, present: bool) -> None:
+        """Name the sender of transforms that have arrived before the graph knew their publisher.
+
+        Static transforms come once: without this, their sender would never be named.
+        """
+        if present and endpoint.gid in self._unnamed:
+            self._unnamed.discard(endpoint.gid)
+            name = endpoint.node.fully_qualified_name
+            self.buffer._rename_authority(nameless(endpoint.gid), name)
 
     def unregister(self) -> None:
         """Destroy both subscriptions."""
         self.tf_sub.destroy()
         self.tf_static_sub.destroy()
+
+
+def nameless(gid: bytes) -> str:
+    """Return how a publisher is called while its node is not known."""
+    return f"publisher {gid.hex()}"

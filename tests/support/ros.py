@@ -15,14 +15,21 @@ __all__ = ["gids_of_a_client", "ros_domain", "ros_missing", "ros_peer"]
 
 
 @functools.cache
-def ros_missing() -> str:
-    """Return why tests with an installed ROS 2 cannot run here; empty if they can."""
+def ros_missing(*packages: str) -> str:
+    """Return why tests with an installed ROS 2 cannot run here; empty if they can.
+
+    Args:
+        packages: Which packages of a ROS 2 they need that have no wheels.
+    """
     for package in ("rclpy", "std_msgs", "test_msgs"):
         if importlib.util.find_spec(package) is None:
             return (
                 f"{package} is not installed: pip install 'aionode[ros]' (Linux x86-64), or source "
                 "a ROS 2; see CONTRIBUTING.md"
             )
+    for package in packages:
+        if importlib.util.find_spec(package) is None:
+            return f"{package} is not installed: it has no wheel; source a ROS 2 that has it"
     return ""
 
 
@@ -43,16 +50,16 @@ def ros_domain(offset: int = 0) -> int:
 
 
 @contextmanager
-def ros_peer(domain_id: int) -> Iterator[subprocess.Popen[str]]:
-    """Run `tests.support.ros_peer` in a domain."""
+def ros_peer(domain_id: int, program: str = "ros_peer") -> Iterator[subprocess.Popen[str]]:
+    """Run a program of `tests.support` in a domain: it prints ``ready``, and ends with stdin."""
     environ = {
         **os.environ,
         "ROS_DOMAIN_ID": str(domain_id),
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
     }
-    program = [sys.executable, "-W", "ignore", "-m", "tests.support.ros_peer"]
+    command = [sys.executable, "-W", "ignore", "-m", f"tests.support.{program}"]
     pipe = subprocess.PIPE
-    with subprocess.Popen(program, env=environ, stdin=pipe, stdout=pipe, text=True) as peer:
+    with subprocess.Popen(command, env=environ, stdin=pipe, stdout=pipe, text=True) as peer:
         try:
             if peer.stdout is None or peer.stdout.readline() != "ready\n":
                 raise RuntimeError("the peer has not started; its output is above")

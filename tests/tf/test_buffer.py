@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from aionode import Context, Node, Time
+from aionode import Context, MessageInfo, Node, Time
 from aionode.clock import Duration
 from aionode.errors import (
     ConnectivityException,
@@ -19,12 +19,14 @@ from aionode.errors import (
     LookupException,
     TimeoutException,
 )
+from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.geometry_msgs.msg import PointStamped, TransformStamped
 from aionode.interfaces.rosgraph_msgs.msg import Clock as ClockMsg
 from aionode.interfaces.tf2_msgs.srv import FrameGraph
 from aionode.lifecycle import LifecycleNode
 from aionode.logging import get_logger
 from aionode.parameter import Parameter
+from aionode.qos import QoSProfile
 from aionode.testing import ManualClock, settle
 from aionode.tf import (
     Buffer,
@@ -35,7 +37,7 @@ from aionode.tf import (
     TransformBroadcaster,
     TransformListener,
 )
-from tests.support.transforms import parts, transform
+from tests.support.transforms import message, parts, transform
 
 
 def at(seconds: float) -> Time:
@@ -396,6 +398,35 @@ async def test_transforms_come_from_tf_and_tf_static(
             TransformBroadcaster(sender).sendTransform(transform("odom", "base", 1.0))
             await buffer.wait_for_transform("odom", "camera")
             assert "broadcaster: '/sender'" in buffer.all_frames_as_yaml()
+
+
+async def test_the_sender_of_static_transforms_is_named_when_the_graph_learns_of_it(
+    node: Node, buffer: Buffer
+) -> None:
+    """Over DDS, transforms may come before the name of their node; the static ones come once."""
+    gid = bytes(range(16))
+    arrived = message(transform("base", "camera"), transform("base", "lidar"))
+    info = MessageInfo(
+        source_timestamp=0,
+        received_timestamp=0,
+        publication_sequence_number=1,
+        reception_sequence_number=1,
+        publisher_gid=gid,
+    )
+    buffer.listener.static_callback(arrived, info)
+    assert f"broadcaster: 'publisher {gid.hex()}'" in buffer.all_frames_as_yaml()
+    publisher = EndpointInfo(
+        EndpointKind.PUBLISHER,
+        NodeInfo("a" * 32, 0, "sender", "/"),
+        1,
+        "/tf_static",
+        "tf2_msgs/msg/TFMessage",
+        "",
+        QoSProfile(depth=1),
+        gid,
+    )
+    node.graph.add_endpoint(publisher)
+    assert buffer.all_frames_as_yaml().count("broadcaster: '/sender'") == 2
 
 
 async def test_two_broadcasters_of_one_frame_are_named(

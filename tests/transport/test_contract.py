@@ -70,7 +70,7 @@ async def pair(
             if request.param == "fake_rcl":
                 fake_rcl.install(monkeypatch)
             else:
-                why_not = why_not or ros_missing()
+                why_not = why_not or ros_missing(*getattr(request.module, "ROS_PACKAGES", ()))
             if why_not:
                 pytest.skip(why_not)
             contexts = (

@@ -10,6 +10,9 @@ from tests.transport.test_contract import Pair, pair
 
 __all__ = ["pair"]  # the fixture
 
+ROS_PACKAGES = ("tf2_msgs",)
+"""What the installed ROS must have besides."""
+
 
 async def test_a_late_buffer_has_static_transforms_and_awaits_the_others(pair: Pair) -> None:
     """The sender of both is named."""
@@ -26,4 +29,5 @@ async def test_a_late_buffer_has_static_transforms_and_awaits_the_others(pair: P
         "odom", "camera", Time(seconds=1.5, clock_type=ClockType.ROS_TIME), timeout_sec=20.0
     )
     assert found.transform.translation.x == 2.0
-    assert set(buffer._authorities.values()) == {pair.left.get_fully_qualified_name()}
+    sender = pair.left.get_fully_qualified_name()
+    await pair.right.graph.until(lambda: set(buffer._authorities.values()) == {sender})

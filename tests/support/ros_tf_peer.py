@@ -1,0 +1,89 @@
+"""A program of plain rclpy for tests: it sends transforms, and prints those that it hears.
+
+It uses the topics and profiles of tf2_ros. ``peer_base`` lies in ``peer_map`` on ``/tf``, again and
+again; ``peer_camera`` and ``peer_arm`` lie in ``peer_base`` on ``/tf_static``, said once.
+"""
+
+from __future__ import annotations
+
+import sys
+import threading
+from contextlib import suppress
+from functools import partial
+from typing import Any
+
+import rclpy  # noqa: TID251  # it plays the other process
+from geometry_msgs.msg import TransformStamped
+from rclpy.executors import ExternalShutdownException  # noqa: TID251  # the same
+from rclpy.node import Node  # noqa: TID251  # the same
+from rclpy.qos import DurabilityPolicy, QoSProfile  # noqa: TID251  # the same
+from tf2_msgs.msg import TFMessage
+
+from tests.support.ros_peer import shut_down_at_end
+
+TRANSIENT = DurabilityPolicy.TRANSIENT_LOCAL
+
+
+class Peer(Node):  # type: ignore[misc]  # rclpy has no types here
+    """The node ``/tf_peer``."""
+
+    def __init__(self) -> None:
+        super().__init__("tf_peer")
+        static_profile = QoSProfile(depth=100, durability=TRANSIENT)
+        self.create_subscription(TFMessage, "/tf", partial(self.tell, "/tf"), 100)
+        self.create_subscription(
+            TFMessage, "/tf_static", partial(self.tell, "/tf_static"), static_profile
+        )
+        self.moving = self.create_publisher(TFMessage, "/tf", 100)
+        self.static = self.create_publisher(
+            TFMessage, "/tf_static", QoSProfile(depth=1, durability=TRANSIENT)
+        )
+        self.static.publish(
+            TFMessage(
+                transforms=[
+                    self.placed("peer_base", "peer_camera", 2.0),
+                    self.placed("peer_base", "peer_arm", 3.0),
+                ]
+            )
+        )
+        self.create_timer(0.02, self.move)
+
+    def placed(self, parent: str, child: str, x: float) -> Any:
+        """Return a transform of this moment."""
+        stamped = TransformStamped(child_frame_id=child)
+        stamped.header.frame_id = parent
+        stamped.header.stamp = self.get_clock().now().to_msg()
+        stamped.transform.translation.x = x
+        return stamped
+
+    def move(self) -> None:
+        """Say where the base is."""
+        self.moving.publish(TFMessage(transforms=[self.placed("peer_map", "peer_base", 1.0)]))
+
+    def tell(self, topic: str, msg: Any) -> None:
+        """Print the transforms of the test's node."""
+        for one in msg.transforms:
+            if not one.child_frame_id.startswith("peer_"):
+                x = one.transform.translation.x
+                say(f"{topic} {one.header.frame_id} {one.child_frame_id} {x}")
+
+
+def say(line: str) -> None:
+    """Print a line at once."""
+    sys.stdout.write(f"{line}\n")
+    sys.stdout.flush()
+
+
+def main() -> None:
+    """Spin until stdin is closed."""
+    rclpy.init()
+    peer = Peer()
+    say("ready")
+    threading.Thread(target=shut_down_at_end, daemon=True).start()
+    with suppress(ExternalShutdownException):
+        rclpy.spin(peer)
+    peer.destroy_node()
+
+
+if __name__ == "__main__":
+    main()
