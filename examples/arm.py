@@ -2,7 +2,7 @@
 """Where is the gripper? An arm of six joints publishes transforms, and a program awaits one.
 
 ``Joints`` moves the joints, ``RobotState`` does what robot_state_publisher does: it reads the arm's
-description, a URDF, and turns the angles of the joints into transforms. ``find_gripper`` knows
+description, arm.urdf, and turns the angles of the joints into transforms. ``find_gripper`` knows
 nothing of joints: it asks for the gripper in the map. Run it with ``python examples/arm.py``, and
 look at it from another terminal with ``aionode tf tree``.
 """
@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import cos, sin, tau
+from pathlib import Path
 from xml.etree import ElementTree as ET
 
 import aionode
@@ -27,38 +28,7 @@ from aionode.interfaces.std_msgs.msg import Header
 from aionode.tf import Buffer, StaticTransformBroadcaster, TransformBroadcaster
 
 RATE_HZ = 50.0
-
-URDF = """
-<robot name="arm">
-  <joint name="mount" type="fixed">
-    <parent link="map"/> <child link="base"/> <origin xyz="2 1 0"/>
-  </joint>
-  <joint name="turn" type="revolute">
-    <parent link="base"/> <child link="shoulder"/> <origin xyz="0 0 0.4"/> <axis xyz="0 0 1"/>
-  </joint>
-  <joint name="lift" type="revolute">
-    <parent link="shoulder"/> <child link="upper_arm"/> <origin xyz="0 0 0.1"/> <axis xyz="0 1 0"/>
-  </joint>
-  <joint name="elbow" type="revolute">
-    <parent link="upper_arm"/> <child link="forearm"/> <origin xyz="0.5 0 0"/> <axis xyz="0 1 0"/>
-  </joint>
-  <joint name="roll" type="revolute">
-    <parent link="forearm"/> <child link="wrist"/> <origin xyz="0.4 0 0"/> <axis xyz="1 0 0"/>
-  </joint>
-  <joint name="pitch" type="revolute">
-    <parent link="wrist"/> <child link="hand"/> <origin xyz="0.1 0 0"/> <axis xyz="0 1 0"/>
-  </joint>
-  <joint name="spin" type="revolute">
-    <parent link="hand"/> <child link="flange"/> <origin xyz="0.1 0 0"/> <axis xyz="1 0 0"/>
-  </joint>
-  <joint name="eye" type="fixed">
-    <parent link="wrist"/> <child link="camera"/> <origin xyz="0 0 0.08"/>
-  </joint>
-  <joint name="tool" type="fixed">
-    <parent link="flange"/> <child link="gripper"/> <origin xyz="0.1 0 0"/>
-  </joint>
-</robot>
-"""
+URDF = Path(__file__).with_name("arm.urdf")
 
 
 @dataclass(frozen=True)
@@ -85,10 +55,10 @@ class Joint:
         )
 
 
-def joints_of(urdf: str) -> list[Joint]:
+def joints_of(urdf: Path) -> list[Joint]:
     """Return the joints of a robot's description."""
     found: list[Joint] = []
-    for joint in ET.fromstring(urdf).iter("joint"):  # noqa: S314  # our own text
+    for joint in ET.parse(urdf).iter("joint"):  # noqa: S314  # our own file
         texts = {part.tag: part.attrib for part in joint}
         found.append(
             Joint(
@@ -144,11 +114,10 @@ class RobotState(Node):
 
     def on_joints(self, msg: JointState) -> None:
         """Publish where the links are."""
-        angles = dict(zip(msg.name, msg.position, strict=False))
         self.broadcaster.sendTransform(
             [
                 self.joints[name].transform(float(angle), msg.header)
-                for name, angle in angles.items()
+                for name, angle in zip(msg.name, msg.position, strict=False)
                 if name in self.joints
             ]
         )
