@@ -106,6 +106,11 @@ class RosNode:
         key = data_key(DOMAIN_ID, "/n", type_name(Int32), type_hash(Int32))
         return Numbers(self._session, key)
 
+    def kept(self) -> list[object]:
+        """Return what publishers keep for late subscribers."""
+        key = data_key(DOMAIN_ID, "/n", type_name(Int32), type_hash(Int32))
+        return list(self._session.get(f"{key}/@adv/**?_anyke", timeout=5.0))
+
     def withdraw(self) -> None:
         """Undeclare the token, as the end of the process does."""
         self._token.undeclare()
@@ -214,6 +219,9 @@ async def test_a_late_subscriber_gets_no_history_that_has_expired(
     early = ros_node.subscribe_late()
     assert await early.numbers(3) == [0, 1, 2]
     await clock.advance(1)
+    async with asyncio.timeout(10):
+        while await asyncio.to_thread(ros_node.kept):
+            pass  # a thread makes Zenoh forget them, as it may have to wait inside Zenoh
     late = ros_node.subscribe_late()
     for number in range(3, 6):
         publisher.publish(Int32(data=number))
