@@ -37,6 +37,8 @@ from tf2_ros import (
 )
 import tf2_geometry_msgs
 
+rclpy.action.ActionServer  # tf2_ros has imported that module
+
 
 def stamped(parent, child, stamp):
     msg = TransformStamped()

@@ -7,6 +7,7 @@ from typing import Any
 
 from aionode.rclpy._rosidl import action_class
 from aionode.rclpy._tf2_ros.buffer_interface import NOW, BufferInterface
+from aionode.rclpy.action.client import ActionClient
 from aionode.rclpy.duration import Duration
 from aionode.rclpy.time import Time
 from aionode.tf import (
@@ -41,8 +42,6 @@ class BufferClient(BufferInterface):
         check_frequency: float = 10.0,
         timeout_padding: Duration = Duration(seconds=2.0),  # noqa: B008  # it cannot be changed
     ) -> None:
-        from aionode.rclpy.action import ActionClient  # few programs of tf2 ask a server
-
         super().__init__()
         self.node = node
         self.action_client: Any = ActionClient(
