@@ -279,7 +279,7 @@ async def test_a_report_says_if_the_thread_did_not_run(
     monkeypatch.setattr("os.getloadavg", lambda: (load, load, load))
 
     def wait(msg: Int32) -> None:
-        threading.Event().wait(0.02)
+        threading.Event().wait(0.1)  # long beside the time of the test itself
 
     async def wait_async(msg: Int32) -> None:
         wait(msg)
