@@ -122,6 +122,28 @@ async def test_list_prints_each_frame_once(
     assert screen.text == "arm\nbase\ncamera\n"
 
 
+async def test_the_transforms_of_one_robot_of_a_fleet_are_shown(
+    tool: Node, node_factory: Callable[..., Node], screen: Any, running: Any
+) -> None:
+    """Robots that remap /tf into their namespaces would be invisible otherwise."""
+    rules = ["--ros-args", "-r", "/tf:=tf", "-r", "/tf_static:=tf_static"]
+    robot = node_factory("state", namespace="robot7", cli_args=rules)
+    StaticTransformBroadcaster(robot).sendTransform(transform("base", "camera"))
+    await list_frames(tool, output=screen.output, namespace="robot7", listen_s=0.05)
+    await tree(tool, output=screen.output, namespace="/robot7/", listen_s=0.05)
+    await tree(tool, output=screen.output, namespace="robot8", listen_s=0.05)
+    assert screen.text == (
+        "base\ncamera\n"
+        "base\n└── camera  static, /robot7/state\n"
+        "no transforms on /robot8/tf or /robot8/tf_static\n"
+    )
+    async with running(
+        echo(tool, "base", "camera", 50.0, output=screen.json_output, namespace="robot7")
+    ):
+        await settle()
+    assert '"child":"camera"' in screen.text
+
+
 async def test_tree_speaks_the_languages_of_graphviz_and_browsers(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:

@@ -32,6 +32,18 @@ LISTEN_S = 2.0
 """How long to listen to /tf, in seconds: long enough for what comes once a second."""
 
 
+namespace_option = click.option(
+    "--namespace", default="",
+    help="Whose /tf to read, where robots remap it into their namespaces: /robot7.",
+)  # fmt: skip
+
+
+def buffer_in(node: Node, namespace: str) -> Buffer:
+    """Return a buffer of the transforms in a namespace; by default the global ones."""
+    inside = f"/{namespace.strip('/')}".rstrip("/")
+    return Buffer(node, tf_topic=f"{inside}/tf", tf_static_topic=f"{inside}/tf_static")
+
+
 @click.group("tf")
 def tf_command() -> None:
     """Show and publish transforms between coordinate frames."""
@@ -43,17 +55,24 @@ def tf_command() -> None:
     click.argument("source_frame"),
     click.argument("target_frame"),
     click.argument("rate", type=hertz, default=1.0),
+    namespace_option,
     sim_time=True,
     endless=True,
 )
 async def echo(
-    node: Node, source_frame: str, target_frame: str, rate: float, *, output: Output
+    node: Node,
+    source_frame: str,
+    target_frame: str,
+    rate: float,
+    *,
+    output: Output,
+    namespace: str = "",
 ) -> None:
     """Print the transform between two frames, RATE times a second, as tf2_echo does.
 
     It is the pose of TARGET_FRAME in SOURCE_FRAME.
     """
-    buffer = Buffer(node)
+    buffer = buffer_in(node, namespace)
     while True:
         try:
             await buffer.wait_for_transform(source_frame, target_frame, timeout_sec=WAITING_S)
@@ -131,18 +150,21 @@ seconds_option = click.option(
 )  # fmt: skip
 
 
-async def heard(node: Node, listen_s: float, output: Output) -> Buffer:
+async def heard(node: Node, namespace: str, listen_s: float, output: Output) -> Buffer:
     """Return a buffer that has listened for a while."""
-    buffer = Buffer(node)
-    with output.waiting(f"listening to /tf for {listen_s:g} s"):
+    buffer = buffer_in(node, namespace)
+    topic = buffer.listener.tf_sub.topic_name
+    with output.waiting(f"listening to {topic} for {listen_s:g} s"):
         await Clock(ClockType.STEADY_TIME, time_base=node.context.time_base).sleep(listen_s)
     return buffer
 
 
-@command(tf_command, "list", seconds_option)
-async def list_frames(node: Node, *, output: Output, listen_s: float = LISTEN_S) -> None:
+@command(tf_command, "list", namespace_option, seconds_option)
+async def list_frames(
+    node: Node, *, output: Output, namespace: str = "", listen_s: float = LISTEN_S
+) -> None:
     """List all frames."""
-    buffer = await heard(node, listen_s, output)
+    buffer = await heard(node, namespace, listen_s, output)
     output.items([(name, {"frame": name}) for name in sorted(buffer._getFrameStrings())])
 
 
@@ -151,14 +173,21 @@ async def list_frames(node: Node, *, output: Output, listen_s: float = LISTEN_S)
     "tree",
     click.option("--dot", is_flag=True, help="Print it for Graphviz, as view_frames does."),
     click.option("--svg", is_flag=True, help="Print it as a picture."),
+    namespace_option,
     seconds_option,
     sim_time=True,
 )
 async def tree(
-    node: Node, *, output: Output, dot: bool = False, svg: bool = False, listen_s: float = LISTEN_S
+    node: Node,
+    *,
+    output: Output,
+    dot: bool = False,
+    svg: bool = False,
+    namespace: str = "",
+    listen_s: float = LISTEN_S,
 ) -> None:
     """Print the tree of frames, with rate, age and broadcaster of each."""
-    buffer = await heard(node, listen_s, output)
+    buffer = await heard(node, namespace, listen_s, output)
     now = node.get_clock().now()
     edges = edges_of(buffer, now.nanoseconds)
     records = [edge.record() for edge in edges]
@@ -169,7 +198,8 @@ async def tree(
     elif svg:
         output.raw(as_svg(edges))
     else:
-        output.text(as_text(edges) or "no transforms on /tf or /tf_static")
+        topics = buffer.listener.tf_sub.topic_name, buffer.listener.tf_static_sub.topic_name
+        output.text(as_text(edges) or f"no transforms on {' or '.join(topics)}")
 
 
 def number_option(name: str, text: str) -> Any:
