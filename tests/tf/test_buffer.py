@@ -400,33 +400,48 @@ async def test_transforms_come_from_tf_and_tf_static(
             assert "broadcaster: '/sender'" in buffer.all_frames_as_yaml()
 
 
-async def test_the_sender_of_static_transforms_is_named_when_the_graph_learns_of_it(
-    node: Node, buffer: Buffer
-) -> None:
-    """Over DDS, transforms may come before the name of their node; the static ones come once."""
-    gid = bytes(range(16))
-    arrived = message(transform("base", "camera"), transform("base", "lidar"))
-    info = MessageInfo(
+def from_publisher(gid: bytes) -> MessageInfo:
+    """Return what is known about a message."""
+    return MessageInfo(
         source_timestamp=0,
         received_timestamp=0,
         publication_sequence_number=1,
         reception_sequence_number=1,
         publisher_gid=gid,
     )
-    buffer.listener.static_callback(arrived, info)
+
+
+def publisher(topic: str, gid: bytes) -> EndpointInfo:
+    """Return a publisher of the node /sender, as the graph knows it."""
+    node = NodeInfo("a" * 32, 0, "sender", "/")
+    kind, profile = EndpointKind.PUBLISHER, QoSProfile(depth=1)
+    return EndpointInfo(kind, node, 1, topic, "tf2_msgs/msg/TFMessage", "", profile, gid)
+
+
+async def test_the_sender_of_static_transforms_is_named_when_the_graph_learns_of_it(
+    node: Node, buffer: Buffer
+) -> None:
+    """Over DDS, transforms may come before the name of their node; the static ones come once."""
+    gid = bytes(range(16))
+    arrived = message(transform("base", "camera"), transform("base", "lidar"))
+    buffer.listener.static_callback(arrived, from_publisher(gid))
     assert f"broadcaster: 'publisher {gid.hex()}'" in buffer.all_frames_as_yaml()
-    publisher = EndpointInfo(
-        EndpointKind.PUBLISHER,
-        NodeInfo("a" * 32, 0, "sender", "/"),
-        1,
-        "/tf_static",
-        "tf2_msgs/msg/TFMessage",
-        "",
-        QoSProfile(depth=1),
-        gid,
-    )
-    node.graph.add_endpoint(publisher)
+    node.graph.add_endpoint(publisher("/tf_static", gid))
     assert buffer.all_frames_as_yaml().count("broadcaster: '/sender'") == 2
+
+
+async def test_two_publishers_of_one_node_are_one_sender_once_they_are_named(
+    node: Node, buffer: Buffer
+) -> None:
+    """`aionode doctor` would warn of two broadcasters, and name one node twice."""
+    gids = bytes(range(16)), bytes(range(16, 32))
+    camera = message(transform("base", "camera"))
+    buffer.listener.static_callback(camera, from_publisher(gids[0]))
+    buffer.listener.callback(camera, from_publisher(gids[1]))
+    assert buffer._rivals
+    node.graph.add_endpoint(publisher("/tf_static", gids[0]))
+    node.graph.add_endpoint(publisher("/tf", gids[1]))
+    assert not buffer._rivals
 
 
 async def test_two_broadcasters_of_one_frame_are_named(
