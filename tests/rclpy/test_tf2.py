@@ -156,6 +156,32 @@ def test_a_future_gets_the_transform_and_is_forgotten_when_it_is_cancelled() -> 
     assert not buffer._waiters._by_frame
 
 
+def test_what_is_there_is_awaited_without_a_turn() -> None:
+    """For one time and for two, and with a cache time of the program's own."""
+    buffer = Buffer(cache_time=Duration(seconds=10.0))
+    buffer.set_transform(stamped("a", "b"), "me")
+    time = Time(seconds=1)
+    for coroutine in (
+        buffer.lookup_transform_async("a", "b", time),
+        buffer.lookup_transform_full_async("a", time, "b", time, "a"),
+    ):
+        with pytest.raises(StopIteration) as ended:
+            coroutine.send(None)
+        assert ended.value.value == stamped("a", "b")
+
+
+def test_a_wait_for_two_times_is_resumed_when_the_transform_is_there() -> None:
+    """By the one who has sent the coroutine, as an executor does."""
+    buffer = Buffer()
+    time = Time(seconds=1)
+    coroutine = buffer.lookup_transform_full_async("a", time, "b", time, "a")
+    coroutine.send(None)
+    buffer.set_transform(stamped("a", "b"), "me")
+    with pytest.raises(StopIteration) as ended:
+        coroutine.send(None)
+    assert ended.value.value == stamped("a", "b")
+
+
 def test_registered_types_are_transformed_and_converted() -> None:
     """Importing tf2_geometry_msgs registers its types."""
     buffer = Buffer()

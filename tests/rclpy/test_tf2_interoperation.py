@@ -8,6 +8,7 @@ import pytest
 
 from aionode import Node
 from aionode.clock import Time
+from aionode.errors import LookupException
 from aionode.rclpy._rosidl import from_aionode
 from aionode.rclpy._tf2_ros import (
     Buffer as ProgramsBuffer,
@@ -72,5 +73,7 @@ async def test_a_program_has_the_transforms_of_a_node(native: Node, side: Side) 
         client.lookup_transform, "odom", "camera", RclpyTime(), Duration(seconds=1)
     )
     assert asked.transform.translation.x == 2.0
+    with pytest.raises(LookupException):
+        await asyncio.to_thread(client.lookup_transform, "odom", "nobody", RclpyTime())
     listener.unregister()
     client.destroy()

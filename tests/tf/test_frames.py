@@ -76,8 +76,9 @@ def test_one_pose_a_hundred_times_is_one_pose() -> None:
     """Latched publishers repeat themselves."""
     one = frame()
     for _ in range(100):
-        assert one.insert(0, "p", ORIGIN)
+        assert one.insert(1, "p", ORIGIN)
     assert len(one) == 1
+    assert one.find(1) == ("p", (ORIGIN, None, 0.0))
 
 
 def test_a_translation_is_interpolated_along_a_line() -> None:
