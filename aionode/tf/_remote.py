@@ -83,9 +83,11 @@ class BufferServer:
         except TransformException as error:
             code = next(code for kind, code in CODES if isinstance(error, kind))
             result = LookupTransform.Result(error=TF2Error(error=code, error_string=str(error)))
-            handle.abort(result)
-        else:
-            handle.succeed(result)
+            if isinstance(error, TimeoutException):
+                handle.abort(result)
+                return result
+        # An error is an answer as well: tf2's client in C++ drops the result of an aborted goal.
+        handle.succeed(result)
         return result
 
     async def _transform_of(self, goal: LookupTransform.Goal) -> TransformStamped:

@@ -9,9 +9,17 @@ import pytest
 
 from aionode import Node, Time
 from aionode.clock import Duration
-from aionode.errors import ExtrapolationException
+from aionode.errors import ExtrapolationException, GoalAbortedError
+from aionode.interfaces.tf2_msgs.action import LookupTransform
+from aionode.interfaces.tf2_msgs.msg import TF2Error
 from aionode.testing import settle
-from aionode.tf import Buffer, BufferCore, StaticTransformBroadcaster, TransformBroadcaster
+from aionode.tf import (
+    Buffer,
+    BufferCore,
+    BufferServer,
+    StaticTransformBroadcaster,
+    TransformBroadcaster,
+)
 from tests.support.transforms import transform
 
 
@@ -83,3 +91,23 @@ async def test_a_listener_fills_another_buffer_from_then_on(node: Node) -> None:
 
     assert other.can_transform_core("foo", "bar", at(1))[0]
     assert not buffer.can_transform("foo", "bar")
+
+
+async def test_a_server_succeeds_in_telling_an_error_and_aborts_only_after_its_time(
+    node: Node,
+) -> None:
+    """As tf2's server: tf2's client in C++ does not read the result of an aborted goal."""
+    buffer = Buffer(node)
+    BufferServer(buffer, node)
+    client = node.create_action_client(LookupTransform, "tf2_buffer_server")
+    await client.wait_for_server()
+    goal = LookupTransform.Goal(target_frame="foo", source_frame="bar")
+    told = await client.call(goal)
+    assert told.error.error == TF2Error.LOOKUP_ERROR
+    assert "does not exist" in told.error.error_string
+    goal.timeout = Duration(nanoseconds=1_000_000).to_msg()
+    with pytest.raises(GoalAbortedError) as aborted:
+        await client.call(goal)
+    result = aborted.value.result
+    assert isinstance(result, LookupTransform.Result)
+    assert result.error.error == TF2Error.TIMEOUT_ERROR
