@@ -109,6 +109,21 @@ def numpy_to_quat(arr: Array) -> Any:
     )
 
 
+def of_matrices(arr: Array, make: Callable[[Array, Any], Any]) -> Any:
+    """Return what `make` makes of the position and the quaternion of each 4x4 matrix.
+
+    Raises:
+        AssertionError: The matrices are not 4x4.
+        ValueError: A matrix has no inverse.
+    """
+    check_shape(arr, (4, 4))
+    return of_each(
+        arr,
+        2,
+        lambda one: make(one[:3, 3], numpy_to_quat(np.array(quaternion_from_matrix(one)))),
+    )
+
+
 @converts_to_numpy(Transform)
 def transform_to_numpy(msg: Any) -> Array:
     """Return the 4x4 matrix of a transform."""
@@ -123,14 +138,9 @@ def numpy_to_transform(arr: Array) -> Any:
         AssertionError: The matrices are not 4x4.
         ValueError: A matrix has no inverse.
     """
-    check_shape(arr, (4, 4))
-    return of_each(
+    return of_matrices(
         arr,
-        2,
-        lambda one: Transform(
-            translation=xyz(Vector3)(one[:3, 3]),
-            rotation=numpy_to_quat(np.array(quaternion_from_matrix(one))),
-        ),
+        lambda position, rotation: Transform(translation=xyz(Vector3)(position), rotation=rotation),
     )
 
 
@@ -148,14 +158,9 @@ def numpy_to_pose(arr: Array) -> Any:
         AssertionError: The matrices are not 4x4.
         ValueError: A matrix has no inverse.
     """
-    check_shape(arr, (4, 4))
-    return of_each(
+    return of_matrices(
         arr,
-        2,
-        lambda one: Pose(
-            position=xyz(Point)(one[:3, 3]),
-            orientation=numpy_to_quat(np.array(quaternion_from_matrix(one))),
-        ),
+        lambda position, rotation: Pose(position=xyz(Point)(position), orientation=rotation),
     )
 
 
